@@ -11,6 +11,7 @@ pub mod line;
 mod port;
 pub mod ports;
 pub mod profibus;
+pub mod profinet;
 mod pty;
 pub mod serial;
 pub mod server;

@@ -1,0 +1,231 @@
+//! The controller's side of alarms: takes each once, acknowledges it twice (the frame, and the alarm), repeats its own.
+
+use std::time::Duration;
+
+use super::super::Now;
+use super::super::wire::alarm::{self, Notification, Pdu, Priority, Rta};
+
+/// How long to wait for an acknowledgement.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// How often to repeat.
+const RETRIES: u32 = 3;
+/// Acknowledgements that wait for their turn; a device has one alarm on its way in each channel.
+const MOST: usize = 8;
+
+/// One channel.
+#[derive(Debug)]
+struct Channel {
+    priority: Priority,
+    /// The number of the last frame of ours; before the first one [`alarm::NONE`].
+    sent: u16,
+    /// The number of the device's last frame; likewise.
+    received: u16,
+    /// What is not acknowledged yet.
+    pending: Option<Pending>,
+    waiting: Vec<Vec<u8>>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    data: Vec<u8>,
+    deadline: Now,
+    repeats: u32,
+}
+
+/// Both channels of a connection.
+#[derive(Debug)]
+pub struct Alarms {
+    ours: u16,
+    theirs: u16,
+    channels: [Channel; 2],
+}
+
+/// What came of a frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Heard {
+    /// Nothing that concerns others.
+    Nothing,
+    /// A new alarm.
+    Alarm(Notification),
+    /// The end of the connection.
+    Error(u32),
+}
+
+impl Alarms {
+    /// The channels of a connection, by the numbers that both ends gave it.
+    pub fn new(ours: u16, theirs: u16) -> Self {
+        let channel = |priority| Channel {
+            priority,
+            sent: alarm::NONE,
+            received: alarm::NONE,
+            pending: None,
+            waiting: Vec::new(),
+        };
+        Self { ours, theirs, channels: Priority::ALL.map(channel) }
+    }
+
+    /// A frame came. What is to be sent is put behind `out`, each with its channel.
+    pub fn handle(
+        &mut self,
+        now: Now,
+        priority: Priority,
+        payload: &[u8],
+        out: &mut Vec<(Priority, Vec<u8>)>,
+    ) -> Heard {
+        let Ok(rta) = Rta::parse(payload) else { return Heard::Nothing };
+        if rta.destination != self.ours {
+            return Heard::Nothing;
+        }
+        let (ours, theirs) = (self.ours, self.theirs);
+        let channel = &mut self.channels[usize::from(priority == Priority::Low)];
+        match rta.pdu {
+            Pdu::Error(status) => Heard::Error(status),
+            Pdu::Ack => {
+                channel.acknowledged(rta.acknowledged);
+                channel.next(now, ours, theirs, out);
+                Heard::Nothing
+            }
+            Pdu::Nack => Heard::Nothing,
+            Pdu::Data(data) => {
+                channel.acknowledged(rta.acknowledged);
+                let expected = match channel.received {
+                    alarm::NONE => alarm::FIRST,
+                    last => alarm::next_sequence(last),
+                };
+                let is_new = rta.sequence == expected;
+                if !is_new && rta.sequence != channel.received {
+                    return Heard::Nothing;
+                }
+                channel.received = rta.sequence;
+                out.push((priority, channel.frame(ours, theirs, Pdu::Ack)));
+                let alarm = Notification::parse(&data).ok().filter(|_| is_new);
+                if let Some(alarm) = &alarm
+                    && channel.waiting.len() < MOST
+                {
+                    channel.waiting.push(alarm.acknowledge().emit());
+                }
+                channel.next(now, ours, theirs, out);
+                alarm.map_or(Heard::Nothing, Heard::Alarm)
+            }
+        }
+    }
+
+    /// What is due by the clock; whether an acknowledgement of ours was given up.
+    pub fn poll(&mut self, now: Now, out: &mut Vec<(Priority, Vec<u8>)>) -> bool {
+        let (ours, theirs) = (self.ours, self.theirs);
+        let mut is_lost = false;
+        for channel in &mut self.channels {
+            let Some(pending) = channel.pending.as_mut().filter(|pending| pending.deadline <= now) else { continue };
+            if pending.repeats == RETRIES {
+                is_lost = true;
+                channel.pending = None;
+                continue;
+            }
+            pending.repeats += 1;
+            pending.deadline = now + PATIENCE;
+            let data = pending.data.clone();
+            out.push((channel.priority, channel.frame(ours, theirs, Pdu::Data(data))));
+        }
+        is_lost
+    }
+
+    /// When something is due by the clock.
+    pub fn wake(&self) -> Option<Now> {
+        self.channels.iter().filter_map(|channel| channel.pending.as_ref()).map(|pending| pending.deadline).min()
+    }
+
+    /// The frame that ends the connection.
+    pub fn error(&self, status: u32) -> (Priority, Vec<u8>) {
+        let low = &self.channels[1];
+        (low.priority, low.frame(self.ours, self.theirs, Pdu::Error(status)))
+    }
+}
+
+impl Channel {
+    fn frame(&self, ours: u16, theirs: u16, pdu: Pdu) -> Vec<u8> {
+        let (sequence, acknowledged) = (self.sent, self.received);
+        Rta { destination: theirs, source: ours, sequence, acknowledged, pdu }.emit()
+    }
+
+    fn acknowledged(&mut self, sequence: u16) {
+        if sequence == self.sent {
+            self.pending = None;
+        }
+    }
+
+    /// Sends what waits, if nothing is on its way.
+    fn next(&mut self, now: Now, ours: u16, theirs: u16, out: &mut Vec<(Priority, Vec<u8>)>) {
+        if self.pending.is_some() || self.waiting.is_empty() {
+            return;
+        }
+        let data = self.waiting.remove(0);
+        self.sent = match self.sent {
+            alarm::NONE => alarm::FIRST,
+            last => alarm::next_sequence(last),
+        };
+        out.push((self.priority, self.frame(ours, theirs, Pdu::Data(data.clone()))));
+        self.pending = Some(Pending { data, deadline: now + PATIENCE, repeats: 0 });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::wire::hex;
+    use super::*;
+
+    const FIRST: &str = concat!(
+        "0001 0000 11 11 FFFF FFFE 0022 0002 001E 0100 0001 00000000 0001 0001 00000101 00000001 A800",
+        "8000 0000 28000006",
+    );
+
+    fn handle(alarms: &mut Alarms, payload: &[u8]) -> (Heard, Vec<Vec<u8>>) {
+        let mut out = Vec::new();
+        let heard = alarms.handle(Now::ZERO, Priority::Low, payload, &mut out);
+        (heard, out.into_iter().map(|(_, bytes)| bytes).collect())
+    }
+
+    /// notes, alarms: what was sent to a device, byte for byte.
+    #[test]
+    fn an_alarm_is_acknowledged_as_seen_and_told_once() {
+        let mut alarms = Alarms::new(1, 0);
+        let (heard, sent) = handle(&mut alarms, &hex(FIRST));
+        assert!(matches!(heard, Heard::Alarm(alarm) if alarm.kind == 1));
+        let ack = hex("0000 0001 13 01 FFFE FFFF 0000");
+        let noted = hex("0000 0001 11 11 FFFF FFFF 0016 8002 0012 0100 0001 00000000 0001 0001 A800 00000000");
+        assert_eq!(sent, [ack, noted]);
+        let (heard, sent) = handle(&mut alarms, &hex(FIRST));
+        assert_eq!((heard, sent.len()), (Heard::Nothing, 1), "acknowledged again, not told again");
+        handle(&mut alarms, &hex("0001 0000 13 01 FFFF FFFF 0000"));
+        assert_eq!(alarms.wake(), None);
+        let second = FIRST.replacen("FFFF FFFE", "0000 FFFF", 1);
+        let (heard, sent) = handle(&mut alarms, &hex(&second));
+        assert!(matches!(heard, Heard::Alarm(_)));
+        assert_eq!(sent[1][6..10], hex("0000 0000")[..], "both counts go on");
+    }
+
+    #[test]
+    fn an_acknowledgement_is_repeated_and_given_up() {
+        let mut alarms = Alarms::new(1, 0);
+        let (_, sent) = handle(&mut alarms, &hex(FIRST));
+        let mut now = Now::ZERO;
+        for _ in 0..RETRIES {
+            now = alarms.wake().unwrap();
+            let mut out = Vec::new();
+            assert!(!alarms.poll(now, &mut out));
+            assert_eq!(out, [(Priority::Low, sent[1].clone())]);
+        }
+        assert!(alarms.poll(now + PATIENCE, &mut Vec::new()));
+        assert_eq!(alarms.wake(), None);
+    }
+
+    #[test]
+    fn what_is_not_for_this_connection_or_out_of_order_is_nothing() {
+        let mut alarms = Alarms::new(2, 0);
+        assert_eq!(handle(&mut alarms, &hex(FIRST)), (Heard::Nothing, Vec::new()));
+        let mut alarms = Alarms::new(1, 0);
+        let ahead = FIRST.replacen("FFFF FFFE", "0005 FFFE", 1);
+        assert_eq!(handle(&mut alarms, &hex(&ahead)), (Heard::Nothing, Vec::new()));
+        let error = hex("0001 0000 14 01 0000 0000 0004 CF81FD05");
+        assert_eq!(handle(&mut alarms, &error), (Heard::Error(0xCF81_FD05), Vec::new()));
+    }
+}

@@ -1,0 +1,179 @@
+//! What a device answers to the calls of a connection, and what it calls itself.
+
+use std::net::SocketAddrV4;
+
+use super::super::Now;
+use super::super::error::{Misfit, ProfinetError};
+use super::super::settings::Startup;
+use super::super::wire::block::{self, BlockType, Control};
+use super::super::wire::connect::{ModuleDiff, Response};
+use super::super::wire::frame::id;
+use super::super::wire::record;
+use super::super::wire::rpc::{self, Call, Datagram, Reply, operation};
+use super::super::wire::status::Status;
+use super::alarms::Alarms;
+use super::client::Outcome;
+use super::cyclic::{Consumer, Producer};
+use super::view::Step;
+use super::{Action, Controller, Io, Phase, refused};
+
+const CONNECT: &str = "Connect";
+const WRITE: &str = "Write";
+const PRM_END: &str = "PrmEnd";
+const RELEASE: &str = "Release";
+
+impl Controller {
+    /// A call is over.
+    pub(super) fn answered(&mut self, now: Now, outcome: Outcome) {
+        if let Phase::Releasing(trouble) = &self.phase {
+            let trouble = trouble.clone();
+            let failed = match refused(RELEASE, outcome) {
+                // It had ended before.
+                Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
+                other => other.err(),
+            };
+            return self.released(now, trouble.or(failed));
+        }
+        let Some(step) = self.ar.as_ref().map(|ar| ar.step) else { return };
+        let done = match step {
+            Step::Connect => self.connected(now, outcome),
+            Step::Parameters => self.written(now, outcome),
+            Step::PrmEnd => self.parameters_ended(now, outcome),
+            Step::Resolve | Step::Address | Step::Ready | Step::Data => Ok(()),
+        };
+        match done {
+            Ok(()) => {}
+            // The device has no connection that could be released.
+            Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
+                if step == Step::Connect =>
+            {
+                self.lost(now, trouble);
+            }
+            Err(trouble) => self.release(now, Some(trouble)),
+        }
+    }
+
+    fn connected(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
+        let blocks = refused(CONNECT, outcome)?;
+        let responses =
+            Response::parse_all(&blocks).map_err(|error| ProfinetError::Malformed { what: CONNECT, error })?;
+        let senseless = |why| ProfinetError::Senseless { what: CONNECT, why };
+        let mac = self.device.as_ref().map(|device| device.mac).unwrap_or_default();
+        let Some(ar) = &mut self.ar else { return Ok(()) };
+        let (mut has_ar, mut input, mut output, mut alarm) = (false, None, None, None);
+        for response in &responses {
+            match response {
+                Response::Ar { uuid, session_key, mac: card } => {
+                    if *uuid != ar.uuid || *session_key != ar.session_key {
+                        return Err(senseless("it is for another connection"));
+                    }
+                    if *card != mac {
+                        return Err(senseless("another card answers than the one that was found"));
+                    }
+                    has_ar = true;
+                }
+                Response::Iocr { kind: 1, frame_id, .. } => input = Some(*frame_id),
+                Response::Iocr { kind: 2, frame_id, .. } => output = Some(*frame_id),
+                Response::AlarmCr { reference, .. } => alarm = Some(*reference),
+                Response::ModuleDiff(modules) => {
+                    let misfits = self.settings.layout.misfits(modules);
+                    if !misfits.is_empty() {
+                        return Err(ProfinetError::Modules(misfits));
+                    }
+                }
+                _ => {}
+            }
+        }
+        if !has_ar {
+            return Err(senseless("it does not name the connection"));
+        }
+        let (Some(input), Some(output)) = (input, output) else {
+            return Err(senseless("it does not name the cyclic data of both directions"));
+        };
+        let range = match self.settings.startup {
+            Startup::Advanced => id::RT_CLASS_1,
+            Startup::Legacy => id::RT_CLASS_1_LEGACY,
+        };
+        if !range.contains(&input) || !range.contains(&output) {
+            return Err(senseless("the FrameIDs are not those of the class that was asked for"));
+        }
+        let alarm = alarm.ok_or_else(|| senseless("it does not name the alarms"))?;
+        ar.input_id = input;
+        ar.io = Some(Io {
+            output_id: output,
+            producer: Producer::new(&self.settings, now),
+            consumer: Consumer::new(&self.settings),
+            alarms: Alarms::new(ar.reference, alarm),
+        });
+        // The first frame goes before anything else: some devices are in a hurry.
+        self.produce(now);
+        self.write_parameters(now);
+        Ok(())
+    }
+
+    fn written(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
+        let blocks = refused(WRITE, outcome)?;
+        let statuses =
+            record::parse_write_answer(&blocks).map_err(|error| ProfinetError::Malformed { what: WRITE, error })?;
+        if let Some((_, status)) = statuses.iter().find(|(_, status)| *status != 0) {
+            return Err(ProfinetError::Refused { what: WRITE, status: Status(*status) });
+        }
+        self.end_parameters(now);
+        Ok(())
+    }
+
+    fn parameters_ended(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
+        let blocks = refused(PRM_END, outcome)?;
+        let malformed = |error| ProfinetError::Malformed { what: PRM_END, error };
+        let blocks = block::walk(&blocks).map_err(malformed)?;
+        let senseless = |why| ProfinetError::Senseless { what: PRM_END, why };
+        let found = blocks.iter().find(|block| block.kind == BlockType::PRM_END.answer());
+        let control = Control::parse(found.ok_or_else(|| senseless("its block is missing"))?).map_err(malformed)?;
+        if control.ar != self.uuid() {
+            return Err(senseless("it is for another connection"));
+        }
+        if control.command != Control::DONE {
+            return Err(senseless("it is not done"));
+        }
+        self.await_ready(now);
+        Ok(())
+    }
+
+    /// The device calls: it is ready.
+    pub(super) fn called(&mut self, now: Now, from: SocketAddrV4, datagram: &Datagram<'_>) {
+        let header = &datagram.header;
+        if header.interface != rpc::CONTROLLER || header.operation != operation::CONTROL {
+            return;
+        }
+        let Ok(call) = Call::parse(datagram.body, header.order) else { return };
+        let Ok(blocks) = block::walk(call.blocks) else { return };
+        let Some(Ok(control)) = blocks.first().map(Control::parse) else { return };
+        let Some(ar) = &mut self.ar else { return };
+        // Only in a connection that has got so far.
+        let is_ready = matches!(control.kind, BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY);
+        let fits = control.ar == ar.uuid && control.session_key == ar.session_key;
+        if !is_ready || !fits || ar.io.is_none() {
+            return;
+        }
+        let answer = control.answer().emit();
+        let body = Reply { status: 0, room: call.room, blocks: &answer }.emit(header.order);
+        let bytes = Datagram { header: header.answer(), body: &body }.emit();
+        self.actions.push_back(Action::Datagram(from, bytes));
+        if std::mem::replace(&mut ar.is_ready, true) || !matches!(self.phase, Phase::Opening) {
+            return;
+        }
+        let modules = blocks.iter().filter_map(|block| match Response::parse(block) {
+            Ok(Response::ModuleDiff(modules)) => Some(modules),
+            _ => None,
+        });
+        let misfits: Vec<Misfit> =
+            modules.flat_map(|modules: Vec<ModuleDiff>| self.settings.layout.misfits(&modules)).collect();
+        if !misfits.is_empty() {
+            return self.release(now, Some(ProfinetError::Modules(misfits)));
+        }
+        // It may come before the answer to PrmEnd, which then is not waited for.
+        if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {
+            self.await_data(now);
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! Calls to a device: one at a time, repeated where that does no harm, answers put together from fragments.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::super::Now;
+use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, Reply, flag};
+use super::super::wire::{Order, Uuid, WireError};
+
+/// How long to wait for an answer.
+pub const PATIENCE: Duration = Duration::from_secs(2);
+/// How often a device may say that it is still at it.
+const MOST_WORKING: u32 = 5;
+
+/// What came of a call.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Outcome {
+    /// The device answered with this status and these blocks.
+    Answer(u32, Vec<u8>),
+    /// Its RPC server did not take the call.
+    Rejected(u32),
+    /// What it answered cannot be read.
+    Malformed(WireError),
+    /// It did not answer in all this time.
+    Silent(Duration),
+}
+
+/// What to send, or what came.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Step {
+    /// Send this to the device.
+    Send(Vec<u8>),
+    /// The call is over.
+    Done(Outcome),
+}
+
+/// The calling side.
+#[derive(Debug)]
+pub struct Client {
+    object: Uuid,
+    activity: Uuid,
+    sequence: u32,
+    pending: Option<Pending>,
+}
+
+#[derive(Debug)]
+struct Pending {
+    bytes: Vec<u8>,
+    deadline: Now,
+    begin: Now,
+    tries: u32,
+    working: u32,
+    fragments: BTreeMap<u16, Vec<u8>>,
+    last: Option<u16>,
+}
+
+impl Client {
+    /// A client of the device with this object, under an activity of its own.
+    pub fn new(object: Uuid, activity: Uuid) -> Self {
+        Self { object, activity, sequence: 0, pending: None }
+    }
+
+    /// Calls; what was asked before is forgotten. The same bytes go out `tries` times at most.
+    pub fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) -> Vec<u8> {
+        let body = Call { room: rpc::ROOM, blocks }.emit(Order::Big);
+        let header = Header {
+            kind: Kind::REQUEST,
+            flags: flag::IDEMPOTENT,
+            order: Order::Big,
+            object: self.object,
+            interface: rpc::DEVICE,
+            activity: self.activity,
+            boot: 0,
+            sequence: self.sequence,
+            operation,
+            fragment: 0,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let bytes = Datagram { header, body: &body }.emit();
+        self.pending = Some(Pending {
+            bytes: bytes.clone(),
+            deadline: now + PATIENCE,
+            begin: now,
+            tries: tries.saturating_sub(1),
+            working: 0,
+            fragments: BTreeMap::new(),
+            last: None,
+        });
+        bytes
+    }
+
+    /// Whether an answer is awaited.
+    pub const fn is_busy(&self) -> bool {
+        self.pending.is_some()
+    }
+
+    /// When something is due by the clock.
+    pub fn wake(&self) -> Option<Now> {
+        self.pending.as_ref().map(|pending| pending.deadline)
+    }
+
+    /// What is due by the clock.
+    pub fn poll(&mut self, now: Now) -> Option<Step> {
+        let pending = self.pending.as_mut().filter(|pending| pending.deadline <= now)?;
+        if pending.tries == 0 {
+            let waited = now.saturating_sub(pending.begin);
+            self.pending = None;
+            return Some(Step::Done(Outcome::Silent(waited)));
+        }
+        pending.tries -= 1;
+        pending.deadline = now + PATIENCE;
+        Some(Step::Send(pending.bytes.clone()))
+    }
+
+    /// A datagram came from the device that is no call. What is not the answer that is awaited is nothing.
+    pub fn handle(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
+        let header = &datagram.header;
+        let is_awaited = header.activity == self.activity && header.sequence == self.sequence.wrapping_sub(1);
+        let pending = self.pending.as_mut().filter(|_| is_awaited)?;
+        let step = match header.kind {
+            Kind::RESPONSE if header.is_fragment() => pending.collect(now, datagram),
+            Kind::RESPONSE => Some(self.answered(datagram.body, header.order)),
+            Kind::FAULT | Kind::REJECT => {
+                let bytes = datagram.body.first_chunk::<4>().copied().unwrap_or_default();
+                let status =
+                    if header.order == Order::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) };
+                self.pending = None;
+                Some(Step::Done(Outcome::Rejected(status)))
+            }
+            Kind::WORKING if pending.working < MOST_WORKING => {
+                pending.working += 1;
+                pending.deadline = now + PATIENCE;
+                None
+            }
+            _ => None,
+        };
+        step.or_else(|| self.whole())
+    }
+
+    /// The answer, once all its fragments are there.
+    fn whole(&mut self) -> Option<Step> {
+        let pending = self.pending.as_ref()?;
+        let last = pending.last?;
+        if pending.fragments.len() <= usize::from(last) {
+            return None;
+        }
+        let (order, body) = pending.fragments.values().fold((Order::Big, Vec::new()), |(_, mut all), fragment| {
+            all.extend_from_slice(fragment.get(1..).unwrap_or_default());
+            (if fragment.first() == Some(&1) { Order::Little } else { Order::Big }, all)
+        });
+        Some(self.answered(&body, order))
+    }
+
+    fn answered(&mut self, body: &[u8], order: Order) -> Step {
+        self.pending = None;
+        Step::Done(match Reply::parse(body, order) {
+            Ok(reply) => Outcome::Answer(reply.status, reply.blocks.to_vec()),
+            Err(error) => Outcome::Malformed(error),
+        })
+    }
+}
+
+impl Pending {
+    /// Keeps a fragment, and acknowledges it where that is wanted.
+    fn collect(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
+        let header = &datagram.header;
+        let there: usize = self.fragments.values().map(Vec::len).sum();
+        if there + datagram.body.len() > rpc::MOST {
+            return None;
+        }
+        // Its order stands before it: all fragments of an answer have the same.
+        let mut bytes = vec![u8::from(header.order == Order::Little)];
+        bytes.extend_from_slice(datagram.body);
+        self.fragments.insert(header.fragment, bytes);
+        if header.flags & flag::LAST_FRAGMENT != 0 {
+            self.last = Some(header.fragment);
+        }
+        self.deadline = now + PATIENCE;
+        let is_whole = self.last.is_some_and(|last| self.fragments.len() > usize::from(last));
+        if header.flags & flag::NO_ACK != 0 || is_whole {
+            return None;
+        }
+        let ack = Header { kind: Kind::FRAGMENT_ACK, flags: 0, ..*header };
+        Some(Step::Send(Datagram { header: ack, body: &[] }.emit()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::wire::rpc::operation;
+    use super::*;
+
+    fn client() -> Client {
+        Client::new(rpc::object(1, 1, 1), Uuid([7; 16]))
+    }
+
+    fn answer(call: &[u8], flags: u8, fragment: u16, body: &[u8]) -> Vec<u8> {
+        let header = Datagram::parse(call).unwrap().header.answer();
+        Datagram { header: Header { flags, fragment, ..header }, body }.emit()
+    }
+
+    #[test]
+    fn a_call_is_repeated_with_the_same_bytes_and_then_given_up() {
+        let mut client = client();
+        let first = client.call(Now::ZERO, operation::READ, &[1; 8], 3);
+        assert_eq!(client.poll(PATIENCE / 2), None);
+        assert_eq!(client.poll(PATIENCE), Some(Step::Send(first.clone())));
+        assert_eq!(client.poll(PATIENCE * 2), Some(Step::Send(first)));
+        assert_eq!(client.poll(PATIENCE * 3), Some(Step::Done(Outcome::Silent(PATIENCE * 3))));
+        assert_eq!((client.poll(PATIENCE * 9), client.wake()), (None, None));
+    }
+
+    #[test]
+    fn answers_of_earlier_calls_and_of_others_are_nothing() {
+        let mut client = client();
+        let body = Reply { status: 0, room: 8, blocks: &[9] }.emit(Order::Big);
+        let old = client.call(Now::ZERO, operation::READ, &[], 1);
+        let new = client.call(Now::ZERO, operation::READ, &[], 1);
+        let late = answer(&old, 0, 0, &body);
+        assert_eq!(client.handle(Now::ZERO, &Datagram::parse(&late).unwrap()), None);
+        let mut foreign = Datagram::parse(&new).unwrap().header.answer();
+        foreign.activity = Uuid([8; 16]);
+        assert_eq!(client.handle(Now::ZERO, &Datagram { header: foreign, body: &body }), None);
+        let own = answer(&new, 0, 0, &body);
+        let done = Some(Step::Done(Outcome::Answer(0, vec![9])));
+        assert_eq!(client.handle(Now::ZERO, &Datagram::parse(&own).unwrap()), done);
+        assert_eq!(client.handle(Now::ZERO, &Datagram::parse(&own).unwrap()), None, "once");
+    }
+
+    #[test]
+    fn fragments_are_acknowledged_and_put_together_in_any_order() {
+        let mut client = client();
+        let call = client.call(Now::ZERO, operation::READ, &[], 1);
+        let body = Reply { status: 0, room: 4096, blocks: &(0..=255).collect::<Vec<u8>>() }.emit(Order::Big);
+        let parts: Vec<_> = body.chunks(100).collect();
+        let send = |at: usize| {
+            let last = if at == parts.len() - 1 { flag::LAST_FRAGMENT } else { 0 };
+            answer(&call, flag::FRAGMENT | last, u16::try_from(at).unwrap(), parts[at])
+        };
+        for at in [2, 0] {
+            let bytes = send(at);
+            let Some(Step::Send(ack)) = client.handle(Now::ZERO, &Datagram::parse(&bytes).unwrap()) else {
+                panic!("fragment {at} is not acknowledged")
+            };
+            let ack = Datagram::parse(&ack).unwrap();
+            assert_eq!((ack.header.kind, usize::from(ack.header.fragment)), (Kind::FRAGMENT_ACK, at));
+        }
+        let bytes = send(1);
+        let done = client.handle(Now::ZERO, &Datagram::parse(&bytes).unwrap());
+        assert_eq!(done, Some(Step::Done(Outcome::Answer(0, (0..=255).collect()))));
+    }
+
+    #[test]
+    fn fragments_without_end_are_not_kept() {
+        let mut client = client();
+        let call = client.call(Now::ZERO, operation::READ, &[], 1);
+        for at in 0..2000 {
+            let bytes = answer(&call, flag::FRAGMENT | flag::NO_ACK, at, &[0; 1000]);
+            assert_eq!(client.handle(Now::ZERO, &Datagram::parse(&bytes).unwrap()), None);
+        }
+        let kept: usize = client.pending.unwrap().fragments.values().map(Vec::len).sum();
+        assert!(kept <= rpc::MOST, "{kept}");
+    }
+
+    #[test]
+    fn a_device_that_works_is_waited_for_but_not_for_ever() {
+        let mut client = client();
+        let call = client.call(Now::ZERO, operation::CONNECT, &[], 1);
+        let header = Header { kind: Kind::WORKING, ..Datagram::parse(&call).unwrap().header };
+        let mut now = Now::ZERO;
+        while client.poll(now).is_none() {
+            client.handle(now, &Datagram { header, body: &[] });
+            now += PATIENCE / 2;
+            assert!(now < Duration::from_secs(60));
+        }
+    }
+
+    #[test]
+    fn a_rejected_call_is_told() {
+        let mut client = client();
+        let call = client.call(Now::ZERO, operation::CONNECT, &[], 1);
+        let header = Header { kind: Kind::REJECT, ..Datagram::parse(&call).unwrap().header };
+        let step = client.handle(Now::ZERO, &Datagram { header, body: &[0x1C, 1, 0, 3] });
+        assert_eq!(step, Some(Step::Done(Outcome::Rejected(0x1C01_0003))));
+    }
+}

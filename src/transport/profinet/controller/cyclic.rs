@@ -1,0 +1,237 @@
+//! Cyclic frames: what goes out on time, and what of what comes is an image.
+
+use super::super::Now;
+use super::super::error::Unusable;
+use super::super::layout::{Direction, FrameLayout, Layout};
+use super::super::settings::{SEND_CLOCK, Settings, swap};
+use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
+
+/// Sends.
+#[derive(Debug, Clone)]
+pub struct Producer {
+    frame: FrameLayout,
+    period: Now,
+    step: u16,
+    counter: u16,
+    due: Now,
+    swapped: usize,
+    /// Frames that left.
+    pub sent: u64,
+    /// Frames that should have left while nobody looked at the clock.
+    pub skipped: u64,
+}
+
+impl Producer {
+    /// Sends from `now` on.
+    pub fn new(settings: &Settings, now: Now) -> Self {
+        let step = SEND_CLOCK * settings.ratio().unwrap_or(1);
+        Self {
+            frame: settings.layout.frame(Direction::Output),
+            period: settings.cycle,
+            step,
+            counter: 0,
+            due: now,
+            swapped: settings.swapped,
+            sent: 0,
+            skipped: 0,
+        }
+    }
+
+    /// When the next frame is due.
+    pub const fn wake(&self) -> Now {
+        self.due
+    }
+
+    /// What a frame carries, if one is due. What was missed is left out, and counted: frames never come in a burst.
+    pub fn poll(&mut self, now: Now, image: &[u8]) -> Option<Vec<u8>> {
+        if now < self.due {
+            return None;
+        }
+        let periods = now.saturating_sub(self.due).as_nanos() / self.period.as_nanos().max(1);
+        let periods = u32::try_from(periods).unwrap_or(u32::MAX - 1);
+        self.skipped += u64::from(periods);
+        self.due += self.period.saturating_mul(periods + 1);
+        // The lower half is what counts of it.
+        let [.., high, low] = periods.to_be_bytes();
+        let steps = u16::from_be_bytes([high, low]).wrapping_add(1);
+        self.counter = self.counter.wrapping_add(self.step.wrapping_mul(steps));
+        self.sent += 1;
+        let data = self.data(image);
+        Some(Cyclic { data: &data, counter: self.counter, status: RUNNING, transfer: 0 }.emit())
+    }
+
+    fn data(&self, image: &[u8]) -> Vec<u8> {
+        let mut image = image.to_vec();
+        swap(&mut image, self.swapped);
+        let mut data = vec![0; usize::from(self.frame.length)];
+        let mut rest = &image[..];
+        for (place, length) in &self.frame.objects {
+            let (at, length) = (usize::from(place.offset), usize::from(*length));
+            let (part, behind) = rest.split_at(length.min(rest.len()));
+            rest = behind;
+            data[at..at + part.len()].copy_from_slice(part);
+            data[at + length] = GOOD;
+        }
+        for place in &self.frame.consumers {
+            data[usize::from(place.offset)] = GOOD;
+        }
+        data
+    }
+}
+
+/// What a frame was.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// It is not one that is expected, or older than the last.
+    Stale,
+    /// It says that the device is there, but its data cannot be used.
+    Unusable(Unusable),
+    /// An image.
+    Image(Vec<u8>),
+}
+
+/// Takes.
+#[derive(Debug, Clone)]
+pub struct Consumer {
+    frame: FrameLayout,
+    /// Which submodules must take what they are sent: those with data.
+    fed: Vec<bool>,
+    last: Option<u16>,
+    swapped: usize,
+    /// When the last frame came.
+    pub heard: Option<Now>,
+    /// Frames that were taken.
+    pub received: u64,
+    /// Frames that were not.
+    pub stale: u64,
+}
+
+impl Consumer {
+    /// Takes frames of the device.
+    pub fn new(settings: &Settings) -> Self {
+        let frame = settings.layout.frame(Direction::Input);
+        let fed = frame.consumers.iter().map(|place| is_fed(&settings.layout, place.slot, place.subslot)).collect();
+        Self { frame, fed, last: None, swapped: settings.swapped, heard: None, received: 0, stale: 0 }
+    }
+
+    /// A frame with the right id came from the device.
+    pub fn handle(&mut self, now: Now, payload: &[u8]) -> Verdict {
+        let cyclic = Cyclic::parse(payload, usize::from(self.frame.length));
+        let Some(cyclic) = cyclic.ok().filter(|cyclic| self.last.is_none_or(|last| cyclic.is_after(last))) else {
+            self.stale += 1;
+            return Verdict::Stale;
+        };
+        self.last = Some(cyclic.counter);
+        self.heard = Some(now);
+        self.received += 1;
+        match self.image(&cyclic) {
+            Ok(image) => Verdict::Image(image),
+            Err(why) => Verdict::Unusable(why),
+        }
+    }
+
+    fn image(&self, cyclic: &Cyclic<'_>) -> Result<Vec<u8>, Unusable> {
+        if !cyclic.is_usable() {
+            return Err(Unusable::Status(cyclic.status, cyclic.transfer));
+        }
+        let is_good = |at: usize| cyclic.data.get(at).is_some_and(|status| status & GOOD != 0);
+        let mut image = Vec::new();
+        for (place, length) in &self.frame.objects {
+            let (at, length) = (usize::from(place.offset), usize::from(*length));
+            if !is_good(at + length) {
+                // A head without data may say what it likes.
+                if length == 0 {
+                    continue;
+                }
+                return Err(Unusable::Provider(place.slot, place.subslot));
+            }
+            image.extend_from_slice(&cyclic.data[at..at + length]);
+        }
+        for (place, _) in self.frame.consumers.iter().zip(&self.fed).filter(|(_, fed)| **fed) {
+            if !is_good(usize::from(place.offset)) {
+                return Err(Unusable::Consumer(place.slot, place.subslot));
+            }
+        }
+        swap(&mut image, self.swapped);
+        Ok(image)
+    }
+}
+
+fn is_fed(layout: &Layout, slot: u16, subslot: u16) -> bool {
+    layout.find(slot, subslot).is_some_and(|submodule| submodule.output > 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::super::super::settings::Station;
+    use super::*;
+
+    const CYCLE: Duration = Duration::from_millis(16);
+
+    fn settings() -> Settings {
+        Settings::new(Station::Name("a".to_owned()), Layout::two_modules(0x101, 0x102))
+    }
+
+    /// notes, worked example: the frame to the device.
+    #[test]
+    fn output_frames_are_those_of_the_example() {
+        let mut producer = Producer::new(&settings(), Now::ZERO);
+        let image: Vec<u8> = (1..=48).collect();
+        let bytes = producer.poll(Now::ZERO, &image).unwrap();
+        assert_eq!(bytes[..48], image);
+        assert_eq!(bytes[48..], [0x80, 0x80, 0x80, 0x80, 0x80, 2, 0, 0x35, 0]);
+        assert_eq!((producer.poll(CYCLE / 2, &image), producer.wake()), (None, CYCLE));
+        assert_eq!(producer.poll(CYCLE, &image).unwrap()[53..55], [4, 0]);
+    }
+
+    #[test]
+    fn what_was_missed_is_left_out_and_the_rhythm_kept() {
+        let mut producer = Producer::new(&settings(), Now::ZERO);
+        producer.poll(Now::ZERO, &[0; 48]);
+        let bytes = producer.poll(CYCLE * 4 + CYCLE / 2, &[0; 48]).unwrap();
+        assert_eq!((bytes[53..55].to_vec(), producer.skipped, producer.wake()), (vec![10, 0], 3, CYCLE * 5));
+        assert_eq!(producer.poll(CYCLE * 4 + CYCLE / 2, &[0; 48]), None);
+    }
+
+    #[test]
+    fn counters_go_round() {
+        let mut producer = Producer::new(&settings(), Now::ZERO);
+        let mut consumer = Consumer::new(&settings());
+        for index in 0..1000u32 {
+            let bytes = producer.poll(CYCLE * index, &[1; 48]).unwrap();
+            let counter = u16::from_be_bytes([bytes[53], bytes[54]]);
+            let verdict = consumer.handle(CYCLE * index, &input(counter, 0x35));
+            assert_eq!(verdict, Verdict::Image(vec![5; 48]), "{index}");
+        }
+        assert_eq!((producer.sent, consumer.received, consumer.stale), (1000, 1000, 0));
+    }
+
+    fn input(counter: u16, status: u8) -> Vec<u8> {
+        let mut data = vec![0x80; 3];
+        data.extend([5; 48]);
+        data.extend([0x80, 0x80]);
+        Cyclic { data: &data, counter, status, transfer: 0 }.emit()
+    }
+
+    #[test]
+    fn only_good_data_is_an_image() {
+        let mut consumer = Consumer::new(&settings());
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), Verdict::Image(vec![5; 48]));
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), Verdict::Stale);
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x100, 0x35)), Verdict::Stale);
+        assert_eq!(consumer.handle(Now::ZERO, &[0; 20]), Verdict::Stale);
+        let stop = consumer.handle(CYCLE, &input(0x400, 0x25));
+        assert_eq!((stop, consumer.heard), (Verdict::Unusable(Unusable::Status(0x25, 0)), Some(CYCLE)));
+        let mut bad = input(0x600, 0x35);
+        bad[51] = 0;
+        assert_eq!(consumer.handle(CYCLE, &bad), Verdict::Unusable(Unusable::Provider(1, 1)));
+        let mut deaf = input(0x800, 0x35);
+        deaf[52] = 0x60;
+        assert_eq!(consumer.handle(CYCLE, &deaf), Verdict::Unusable(Unusable::Consumer(2, 1)));
+        let mut head = input(0xA00, 0x35);
+        head[0] = 0;
+        assert_eq!(consumer.handle(CYCLE, &head), Verdict::Image(vec![5; 48]), "the head has no data to be bad");
+    }
+}

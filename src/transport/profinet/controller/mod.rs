@@ -1,0 +1,566 @@
+//! The controller's end of a connection: finds the device, connects, sends and takes images, notices its loss, opens it
+//! again. Without sockets and without a clock.
+//!
+//! Every time that data can be used for the first time is a generation. What is to be sent names the generation it is
+//! meant for: after a loss the device gets the resting image until somebody who knows of the loss says otherwise. So
+//! nothing that was meant for the time before can happen a second time.
+
+use std::collections::VecDeque;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::sync::Arc;
+use std::time::Duration;
+
+use self::alarms::{Alarms, Heard};
+use self::client::{Client, Outcome};
+use self::cyclic::{Consumer, Producer, Verdict};
+use self::numbers::Numbers;
+use self::view::{Device, Input, State, Statistics, Step, View};
+use super::Now;
+use super::error::{ProfinetError, Unusable};
+use super::settings::Settings;
+use super::wire::alarm::{self, Notification, Priority};
+use super::wire::dcp::IpSuite;
+use super::wire::frame::{Frame, TAG_HIGH, id};
+use super::wire::rpc::{Datagram, Kind, PORT};
+use super::wire::status::Status;
+use super::wire::{Mac, Uuid};
+
+mod alarms;
+mod answer;
+pub mod client;
+mod cyclic;
+pub mod numbers;
+mod open;
+mod resolve;
+pub mod view;
+
+/// Waits before another try, one after the other; the last one again and again.
+const BACKOFF: [Duration; 4] =
+    [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(4), Duration::from_secs(8)];
+/// How long the connection of a process that died may live on in a device.
+const OLD_CONNECTION: Duration = Duration::from_secs(2);
+/// How often to wait for that.
+const OLD_TRIES: usize = 3;
+/// How long a device may take for its start, and for its first usable data.
+const START: Duration = Duration::from_secs(20);
+/// Reasons of errors that are sent.
+const WATCHDOG: u8 = 0x05;
+const ALARM_LOST: u8 = 0x08;
+const ABORTED: u8 = 0x0D;
+/// Reason of an error that a device ends a release with.
+const RELEASED: u8 = 0x0F;
+/// Alarms that nobody took.
+const MOST_ALARMS: usize = 64;
+
+/// What is to be done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Action {
+    /// Send this Ethernet frame.
+    Frame(Vec<u8>),
+    /// Send this from UDP port 34964.
+    Datagram(SocketAddrV4, Vec<u8>),
+}
+
+/// Where the controller is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Here {
+    /// Its card.
+    pub mac: Mac,
+    /// Its address and network.
+    pub ip: IpSuite,
+}
+
+#[derive(Debug)]
+enum Phase {
+    /// Before the first poll.
+    New,
+    Resolve(resolve::Search),
+    Address(resolve::Address),
+    /// A call of the opening is on its way, or the device is to call.
+    Opening,
+    /// Usable data is to come until then.
+    WaitingForData(Now),
+    Data,
+    /// Release is on its way; then all ends, or it is opened again because of the trouble.
+    Releasing(Option<ProfinetError>),
+    /// Until the next try.
+    Waiting(Now),
+    Ended,
+}
+
+/// What belongs to one try of a connection.
+#[derive(Debug)]
+struct Ar {
+    uuid: Uuid,
+    session_key: u16,
+    reference: u16,
+    input_id: u16,
+    client: Client,
+    step: Step,
+    /// When the device must have called ApplicationReady.
+    ready_until: Now,
+    is_ready: bool,
+    /// From the answer to Connect on.
+    io: Option<Io>,
+}
+
+#[derive(Debug)]
+struct Io {
+    output_id: u16,
+    producer: Producer,
+    consumer: Consumer,
+    alarms: Alarms,
+}
+
+/// A connection.
+#[derive(Debug)]
+pub struct Controller {
+    settings: Settings,
+    numbers: Arc<Numbers>,
+    here: Here,
+    phase: Phase,
+    ar: Option<Ar>,
+    device: Option<Device>,
+    image: Vec<u8>,
+    revision: u64,
+    /// Whether it is to end as soon as it can.
+    is_over: bool,
+    /// Tries since data was last good.
+    tries: usize,
+    before: Statistics,
+    view: View,
+    has_changed: bool,
+    alarms: VecDeque<Notification>,
+    actions: VecDeque<Action>,
+}
+
+impl Controller {
+    /// A connection from `here`.
+    ///
+    /// # Errors
+    /// If no connection can be as `settings` say.
+    pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
+        settings.check()?;
+        let view = View {
+            state: State::Opening,
+            step: Step::Resolve,
+            generation: 0,
+            input: None,
+            sent: 0,
+            trouble: None,
+            device: None,
+            statistics: Statistics::default(),
+        };
+        Ok(Self {
+            image: settings.resting.clone(),
+            settings,
+            numbers,
+            here,
+            phase: Phase::New,
+            ar: None,
+            device: None,
+            revision: 0,
+            is_over: false,
+            tries: 0,
+            before: Statistics::default(),
+            view,
+            has_changed: true,
+            alarms: VecDeque::new(),
+            actions: VecDeque::new(),
+        })
+    }
+
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        let mut view = self.view.clone();
+        view.device.clone_from(&self.device);
+        view.statistics = self.statistics();
+        view
+    }
+
+    fn statistics(&self) -> Statistics {
+        let mut all = self.before;
+        if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
+            all.sent += io.producer.sent;
+            all.skipped += io.producer.skipped;
+            all.received += io.consumer.received;
+            all.stale += io.consumer.stale;
+        }
+        all
+    }
+
+    /// What the connection is to be.
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Whether there is something new to see since this was last asked.
+    pub const fn take_changed(&mut self) -> bool {
+        std::mem::replace(&mut self.has_changed, false)
+    }
+
+    /// An alarm that came, each once. Those that nobody takes are forgotten, the oldest first.
+    pub fn take_alarm(&mut self) -> Option<Notification> {
+        self.alarms.pop_front()
+    }
+
+    /// Whether all has ended and nothing is left to do.
+    pub fn is_finished(&self) -> bool {
+        matches!(self.phase, Phase::Ended) && self.actions.is_empty()
+    }
+
+    /// Sends this image from the next cycle on, and says which change it was: it has gone out when the view's `sent` is
+    /// as high.
+    ///
+    /// # Errors
+    /// If the connection is not up in this generation, or the image has another size.
+    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
+        match self.view.state {
+            State::Open if generation == self.view.generation => {}
+            State::Closing | State::Closed => return Err(ProfinetError::Ended),
+            _ => return Err(ProfinetError::Outdated),
+        }
+        if image.len() != self.image.len() {
+            let (len, size) = (image.len(), self.image.len());
+            return Err(ProfinetError::Impossible(format!("the output image has {size} bytes, not {len}")));
+        }
+        self.image.copy_from_slice(image);
+        self.revision += 1;
+        Ok(self.revision)
+    }
+
+    /// Ends the connection: the resting image, and a release while frames go on until it is answered.
+    pub fn close(&mut self, now: Now) {
+        if std::mem::replace(&mut self.is_over, true) {
+            return;
+        }
+        match self.phase {
+            Phase::New | Phase::Resolve(_) | Phase::Address(_) | Phase::Waiting(_) => self.finish(None),
+            Phase::Opening | Phase::WaitingForData(_) | Phase::Data => self.release(now, None),
+            Phase::Releasing(_) => self.show(State::Closing),
+            Phase::Ended => {}
+        }
+    }
+
+    /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
+    pub fn failed(&mut self, trouble: ProfinetError) {
+        self.view.trouble = Some(trouble);
+        self.has_changed = true;
+    }
+
+    /// When something is due by the clock.
+    pub fn wake(&self) -> Option<Now> {
+        if !self.actions.is_empty() {
+            return Some(Now::ZERO);
+        }
+        let phase = match &self.phase {
+            Phase::New => return Some(Now::ZERO),
+            Phase::Resolve(search) => Some(search.wake()),
+            Phase::Address(address) => Some(address.wake()),
+            Phase::WaitingForData(until) | Phase::Waiting(until) => Some(*until),
+            Phase::Opening | Phase::Data | Phase::Releasing(_) => None,
+            Phase::Ended => return None,
+        };
+        let ar = self.ar.as_ref().and_then(|ar| self.ar_wake(ar));
+        phase.into_iter().chain(ar).min()
+    }
+
+    fn ar_wake(&self, ar: &Ar) -> Option<Now> {
+        let ready = (ar.step == Step::Ready && matches!(self.phase, Phase::Opening)).then_some(ar.ready_until);
+        let io = ar.io.as_ref().and_then(|io| {
+            let watchdog = self.watchdog(io);
+            [Some(io.producer.wake()), io.alarms.wake(), watchdog].into_iter().flatten().min()
+        });
+        [ready, io, ar.client.wake()].into_iter().flatten().min()
+    }
+
+    /// When the device will have been silent for too long; it need not send before it is ready.
+    fn watchdog(&self, io: &Io) -> Option<Now> {
+        let is_on = matches!(self.phase, Phase::Data | Phase::WaitingForData(_));
+        io.consumer.heard.filter(|_| is_on).map(|heard| heard + self.settings.watchdog_time())
+    }
+
+    /// What is to be done now.
+    pub fn poll(&mut self, now: Now) -> Option<Action> {
+        if self.actions.is_empty() {
+            self.tick(now);
+        }
+        self.actions.pop_front()
+    }
+
+    fn tick(&mut self, now: Now) {
+        match &self.phase {
+            Phase::New => self.resolve(now),
+            Phase::Waiting(until) if *until <= now => self.resolve(now),
+            Phase::Resolve(search) if search.wake() <= now => self.search_on(now),
+            Phase::Address(address) if address.wake() <= now => self.address_on(now),
+            Phase::WaitingForData(until) if *until <= now => {
+                let missing = match self.view.trouble {
+                    Some(ProfinetError::Unusable(why)) => why,
+                    _ => Unusable::Missing,
+                };
+                self.abort(now, ABORTED, ProfinetError::NoData { after: START, missing });
+            }
+            _ => {}
+        }
+        self.produce(now);
+        let io = self.ar.as_ref().and_then(|ar| ar.io.as_ref());
+        if io.and_then(|io| self.watchdog(io)).is_some_and(|until| until <= now) {
+            let after = self.settings.watchdog_time();
+            self.abort(now, WATCHDOG, ProfinetError::Silent { after });
+            return;
+        }
+        self.poll_alarms(now);
+        let Some(ar) = &mut self.ar else { return };
+        match ar.client.poll(now) {
+            Some(client::Step::Send(bytes)) => self.send(bytes),
+            Some(client::Step::Done(outcome)) => self.answered(now, outcome),
+            None => {
+                let is_late = matches!(self.phase, Phase::Opening) && ar.step == Step::Ready && ar.ready_until <= now;
+                if is_late {
+                    self.release(now, Some(ProfinetError::NeverReady { after: START }));
+                }
+            }
+        }
+    }
+
+    /// Sends a cyclic frame if one is due.
+    fn produce(&mut self, now: Now) {
+        let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
+        let Some(payload) = io.producer.poll(now, &self.image) else { return };
+        let frame_id = io.output_id;
+        self.send_frame(Some(TAG_HIGH), frame_id, &payload);
+        if self.view.sent != self.revision {
+            self.view.sent = self.revision;
+            self.has_changed = true;
+        }
+    }
+
+    fn poll_alarms(&mut self, now: Now) {
+        let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
+        let mut out = Vec::new();
+        let is_lost = io.alarms.poll(now, &mut out);
+        self.send_alarms(out);
+        if is_lost {
+            self.abort(now, ALARM_LOST, ProfinetError::AlarmUnanswered);
+        }
+    }
+
+    fn send_alarms(&mut self, out: Vec<(Priority, Vec<u8>)>) {
+        for (priority, payload) in out {
+            self.send_frame(Some(priority.tag()), priority.frame_id(), &payload);
+        }
+    }
+
+    fn send_frame(&mut self, tag: Option<u16>, frame_id: u16, payload: &[u8]) {
+        let Some(device) = &self.device else { return };
+        let frame = Frame { destination: device.mac, source: self.here.mac, tag, id: frame_id, payload };
+        self.actions.push_back(Action::Frame(frame.emit()));
+    }
+
+    fn send(&mut self, bytes: Vec<u8>) {
+        let Some(device) = &self.device else { return };
+        self.actions.push_back(Action::Datagram(SocketAddrV4::new(device.address, PORT), bytes));
+    }
+
+    /// A frame came.
+    pub fn frame(&mut self, now: Now, bytes: &[u8]) {
+        let Ok(frame) = Frame::parse(bytes) else { return };
+        match frame.id {
+            id::DCP_IDENTIFIED | id::DCP_GET_SET => self.heard_dcp(now, &frame),
+            _ if self.device.as_ref().is_none_or(|device| device.mac != frame.source) => {}
+            frame_id => {
+                if let Some(priority) = Priority::from_frame_id(frame_id) {
+                    self.heard_alarm(now, priority, frame.payload);
+                } else if self.ar.as_ref().is_some_and(|ar| ar.io.is_some() && ar.input_id == frame_id) {
+                    self.heard_data(now, frame.payload);
+                }
+            }
+        }
+    }
+
+    /// Whether a frame that came is one of this connection's.
+    pub fn concerns(&self, bytes: &[u8]) -> bool {
+        let Ok(frame) = Frame::parse(bytes) else { return false };
+        match &self.device {
+            Some(device) => frame.source == device.mac,
+            None => frame.destination == self.here.mac,
+        }
+    }
+
+    fn heard_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
+        let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
+        let mut out = Vec::new();
+        let heard = io.alarms.handle(now, priority, payload, &mut out);
+        self.send_alarms(out);
+        match heard {
+            Heard::Nothing => {}
+            Heard::Error(status) => self.aborted(now, Status(status)),
+            Heard::Alarm(alarm) => {
+                let slot = alarm.slot;
+                let is_plug = alarm::wants_parameters(alarm.kind);
+                if self.alarms.len() == MOST_ALARMS {
+                    self.alarms.pop_front();
+                }
+                self.alarms.push_back(alarm);
+                self.before.alarms += 1;
+                self.has_changed = true;
+                // The device waits for its parameters anew: a new connection brings them.
+                if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
+                    self.release(now, Some(ProfinetError::Plugged { slot }));
+                }
+            }
+        }
+    }
+
+    /// The device ended the connection.
+    fn aborted(&mut self, now: Now, status: Status) {
+        let is_answer = status == Status::abort(RELEASED);
+        if let Phase::Releasing(trouble) = &self.phase {
+            // Some devices say so before they answer.
+            let trouble = trouble.clone();
+            let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
+            self.released(now, trouble);
+        } else {
+            self.lost(now, ProfinetError::Aborted(status));
+        }
+    }
+
+    fn heard_data(&mut self, now: Now, payload: &[u8]) {
+        let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
+        let verdict = io.consumer.handle(now, payload);
+        match (&self.phase, verdict) {
+            (Phase::WaitingForData(_), Verdict::Image(image)) => {
+                self.phase = Phase::Data;
+                self.tries = 0;
+                self.view.generation = self.view.generation.wrapping_add(1);
+                self.view.trouble = None;
+                self.view.input = Some(Input { image: image.into(), at: now });
+                self.show(State::Open);
+            }
+            (Phase::Data, Verdict::Image(image)) => {
+                let image = match self.view.input.take() {
+                    Some(input) if *input.image == *image => input.image,
+                    _ => {
+                        self.has_changed = true;
+                        image.into()
+                    }
+                };
+                self.view.input = Some(Input { image, at: now });
+            }
+            (Phase::Data, Verdict::Unusable(why)) => {
+                // What was meant for before must not go on by itself when data is good again.
+                self.rest();
+                self.before.losses += 1;
+                self.phase = Phase::WaitingForData(now + START);
+                self.view.trouble = Some(ProfinetError::Unusable(why));
+                self.show(State::Lost);
+            }
+            (Phase::WaitingForData(_), Verdict::Unusable(why)) => {
+                self.view.trouble = Some(ProfinetError::Unusable(why));
+            }
+            _ => {}
+        }
+    }
+
+    /// From now on the device is sent the resting image, and shows nothing.
+    fn rest(&mut self) {
+        self.image.clone_from(&self.settings.resting);
+        self.view.input = None;
+    }
+
+    /// A datagram came to UDP port 34964. Only the device's own are looked at.
+    pub fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
+        let is_device = self.device.as_ref().is_some_and(|device| device.address == *from.ip());
+        let Some(datagram) = Datagram::parse(bytes).ok().filter(|_| is_device) else { return };
+        if datagram.header.kind == Kind::REQUEST {
+            self.called(now, from, &datagram);
+            return;
+        }
+        let step = self.ar.as_mut().and_then(|ar| ar.client.handle(now, &datagram));
+        match step {
+            Some(client::Step::Send(bytes)) => self.actions.push_back(Action::Datagram(from, bytes)),
+            Some(client::Step::Done(outcome)) => self.answered(now, outcome),
+            None => {}
+        }
+    }
+
+    /// Ends the connection without a word of the device: it is told why.
+    fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
+        if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
+            let error = io.alarms.error(Status::abort(reason).0);
+            self.send_alarms(vec![error]);
+        }
+        self.lost(now, trouble);
+    }
+
+    /// The connection has ended. It is opened again, unless it is to end or never was up.
+    fn lost(&mut self, now: Now, trouble: ProfinetError) {
+        self.drop_ar();
+        let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
+        let wait = match self.view.generation {
+            _ if self.is_over => return self.finish(Some(trouble)),
+            // The connection of a process of ours that died runs out by itself.
+            0 if is_old && self.tries < OLD_TRIES => OLD_CONNECTION,
+            0 => return self.finish(Some(trouble)),
+            _ if is_old => OLD_CONNECTION,
+            _ => *BACKOFF.get(self.tries).unwrap_or(&BACKOFF[BACKOFF.len() - 1]),
+        };
+        self.tries += 1;
+        self.view.trouble = Some(trouble);
+        self.phase = Phase::Waiting(now + wait);
+        self.show(if self.view.generation == 0 { State::Opening } else { State::Lost });
+    }
+
+    /// Forgets the try, and keeps what it counted.
+    fn drop_ar(&mut self) {
+        if self.view.state == State::Open {
+            self.before.losses += 1;
+        }
+        self.before = self.statistics();
+        self.ar = None;
+        self.rest();
+    }
+
+    fn finish(&mut self, trouble: Option<ProfinetError>) {
+        if trouble.is_some() {
+            self.view.trouble = trouble;
+        }
+        self.phase = Phase::Ended;
+        self.show(State::Closed);
+    }
+
+    fn show(&mut self, state: State) {
+        self.view.state = state;
+        self.has_changed = true;
+    }
+
+    fn set_step(&mut self, step: Step) {
+        self.view.step = step;
+        self.has_changed = true;
+        if let Some(ar) = &mut self.ar {
+            ar.step = step;
+        }
+    }
+
+    /// Words for the device in messages.
+    fn station(&self) -> String {
+        self.settings.station.to_string()
+    }
+
+    /// The address of the device, if it is known.
+    pub fn address(&self) -> Option<Ipv4Addr> {
+        self.device.as_ref().map(|device| device.address)
+    }
+}
+
+/// What came of a call, where it is not the answer that was hoped for.
+fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
+    match outcome {
+        Outcome::Answer(0, blocks) => Ok(blocks),
+        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
+        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
+        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
+        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
+    }
+}

@@ -1,0 +1,191 @@
+//! Connect, and what follows it until data goes both ways; and the release.
+
+use super::super::Now;
+use super::super::error::ProfinetError;
+use super::super::layout::Direction;
+use super::super::settings::{SEND_CLOCK, Startup};
+use super::super::wire::Uuid;
+use super::super::wire::block::{BlockType, Control};
+use super::super::wire::connect::{ADVANCED, ANY_FRAME_ID, AlarmCr, Ar as ArBlock, Iocr, LEGACY, Offset, Request};
+use super::super::wire::frame::{ETHER_TYPE, TAG_HIGH, id};
+use super::super::wire::record;
+use super::super::wire::rpc::{self, operation};
+use super::super::wire::{Mac, connect::ExpectedModule};
+use super::client::Client;
+use super::view::{State, Step};
+use super::{Ar, Controller, Phase, START};
+
+/// How long a device waits for the next step, in steps of 100 ms.
+const ACTIVITY_TIMEOUT: u16 = 200;
+/// Calls other than Connect go out so often.
+pub(super) const TRIES: u32 = 3;
+
+impl Controller {
+    /// Calls Connect, once: a second copy makes some devices begin anew.
+    pub(super) fn connect(&mut self, now: Now, instance: u16) {
+        let Some(device) = &self.device else { return };
+        let (vendor, kind) = device.id;
+        let client = Client::new(rpc::object(instance, kind, vendor), self.numbers.uuid());
+        let frame_id = self.numbers.frame_id();
+        let input_id = match self.settings.startup {
+            Startup::Advanced => frame_id,
+            Startup::Legacy => frame_id - id::RT_CLASS_1.start() + id::RT_CLASS_1_LEGACY.start(),
+        };
+        self.ar = Some(Ar {
+            uuid: self.numbers.uuid(),
+            session_key: self.numbers.session_key(),
+            reference: self.numbers.reference(),
+            input_id,
+            client,
+            step: Step::Connect,
+            ready_until: now,
+            is_ready: false,
+            io: None,
+        });
+        self.phase = Phase::Opening;
+        self.set_step(Step::Connect);
+        let blocks: Vec<u8> = self.requests().iter().flat_map(Request::emit).collect();
+        self.call(now, operation::CONNECT, &blocks, 1);
+    }
+
+    /// The blocks of Connect.
+    fn requests(&self) -> Vec<Request> {
+        let Some(ar) = &self.ar else { return Vec::new() };
+        let (properties, class) = match self.settings.startup {
+            Startup::Advanced => (ADVANCED, 2),
+            Startup::Legacy => (LEGACY, 1),
+        };
+        let layout = &self.settings.layout;
+        let iocr = |kind: u16, direction, frame_id| {
+            let frame = layout.frame(direction);
+            let objects: Vec<Offset> = frame.objects.iter().map(|(place, _)| *place).collect();
+            Request::Iocr(Iocr {
+                kind,
+                reference: kind,
+                ether_type: ETHER_TYPE,
+                properties: class,
+                length: frame.length,
+                frame_id,
+                send_clock: SEND_CLOCK,
+                ratio: self.settings.ratio().unwrap_or(1),
+                phase: 1,
+                sequence: 0,
+                offset: u32::MAX,
+                watchdog: self.settings.watchdog_factor(),
+                hold: self.settings.watchdog_factor(),
+                tag: TAG_HIGH,
+                group: Mac::default(),
+                objects,
+                consumers: frame.consumers,
+            })
+        };
+        let mut requests = vec![
+            Request::Ar(ArBlock {
+                kind: 1,
+                uuid: ar.uuid,
+                session_key: ar.session_key,
+                mac: self.here.mac,
+                object: rpc::object(1, 1, u16::MAX),
+                properties,
+                activity_timeout: ACTIVITY_TIMEOUT,
+                port: ETHER_TYPE,
+                name: self.settings.name.clone(),
+            }),
+            iocr(1, Direction::Input, ar.input_id),
+            iocr(2, Direction::Output, ANY_FRAME_ID),
+            Request::AlarmCr(AlarmCr::usual(ar.reference)),
+        ];
+        let expected = layout.expected().into_iter();
+        requests.extend(expected.map(|module: ExpectedModule| Request::Expected(vec![module])));
+        requests
+    }
+
+    pub(super) fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) {
+        let Some(ar) = &mut self.ar else { return };
+        let bytes = ar.client.call(now, operation, blocks, tries);
+        self.send(bytes);
+    }
+
+    /// Writes what is to be written, if anything.
+    pub(super) fn write_parameters(&mut self, now: Now) {
+        if self.settings.parameters.is_empty() {
+            return self.end_parameters(now);
+        }
+        self.set_step(Step::Parameters);
+        let blocks = record::write(self.uuid(), 0, &self.settings.parameters);
+        self.call(now, operation::WRITE, &blocks, TRIES);
+    }
+
+    /// Says that all is written; the device is to call back.
+    pub(super) fn end_parameters(&mut self, now: Now) {
+        self.set_step(Step::PrmEnd);
+        self.control(now, BlockType::PRM_END, operation::CONTROL);
+    }
+
+    fn control(&mut self, now: Now, kind: BlockType, operation: u16) {
+        let Some(ar) = &self.ar else { return };
+        let block = Control::call(kind, ar.uuid, ar.session_key);
+        self.call(now, operation, &block.emit(), TRIES);
+    }
+
+    /// PrmEnd was answered: the device gets ready, unless it was already.
+    pub(super) fn await_ready(&mut self, now: Now) {
+        self.set_step(Step::Ready);
+        if let Some(ar) = &mut self.ar {
+            ar.ready_until = now + START;
+            if ar.is_ready {
+                self.await_data(now);
+            }
+        }
+    }
+
+    /// The device is ready: its data is to come.
+    pub(super) fn await_data(&mut self, now: Now) {
+        self.set_step(Step::Data);
+        self.phase = Phase::WaitingForData(now + START);
+        // What came while it started says nothing about silence from now on.
+        if let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) {
+            io.consumer.heard = io.consumer.heard.map(|_| now);
+        }
+    }
+
+    /// Releases the connection, because of something or for good.
+    pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
+        self.rest();
+        let tries = match trouble {
+            // It most likely has gone.
+            Some(ProfinetError::NoAnswer { .. }) => 1,
+            _ => TRIES,
+        };
+        if self.view.state == State::Open {
+            self.before.losses += u64::from(trouble.is_some());
+        }
+        if let Some(trouble) = &trouble {
+            self.view.trouble = Some(trouble.clone());
+        }
+        let state = match (self.is_over, self.view.generation) {
+            (true, _) => State::Closing,
+            (false, 0) => State::Opening,
+            (false, _) => State::Lost,
+        };
+        self.phase = Phase::Releasing(trouble);
+        self.show(state);
+        let Some(ar) = &self.ar else { return };
+        let block = Control::call(BlockType::RELEASE, ar.uuid, ar.session_key);
+        self.call(now, operation::RELEASE, &block.emit(), tries);
+    }
+
+    /// The release is over.
+    pub(super) fn released(&mut self, now: Now, trouble: Option<ProfinetError>) {
+        self.drop_ar();
+        match trouble {
+            _ if self.is_over => self.finish(trouble),
+            Some(trouble) => self.lost(now, trouble),
+            None => self.finish(None),
+        }
+    }
+
+    pub(super) fn uuid(&self) -> Uuid {
+        self.ar.as_ref().map_or(Uuid::NIL, |ar| ar.uuid)
+    }
+}

@@ -1,0 +1,143 @@
+//! Alarms of the device, one channel like the other: sends, repeats, and ends the connection when nobody acknowledges.
+
+use std::time::Duration;
+
+use super::super::Now;
+use super::super::wire::alarm::{Acknowledgement, FIRST, NONE, Notification, Pdu, Priority, Rta};
+
+#[derive(Debug, Default)]
+struct Channel {
+    /// Frames of DATA that were sent, and taken.
+    sent: u16,
+    taken: u16,
+    on_its_way: Option<(Notification, Now, u16)>,
+    /// The frame was acknowledged; the alarm is not, yet.
+    is_framed: bool,
+    waiting: Vec<Notification>,
+}
+
+/// Both channels of a connection.
+#[derive(Debug)]
+pub(super) struct Alarms {
+    ours: u16,
+    theirs: u16,
+    timeout: Duration,
+    retries: u16,
+    channels: [Channel; 2],
+}
+
+/// What came of a frame.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Heard {
+    Nothing,
+    /// What is to be sent, and the alarm that was noted.
+    Noted(Vec<Vec<u8>>, Notification),
+    /// A repeated frame, which is acknowledged again.
+    Again(Vec<u8>),
+    Ended(u32),
+    /// It breaks the rules.
+    Wrong,
+}
+
+/// The number of the frame that was sent as the `count`th.
+const fn number(count: u16) -> u16 {
+    match count {
+        0 => NONE,
+        1 => FIRST,
+        count => (count - 2) & 0x7FFF,
+    }
+}
+
+/// One more, round to where the numbers begin again.
+const fn next(count: u16) -> u16 {
+    if number(count) == 0x7FFF { 2 } else { count + 1 }
+}
+
+impl Alarms {
+    pub(super) fn new(ours: u16, theirs: u16, timeout: Duration, retries: u16) -> Self {
+        Self { ours, theirs, timeout, retries, channels: Default::default() }
+    }
+
+    fn frame(&self, priority: Priority, pdu: Pdu) -> Vec<u8> {
+        let channel = &self.channels[usize::from(priority == Priority::Low)];
+        let (sequence, acknowledged) = (number(channel.sent), number(channel.taken));
+        Rta { destination: self.theirs, source: self.ours, sequence, acknowledged, pdu }.emit()
+    }
+
+    pub(super) fn error(&self, status: u32) -> Vec<u8> {
+        self.frame(Priority::Low, Pdu::Error(status))
+    }
+
+    pub(super) fn raise(&mut self, now: Now, alarm: &Notification) -> Option<Vec<u8>> {
+        let priority = alarm.priority;
+        let timeout = self.timeout;
+        let channel = &mut self.channels[usize::from(priority == Priority::Low)];
+        if channel.on_its_way.is_some() {
+            channel.waiting.push(alarm.clone());
+            return None;
+        }
+        channel.sent = next(channel.sent);
+        channel.is_framed = false;
+        channel.on_its_way = Some((alarm.clone(), now + timeout, 0));
+        Some(self.frame(priority, Pdu::Data(alarm.emit())))
+    }
+
+    pub(super) fn wake(&self) -> Option<Now> {
+        self.channels.iter().filter_map(|channel| channel.on_its_way.as_ref()).map(|(_, due, _)| *due).min()
+    }
+
+    /// Repeats what was not acknowledged; `None` when that was often enough.
+    pub(super) fn poll(&mut self, now: Now) -> Option<Vec<(Priority, Vec<u8>)>> {
+        let mut out = Vec::new();
+        for (at, priority) in Priority::ALL.into_iter().enumerate() {
+            let (retries, timeout) = (self.retries, self.timeout);
+            let Some((alarm, due, tries)) = &mut self.channels[at].on_its_way else { continue };
+            if *due > now {
+                continue;
+            }
+            if *tries == retries {
+                return None;
+            }
+            *tries += 1;
+            *due = now + timeout;
+            let data = alarm.emit();
+            out.push((priority, self.frame(priority, Pdu::Data(data))));
+        }
+        Some(out)
+    }
+
+    pub(super) fn handle(&mut self, now: Now, priority: Priority, payload: &[u8]) -> Heard {
+        let Ok(rta) = Rta::parse(payload) else { return Heard::Wrong };
+        if (rta.destination, rta.source) != (self.ours, self.theirs) {
+            return Heard::Wrong;
+        }
+        let channel = &mut self.channels[usize::from(priority == Priority::Low)];
+        match rta.pdu {
+            Pdu::Error(status) => Heard::Ended(status),
+            Pdu::Nack => Heard::Nothing,
+            Pdu::Ack => {
+                channel.is_framed |= rta.acknowledged == number(channel.sent);
+                Heard::Nothing
+            }
+            Pdu::Data(data) => {
+                if rta.sequence == number(channel.taken) && channel.taken > 0 {
+                    return Heard::Again(self.frame(priority, Pdu::Ack));
+                }
+                let Ok(noted) = Acknowledgement::parse(&data) else { return Heard::Wrong };
+                let is_next = rta.sequence == number(next(channel.taken));
+                let is_framed = channel.is_framed || rta.acknowledged == number(channel.sent);
+                let Some((alarm, ..)) = channel.on_its_way.take_if(|(alarm, ..)| alarm.acknowledge() == noted) else {
+                    return Heard::Wrong;
+                };
+                if !is_next || !is_framed {
+                    return Heard::Wrong;
+                }
+                channel.taken = next(channel.taken);
+                let waiting = (!channel.waiting.is_empty()).then(|| channel.waiting.remove(0));
+                let mut out = vec![self.frame(priority, Pdu::Ack)];
+                out.extend(waiting.and_then(|alarm| self.raise(now, &alarm)));
+                Heard::Noted(out, alarm)
+            }
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! A connection at the device: cyclic frames both ways, alarms, and what ends it.
+
+use std::net::SocketAddrV4;
+use std::time::Duration;
+
+use super::super::Now;
+use super::super::layout::Direction;
+use super::super::wire::alarm::Priority;
+use super::super::wire::block::{BlockType, Control};
+use super::super::wire::connect::Iocr;
+use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
+use super::super::wire::frame::TAG_HIGH;
+use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, PORT, operation};
+use super::super::wire::status::Status;
+use super::super::wire::{Mac, Order, Uuid, block};
+use super::alarms::{Alarms, Heard};
+use super::{Action, Application, Device, Event, Fault};
+
+/// How often ApplicationReady is called, and how long each time is waited.
+const READY_TRIES: u32 = 3;
+const READY_PATIENCE: Duration = Duration::from_secs(2);
+/// A count of the cycle counter.
+const UNIT: Duration = Duration::from_nanos(31_250);
+/// Reasons that it ends connections with.
+const WATCHDOG: u8 = 5;
+const ACTIVITY: u8 = 6;
+const ALARM_LOST: u8 = 8;
+const WRONG_FRAME: u8 = 0x0C;
+const READY_UNANSWERED: u8 = 0x18;
+
+/// How far it is.
+#[derive(Debug)]
+pub(super) enum Stage {
+    /// Until then a call must come.
+    Parameters(Now),
+    /// ApplicationReady is on its way: the next try, and how many are left.
+    Ready { due: Now, tries: u32, sequence: u32 },
+    /// Data goes both ways.
+    Running,
+}
+
+#[derive(Debug)]
+pub(super) struct Ar {
+    pub(super) uuid: Uuid,
+    pub(super) session_key: u16,
+    pub(super) mac: Mac,
+    pub(super) peer: SocketAddrV4,
+    pub(super) object: Uuid,
+    pub(super) activity: Uuid,
+    pub(super) input: Iocr,
+    pub(super) output: Iocr,
+    pub(super) alarms: Alarms,
+    pub(super) stage: Stage,
+    pub(super) activity_timeout: Duration,
+    pub(super) due: Now,
+    pub(super) counter: u16,
+    /// The count and the moment of the last frame from the controller.
+    pub(super) heard: Option<(u16, Now)>,
+}
+
+impl Ar {
+    pub(super) const fn is_running(&self) -> bool {
+        matches!(self.stage, Stage::Running)
+    }
+
+    fn cycle(iocr: &Iocr) -> Duration {
+        UNIT * u32::from(iocr.send_clock) * u32::from(iocr.ratio)
+    }
+
+    /// When the controller will have been silent for too long; not before it sent for the first time.
+    fn watchdog(&self) -> Option<Now> {
+        let time = Self::cycle(&self.output) * u32::from(self.output.watchdog);
+        self.heard.map(|(_, at)| at + time)
+    }
+
+    pub(super) fn wake(&self) -> Now {
+        let stage = match self.stage {
+            Stage::Parameters(until) => Some(until),
+            Stage::Ready { due, .. } => Some(due),
+            Stage::Running => None,
+        };
+        [stage, self.alarms.wake(), self.watchdog()].into_iter().flatten().fold(self.due, Now::min)
+    }
+}
+
+impl<A: Application> Device<A> {
+    pub(super) fn tick_ar(&mut self, now: Now) {
+        let Some(ar) = &mut self.ar else { return };
+        match &ar.stage {
+            Stage::Parameters(until) if *until <= now => return self.abort(now, ACTIVITY),
+            Stage::Ready { due, tries: 0, .. } if *due <= now => return self.abort(now, READY_UNANSWERED),
+            Stage::Ready { due, .. } if *due <= now => self.call_ready(now),
+            _ => {}
+        }
+        let Some(ar) = &mut self.ar else { return };
+        if ar.watchdog().is_some_and(|until| until <= now) {
+            return self.abort(now, WATCHDOG);
+        }
+        let Some(repeats) = ar.alarms.poll(now) else { return self.abort(now, ALARM_LOST) };
+        let is_due = ar.due <= now;
+        for (priority, payload) in repeats {
+            self.send_alarm(priority, &payload);
+        }
+        if is_due {
+            self.send_data(now);
+        }
+    }
+
+    fn send_data(&mut self, now: Now) {
+        self.application.image_in(now, &mut self.image);
+        let fault = self.fault;
+        let Some(ar) = &mut self.ar else { return };
+        let cycle = Ar::cycle(&ar.input);
+        while ar.due <= now {
+            ar.due += cycle;
+            if fault != Some(Fault::Stale) {
+                ar.counter = ar.counter.wrapping_add(ar.input.send_clock.wrapping_mul(ar.input.ratio));
+            }
+        }
+        let mut data = vec![0; usize::from(ar.input.length)];
+        // It says good only once it is ready.
+        let is_good = ar.is_running() || matches!(ar.stage, Stage::Ready { .. });
+        let good = |is_good: bool| if is_good { GOOD } else { 0 };
+        let mut rest = &self.image[..];
+        for place in &ar.input.objects {
+            let submodule = self.setup.layout.find(place.slot, place.subslot);
+            let length = submodule.map_or(0, |submodule| usize::from(submodule.length(Direction::Input)));
+            let (part, behind) = rest.split_at(length.min(rest.len()));
+            rest = behind;
+            let at = usize::from(place.offset);
+            data[at..at + part.len()].copy_from_slice(part);
+            let is_wrong = fault == Some(Fault::WrongModule) && place.slot == 1;
+            data[at + length] = good(is_good && fault != Some(Fault::BadProvider) && !is_wrong);
+        }
+        for place in &ar.input.consumers {
+            data[usize::from(place.offset)] = good(is_good && fault != Some(Fault::BadConsumer));
+        }
+        let status = match fault {
+            Some(Fault::Stop) => RUNNING & !0x10,
+            Some(Fault::Invalid) => RUNNING & !0x04,
+            _ => RUNNING,
+        };
+        let payload = Cyclic { data: &data, counter: ar.counter, status, transfer: 0 }.emit();
+        let (mac, frame_id) = (ar.mac, ar.input.frame_id);
+        if fault == Some(Fault::Silent) {
+            return;
+        }
+        let frame = self.frame_to(mac, Some(TAG_HIGH), frame_id, &payload);
+        for _ in 0..if fault == Some(Fault::Double) { 2 } else { 1 } {
+            self.actions.push_back(Action::Frame(frame.clone()));
+        }
+    }
+
+    pub(super) fn heard_data(&mut self, now: Now, frame_id: u16, payload: &[u8]) {
+        let Some(ar) = &mut self.ar else { return };
+        if frame_id != ar.output.frame_id {
+            return;
+        }
+        let Ok(cyclic) = Cyclic::parse(payload, usize::from(ar.output.length)) else {
+            return self.abort(now, WRONG_FRAME);
+        };
+        if ar.heard.is_some_and(|(last, _)| !cyclic.is_after(last)) {
+            return;
+        }
+        ar.heard = Some((cyclic.counter, now));
+        let is_good = |at: usize| cyclic.data.get(at).is_some_and(|status| status & GOOD != 0);
+        let mut image = Vec::new();
+        let mut is_valid = cyclic.is_usable();
+        for place in &ar.output.objects {
+            let submodule = self.setup.layout.find(place.slot, place.subslot);
+            let length = submodule.map_or(0, |submodule| usize::from(submodule.length(Direction::Output)));
+            let at = usize::from(place.offset);
+            is_valid &= is_good(at + length);
+            image.extend_from_slice(cyclic.data.get(at..at + length).unwrap_or_default());
+        }
+        // Some devices end or never start with a controller whose own statuses are bad.
+        is_valid &= ar.output.consumers.iter().all(|place| is_good(usize::from(place.offset)));
+        self.application.image_out(now, is_valid.then_some(&image[..]));
+    }
+
+    pub(super) fn heard_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
+        let Some(ar) = &mut self.ar else { return };
+        match ar.alarms.handle(now, priority, payload) {
+            Heard::Nothing => {}
+            Heard::Noted(out, alarm) => {
+                for payload in out {
+                    self.send_alarm(priority, &payload);
+                }
+                self.application.event(now, &Event::AlarmNoted(alarm));
+            }
+            Heard::Again(payload) => self.send_alarm(priority, &payload),
+            Heard::Ended(status) => self.drop_ar(now, Some(Status(status))),
+            Heard::Wrong => self.abort(now, WRONG_FRAME),
+        }
+    }
+
+    /// Calls ApplicationReady, or calls it again with the same bytes.
+    pub(super) fn call_ready(&mut self, now: Now) {
+        let Some(ar) = &mut self.ar else { return };
+        let Stage::Ready { due, tries, sequence } = &mut ar.stage else { return };
+        *tries = tries.saturating_sub(1);
+        *due = now + READY_PATIENCE;
+        let header = Header {
+            kind: Kind::REQUEST,
+            flags: rpc::flag::IDEMPOTENT,
+            order: Order::Big,
+            object: ar.object,
+            interface: rpc::CONTROLLER,
+            activity: ar.activity,
+            boot: 0,
+            sequence: *sequence,
+            operation: operation::CONTROL,
+            fragment: 0,
+        };
+        let mut blocks = Control::call(BlockType::APPLICATION_READY, ar.uuid, ar.session_key).emit();
+        let to = SocketAddrV4::new(*ar.peer.ip(), PORT);
+        blocks.extend(self.difference().iter().flat_map(super::super::wire::connect::Response::emit));
+        let body = Call { room: 0x53C, blocks: &blocks }.emit(Order::Big);
+        self.actions.push_back(Action::Datagram(to, Datagram { header, body: &body }.emit()));
+    }
+
+    /// Begins to call ApplicationReady.
+    pub(super) fn get_ready(&mut self, now: Now) {
+        if self.fault == Some(Fault::NeverReady) {
+            // The activity timeout no longer runs; it just never is ready.
+            if let Some(ar) = &mut self.ar {
+                ar.stage = Stage::Parameters(Now::MAX);
+            }
+            return;
+        }
+        if let Some(ar) = &mut self.ar {
+            ar.stage = Stage::Ready { due: now, tries: READY_TRIES, sequence: 0 };
+        }
+        self.call_ready(now);
+    }
+
+    /// The controller answered ApplicationReady.
+    pub(super) fn ready_answered(&mut self, now: Now, datagram: &Datagram<'_>) {
+        let Some(ar) = &mut self.ar else { return };
+        let header = &datagram.header;
+        let Stage::Ready { sequence, .. } = ar.stage else { return };
+        if (header.activity, header.sequence) != (ar.activity, sequence) {
+            return;
+        }
+        let Ok(reply) = rpc::Reply::parse(datagram.body, header.order) else { return };
+        let Ok(blocks) = block::walk(reply.blocks) else { return };
+        let control = blocks.first().map(Control::parse);
+        let done = Control::call(BlockType::APPLICATION_READY, ar.uuid, ar.session_key).answer();
+        if reply.status == 0 && control == Some(Ok(done)) {
+            ar.stage = Stage::Running;
+            self.application.event(now, &Event::Ready);
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! The other end: a device with modules, without sockets and without a clock. It is stricter than devices are.
+
+use std::collections::VecDeque;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::time::Duration;
+
+use super::Now;
+use super::controller::Action;
+use super::layout::{Direction, Layout};
+use super::wire::Mac;
+use super::wire::alarm::{Notification, Priority};
+use super::wire::dcp::IpSuite;
+use super::wire::frame::{Frame, id};
+use super::wire::record::{Im0, Parameter};
+use super::wire::rpc::{Datagram, Header, Kind};
+use super::wire::status::Status;
+
+mod alarms;
+mod ar;
+mod calls;
+mod checks;
+mod fault;
+#[cfg(target_os = "linux")]
+pub mod server;
+mod station;
+
+use ar::Ar;
+pub use fault::Fault;
+
+/// What a device is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setup {
+    /// Its card.
+    pub mac: Mac,
+    /// Its name; empty for none.
+    pub name: String,
+    /// Its type, as text.
+    pub kind: String,
+    /// Vendor and device.
+    pub id: (u16, u16),
+    /// The instance in its object UUID.
+    pub instance: u16,
+    /// Its address, if it has one.
+    pub ip: Option<IpSuite>,
+    /// Whether it can be given an address; one on a real card has that of the card.
+    pub takes_ip: bool,
+    /// Its modules.
+    pub layout: Layout,
+    /// Shortest cycle, in units of 31.25 us.
+    pub shortest: u16,
+    /// What it says of itself in I&M0.
+    pub im0: Im0,
+}
+
+/// What a device is for.
+pub trait Application {
+    /// What the controller wants of its outputs; `None` as long as that is nothing that counts: no connection, its
+    /// provider's status bad, or stop.
+    fn image_out(&mut self, now: Now, image: Option<&[u8]>);
+    /// Fills the image that goes to the controller; it has the bytes of the last time.
+    fn image_in(&mut self, now: Now, image: &mut [u8]);
+    /// Something happened.
+    fn event(&mut self, now: Now, event: &Event);
+}
+
+/// What happened to a device.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Event {
+    /// A controller connected.
+    Connected(Ipv4Addr),
+    /// It was told that the device is ready.
+    Ready,
+    /// A record was written.
+    Written(Parameter),
+    /// The connection ended, with the reason that was given or found; `None` for a release.
+    Ended(Option<Status>),
+    /// A controller was refused.
+    Refused(Status),
+    /// An alarm was acknowledged.
+    AlarmNoted(Notification),
+    /// The name was set, maybe for good.
+    Named(String, bool),
+    /// The address was set, maybe for good.
+    Addressed(IpSuite, bool),
+    /// It is to blink.
+    Blink,
+    /// Name and address were forgotten.
+    Reset,
+}
+
+/// A device.
+#[derive(Debug)]
+pub struct Device<A> {
+    setup: Setup,
+    application: A,
+    ar: Option<Ar>,
+    fault: Option<Fault>,
+    /// Answers that were given, for calls that come again: the last few.
+    answers: VecDeque<(Header, SocketAddrV4, Vec<u8>)>,
+    /// What is to be sent at a time.
+    later: Vec<(Now, Vec<u8>)>,
+    image: Vec<u8>,
+    actions: VecDeque<Action>,
+}
+
+/// Answers that are kept.
+const MOST_ANSWERS: usize = 8;
+/// Answers to Identify that wait for their time.
+const MOST_LATER: usize = 32;
+/// The most that Identify spreads answers over, in steps.
+const MOST_SPREAD: u16 = 6400;
+const SPREAD: Duration = Duration::from_millis(10);
+
+impl<A: Application> Device<A> {
+    /// A device that nobody is connected to.
+    pub fn new(setup: Setup, application: A) -> Self {
+        let image = vec![0; setup.layout.size(Direction::Input)];
+        Self {
+            setup,
+            application,
+            ar: None,
+            fault: None,
+            answers: VecDeque::new(),
+            later: Vec::new(),
+            image,
+            actions: VecDeque::new(),
+        }
+    }
+
+    /// What it is now.
+    pub const fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// What it is for.
+    pub const fn application(&self) -> &A {
+        &self.application
+    }
+
+    /// What it is for.
+    pub const fn application_mut(&mut self) -> &mut A {
+        &mut self.application
+    }
+
+    /// Does something wrong from now on, or nothing any more.
+    pub const fn set_fault(&mut self, fault: Option<Fault>) {
+        self.fault = fault;
+    }
+
+    /// Whether data goes both ways.
+    pub fn is_running(&self) -> bool {
+        self.ar.as_ref().is_some_and(Ar::is_running)
+    }
+
+    /// Loses all that it knew, as if switched off and on.
+    pub fn restart(&mut self, now: Now) {
+        self.actions.clear();
+        self.later.clear();
+        self.answers.clear();
+        self.drop_ar(now, Some(Status::abort(0x1A)));
+    }
+
+    /// Ends the connection with this reason.
+    pub fn abort(&mut self, now: Now, reason: u8) {
+        let Some(ar) = &self.ar else { return };
+        let payload = ar.alarms.error(Status::abort(reason).0);
+        self.send_alarm(Priority::Low, &payload);
+        self.drop_ar(now, Some(Status::abort(reason)));
+    }
+
+    /// Raises an alarm, if somebody is connected. What waits for an acknowledgement comes first.
+    pub fn raise(&mut self, now: Now, alarm: &Notification) {
+        let Some(ar) = &mut self.ar else { return };
+        let payload = ar.alarms.raise(now, alarm);
+        if let Some(payload) = payload {
+            self.send_alarm(alarm.priority, &payload);
+        }
+    }
+
+    fn send_alarm(&mut self, priority: Priority, payload: &[u8]) {
+        let Some(mac) = self.ar.as_ref().map(|ar| ar.mac) else { return };
+        let frame = self.frame_to(mac, Some(priority.tag()), priority.frame_id(), payload);
+        self.actions.push_back(Action::Frame(frame));
+    }
+
+    fn frame_to(&self, destination: Mac, tag: Option<u16>, id: u16, payload: &[u8]) -> Vec<u8> {
+        Frame { destination, source: self.setup.mac, tag, id, payload }.emit()
+    }
+
+    fn drop_ar(&mut self, now: Now, reason: Option<Status>) {
+        if self.ar.take().is_some() {
+            self.application.image_out(now, None);
+            self.application.event(now, &Event::Ended(reason));
+        }
+    }
+
+    /// When something is due by the clock.
+    pub fn wake(&self) -> Option<Now> {
+        if !self.actions.is_empty() {
+            return Some(Now::ZERO);
+        }
+        let later = self.later.iter().map(|(at, _)| *at).min();
+        later.into_iter().chain(self.ar.as_ref().map(Ar::wake)).min()
+    }
+
+    /// What is to be done now.
+    pub fn poll(&mut self, now: Now) -> Option<Action> {
+        if self.actions.is_empty() {
+            self.tick(now);
+        }
+        self.actions.pop_front()
+    }
+
+    fn tick(&mut self, now: Now) {
+        let mut due = Vec::new();
+        self.later.retain_mut(|(at, frame)| {
+            if *at <= now {
+                due.push(Action::Frame(std::mem::take(frame)));
+            }
+            *at > now
+        });
+        self.actions.extend(due);
+        self.tick_ar(now);
+    }
+
+    /// A frame came.
+    pub fn frame(&mut self, now: Now, bytes: &[u8]) {
+        let Ok(frame) = Frame::parse(bytes) else { return };
+        if frame.destination == Mac::DCP_IDENTIFY && frame.id == id::DCP_IDENTIFY {
+            self.heard_identify(now, &frame);
+        }
+        if frame.destination != self.setup.mac || frame.source.is_group() {
+            return;
+        }
+        match frame.id {
+            id::DCP_GET_SET => self.heard_get_set(now, &frame),
+            frame_id if self.ar.as_ref().is_some_and(|ar| ar.mac == frame.source) => {
+                match Priority::from_frame_id(frame_id) {
+                    Some(priority) => self.heard_alarm(now, priority, frame.payload),
+                    None => self.heard_data(now, frame_id, frame.payload),
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// A datagram came to UDP port 34964.
+    pub fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
+        let Ok(datagram) = Datagram::parse(bytes) else { return };
+        match datagram.header.kind {
+            Kind::REQUEST => self.called(now, from, &datagram),
+            Kind::RESPONSE => self.ready_answered(now, &datagram),
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,492 @@
+//! GSDML: the file in which a maker describes a device, as far as a controller needs it: access points, modules, data,
+//! parameters.
+//!
+//! What stands in a file is untrusted: sizes are bounded, entities are not expanded, and a mistake names its line and
+//! its element.
+
+use std::borrow::Cow;
+
+use roxmltree::{Document, Node, ParsingOptions};
+use thiserror::Error;
+
+use super::layout::{Direction, Layout, Submodule};
+use super::wire::record::Parameter;
+
+/// Largest file that is read.
+pub const MOST_BYTES: usize = 16 * 1024 * 1024;
+/// Most elements and attributes of one.
+const MOST_NODES: u32 = 2_000_000;
+/// Most modules that fit an access point.
+const MOST_MODULES: usize = 512;
+/// Longest record that is written at the start.
+const LONGEST_RECORD: usize = 4096;
+
+/// What is wrong with a file.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("line {line}, {element}: {problem}")]
+pub struct GsdmlError {
+    /// The line.
+    pub line: u32,
+    /// The element.
+    pub element: String,
+    /// What is wrong with it.
+    pub problem: String,
+}
+
+/// A device as its maker describes it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Gsdml {
+    /// The vendor.
+    pub vendor: u16,
+    /// The device.
+    pub device: u16,
+    /// The access points, of which a device has one.
+    pub heads: Vec<Head>,
+}
+
+/// An access point: what is in slot 0.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Head {
+    /// Its name within the file.
+    pub id: String,
+    /// Its name for people.
+    pub name: String,
+    /// The name that a new device has.
+    pub dns_name: String,
+    /// Its kind.
+    pub ident: u32,
+    /// The instance in the object UUID.
+    pub instance: u16,
+    /// Shortest cycle, in units of 31.25 us.
+    pub shortest: u16,
+    /// Whether it can start in advanced mode, and in legacy mode.
+    pub startup: (bool, bool),
+    /// Its submodules.
+    pub submodules: Vec<Item>,
+    /// Modules that fit.
+    pub modules: Vec<Fitting>,
+}
+
+/// A module that fits an access point.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fitting {
+    /// The slots that it may be in.
+    pub slots: Vec<u16>,
+    /// The slots that it is always in.
+    pub fixed: Vec<u16>,
+    /// The module.
+    pub module: Module,
+}
+
+/// A module.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Module {
+    /// Its name within the file.
+    pub id: String,
+    /// Its name for people.
+    pub name: String,
+    /// Its kind.
+    pub ident: u32,
+    /// Its submodules.
+    pub submodules: Vec<Item>,
+}
+
+/// A submodule.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Item {
+    /// Where it is.
+    pub subslot: u16,
+    /// Its kind.
+    pub ident: u32,
+    /// Bytes that it sends.
+    pub input: u16,
+    /// Bytes that it takes.
+    pub output: u16,
+    /// What is to be written to it at the start: number and record.
+    pub parameters: Vec<(u16, Vec<u8>)>,
+}
+
+impl Gsdml {
+    /// Reads a file, in UTF-8 or ISO 8859-1.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
+        let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
+        if bytes.len() > MOST_BYTES {
+            return Err(whole(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len())));
+        }
+        let text = match std::str::from_utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)) {
+            Ok(text) => Cow::Borrowed(text),
+            // Each of its bytes is the character with that number.
+            Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
+        };
+        let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(&text, options).map_err(|error| {
+            let line = error.pos().row;
+            GsdmlError { line, element: "file".to_owned(), problem: format!("it is no XML: {error}") }
+        })?;
+        Reader { document: &document }.device()
+    }
+}
+
+impl Head {
+    /// The layout with these modules in these slots; those that are always there come by themselves.
+    ///
+    /// # Errors
+    /// When a module does not fit its slot, or the data does not fit a frame.
+    pub fn layout(&self, chosen: &[(u16, &Fitting)]) -> Result<Layout, String> {
+        Layout::new(self.placed(chosen)?.into_iter().map(|(submodule, _)| submodule).collect())
+    }
+
+    /// What is to be written at the start of that layout.
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn parameters(&self, chosen: &[(u16, &Fitting)]) -> Result<Vec<Parameter>, String> {
+        let placed = self.placed(chosen)?;
+        let parameters = placed.iter().flat_map(|(submodule, item)| {
+            let record = |(index, data): &(u16, Vec<u8>)| Parameter {
+                slot: submodule.slot,
+                subslot: submodule.subslot,
+                index: *index,
+                data: data.clone(),
+            };
+            item.parameters.iter().map(record)
+        });
+        Ok(parameters.collect())
+    }
+
+    fn placed<'a>(&'a self, chosen: &[(u16, &'a Fitting)]) -> Result<Vec<(Submodule, &'a Item)>, String> {
+        let fixed = self.modules.iter().flat_map(|fitting| fitting.fixed.iter().map(move |slot| (*slot, fitting)));
+        let mut all: Vec<(u16, &Fitting)> = fixed.collect();
+        for (slot, fitting) in chosen {
+            if !fitting.slots.contains(slot) {
+                return Err(format!("module {} does not fit slot {slot}", fitting.module.id));
+            }
+            if !all.contains(&(*slot, fitting)) {
+                all.push((*slot, fitting));
+            }
+        }
+        let place = |slot: u16, module: u32, item: &Item| Submodule {
+            slot,
+            subslot: item.subslot,
+            module,
+            ident: item.ident,
+            input: item.input,
+            output: item.output,
+        };
+        let head = self.submodules.iter().map(|item| (place(0, self.ident, item), item));
+        let modules = all.iter().flat_map(|(slot, fitting)| {
+            let module = &fitting.module;
+            module.submodules.iter().map(move |item| (place(*slot, module.ident, item), item))
+        });
+        Ok(head.chain(modules).collect())
+    }
+
+    /// Modules that make images of these sizes: those that are always there alone, one more, or one for each direction.
+    /// `None` where there is no such choice, or more than one.
+    pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &Fitting)>> {
+        let fits = |chosen: &[(u16, &Fitting)]| {
+            self.layout(chosen)
+                .is_ok_and(|layout| (layout.size(Direction::Input), layout.size(Direction::Output)) == (input, output))
+        };
+        if fits(&[]) {
+            return Some(Vec::new());
+        }
+        let first = |fitting: &Fitting, other: Option<u16>| {
+            fitting.slots.iter().copied().find(|slot| *slot != 0 && Some(*slot) != other)
+        };
+        let mut choices = Vec::new();
+        for fitting in &self.modules {
+            let Some(slot) = first(fitting, None) else { continue };
+            if fits(&[(slot, fitting)]) {
+                choices.push(vec![(slot, fitting)]);
+            }
+            if fitting.module.sizes() != (input, 0) {
+                continue;
+            }
+            for second in self.modules.iter().filter(|second| second.module.sizes() == (0, output)) {
+                let pair = first(second, Some(slot)).map(|other| vec![(slot, fitting), (other, second)]);
+                choices.extend(pair.filter(|pair| fits(pair)));
+            }
+        }
+        if choices.len() == 1 { choices.pop() } else { None }
+    }
+}
+
+impl Module {
+    /// Bytes that it sends, and takes.
+    fn sizes(&self) -> (usize, usize) {
+        let sum = |length: fn(&Item) -> u16| self.submodules.iter().map(|item| usize::from(length(item))).sum();
+        (sum(|item| item.input), sum(|item| item.output))
+    }
+}
+
+struct Reader<'a, 'input> {
+    document: &'a Document<'input>,
+}
+
+type GsdmlResult<T> = Result<T, GsdmlError>;
+
+impl<'a, 'input> Reader<'a, 'input> {
+    fn wrong(&self, node: Node<'_, '_>, problem: impl Into<String>) -> GsdmlError {
+        let line = self.document.text_pos_at(node.range().start).row;
+        GsdmlError { line, element: node.tag_name().name().to_owned(), problem: problem.into() }
+    }
+
+    fn all(&self, name: &'static str) -> impl Iterator<Item = Node<'a, 'input>> {
+        self.document.descendants().filter(move |node| node.has_tag_name_local(name))
+    }
+
+    fn device(&self) -> GsdmlResult<Gsdml> {
+        let root = self.document.root_element();
+        let identity = self.all("DeviceIdentity").next();
+        let identity = identity.ok_or_else(|| self.wrong(root, "there is no DeviceIdentity in it"))?;
+        let (vendor, device) = (self.number(identity, "VendorID")?, self.number(identity, "DeviceID")?);
+        let heads = self.all("DeviceAccessPointItem").map(|node| self.head(node)).collect::<Result<Vec<_>, _>>()?;
+        if heads.is_empty() {
+            return Err(self.wrong(root, "there is no DeviceAccessPointItem in it"));
+        }
+        Ok(Gsdml { vendor, device, heads })
+    }
+
+    fn head(&self, node: Node<'a, 'input>) -> GsdmlResult<Head> {
+        let mut submodules = self.items(node)?;
+        for name in ["InterfaceSubmoduleItem", "PortSubmoduleItem"] {
+            for item in node.descendants().filter(|item| item.has_tag_name_local(name)) {
+                let subslot = self.number(item, "SubslotNumber")?;
+                let ident = self.number32(item, "SubmoduleIdentNumber")?;
+                submodules.push(Item { subslot, ident, input: 0, output: 0, parameters: Vec::new() });
+            }
+        }
+        let relations = node.descendants().find(|item| item.has_tag_name_local("ApplicationRelations"));
+        let modes = relations.and_then(|relations| relations.attribute("StartupMode")).unwrap_or("Legacy");
+        let has_mode = |wanted: &str| modes.split(';').any(|mode| mode.trim() == wanted);
+        let slots = self.slots(node, "PhysicalSlots")?;
+        let references: Vec<_> = node.descendants().filter(|item| item.has_tag_name_local("ModuleItemRef")).collect();
+        if references.len() > MOST_MODULES {
+            return Err(self.wrong(node, format!("{} modules fit it, {MOST_MODULES} are the most", references.len())));
+        }
+        let modules =
+            references.into_iter().map(|reference| self.fitting(reference, &slots)).collect::<Result<_, _>>()?;
+        Ok(Head {
+            id: self.text(node, "ID")?.to_owned(),
+            name: self.name(node),
+            dns_name: node.attribute("DNS_CompatibleName").unwrap_or_default().to_owned(),
+            ident: self.number32(node, "ModuleIdentNumber")?,
+            instance: self.optional(node, "ObjectUUID_LocalIndex")?.unwrap_or(1),
+            shortest: self.optional(node, "MinDeviceInterval")?.unwrap_or(32),
+            startup: (has_mode("Advanced"), has_mode("Legacy")),
+            submodules,
+            modules,
+        })
+    }
+
+    fn fitting(&self, node: Node<'a, 'input>, slots: &[u16]) -> GsdmlResult<Fitting> {
+        let target = self.text(node, "ModuleItemTarget")?;
+        let module = self.all("ModuleItem").find(|module| module.attribute("ID") == Some(target));
+        let module = module.ok_or_else(|| self.wrong(node, format!("there is no ModuleItem '{target}'")))?;
+        let fixed = self.slots(node, "FixedInSlots")?;
+        let mut allowed = self.slots(node, "AllowedInSlots")?;
+        allowed.extend(&fixed);
+        if allowed.is_empty() {
+            allowed.extend(slots.iter().filter(|slot| **slot != 0));
+        }
+        let module = Module {
+            id: target.to_owned(),
+            name: self.name(module),
+            ident: self.number32(module, "ModuleIdentNumber")?,
+            submodules: self.items(module)?,
+        };
+        Ok(Fitting { slots: allowed, fixed, module })
+    }
+
+    /// The submodules of a module or an access point; those to choose from only where there is no choice.
+    fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
+        let mut items = Vec::new();
+        for item in node.descendants().filter(|item| item.has_tag_name_local("VirtualSubmoduleItem")) {
+            let fixed = self.slots(item, "FixedInSubslots")?;
+            for subslot in if fixed.is_empty() { vec![1] } else { fixed } {
+                items.push(self.item(item, subslot)?);
+            }
+        }
+        for reference in node.descendants().filter(|item| item.has_tag_name_local("SubmoduleItemRef")) {
+            let target = self.text(reference, "SubmoduleItemTarget")?;
+            let found = self.all("SubmoduleItem").find(|item| item.attribute("ID") == Some(target));
+            let found = found.ok_or_else(|| self.wrong(reference, format!("there is no SubmoduleItem '{target}'")))?;
+            for subslot in self.slots(reference, "FixedInSubslots")? {
+                items.push(self.item(found, subslot)?);
+            }
+        }
+        Ok(items)
+    }
+
+    fn item(&self, node: Node<'a, 'input>, subslot: u16) -> GsdmlResult<Item> {
+        let records = node.descendants().filter(|item| item.has_tag_name_local("ParameterRecordDataItem"));
+        Ok(Item {
+            subslot,
+            ident: self.number32(node, "SubmoduleIdentNumber")?,
+            input: self.length(node, "Input")?,
+            output: self.length(node, "Output")?,
+            parameters: records.map(|record| self.record(record)).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Bytes of data in a direction.
+    fn length(&self, node: Node<'a, 'input>, direction: &str) -> GsdmlResult<u16> {
+        let Some(data) = node.descendants().find(|item| item.has_tag_name_local(direction)) else { return Ok(0) };
+        let mut bytes = 0u16;
+        for item in data.children().filter(|item| item.has_tag_name_local("DataItem")) {
+            let length = self.size(item)?;
+            bytes = bytes.checked_add(length).ok_or_else(|| self.wrong(item, "the data is too long"))?;
+        }
+        Ok(bytes)
+    }
+
+    /// Bytes of a value.
+    fn size(&self, node: Node<'a, 'input>) -> GsdmlResult<u16> {
+        let kind = self.text(node, "DataType")?;
+        Ok(match kind {
+            "Boolean" | "Unsigned8" | "Integer8" => 1,
+            "Unsigned16" | "Integer16" | "N2" | "V2" | "Unsigned8+Unsigned8" => 2,
+            "Unsigned32" | "Integer32" | "Float32" | "N4" | "TimeOfDay" => 4,
+            "Float32+Unsigned8" | "Float32+Status8" => 5,
+            "Unsigned64" | "Integer64" | "Float64" => 8,
+            "OctetString" | "VisibleString" | "UnicodeString8" => self.number(node, "Length")?,
+            other => return Err(self.wrong(node, format!("the length of DataType '{other}' is not known"))),
+        })
+    }
+
+    /// A record with what it has unless somebody sets something else.
+    fn record(&self, node: Node<'a, 'input>) -> GsdmlResult<(u16, Vec<u8>)> {
+        let index = self.number(node, "Index")?;
+        let length = usize::from(self.number(node, "Length")?);
+        if length > LONGEST_RECORD {
+            return Err(self.wrong(node, format!("a record has {LONGEST_RECORD} bytes at most")));
+        }
+        let mut data = vec![0; length];
+        for part in node.children().filter(Node::is_element) {
+            let at = usize::from(self.optional(part, "ByteOffset")?.unwrap_or(0));
+            let bytes = match part.tag_name().name() {
+                "Const" => self.constant(part)?,
+                "Ref" => match self.value(part, data.get(at).copied().unwrap_or_default())? {
+                    Some(bytes) => bytes,
+                    None => continue,
+                },
+                _ => continue,
+            };
+            let place = data.get_mut(at..at + bytes.len());
+            place.ok_or_else(|| self.wrong(part, "it does not fit its record"))?.copy_from_slice(&bytes);
+        }
+        Ok((index, data))
+    }
+
+    fn constant(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<u8>> {
+        let text = self.text(node, "Data")?;
+        let byte = |part: &str| parse(part).and_then(|number| u8::try_from(number).ok());
+        let bytes: Option<Vec<u8>> = text.split(',').map(byte).collect();
+        bytes.ok_or_else(|| self.wrong(node, format!("'{text}' are no bytes")))
+    }
+
+    /// What a value is unless somebody sets it; bits go into the byte that is there.
+    fn value(&self, node: Node<'a, 'input>, byte: u8) -> GsdmlResult<Option<Vec<u8>>> {
+        let Some(text) = node.attribute("DefaultValue") else { return Ok(None) };
+        let kind = self.text(node, "DataType")?;
+        let wrong = || self.wrong(node, format!("'{text}' is no {kind}"));
+        let bits = match kind {
+            "Bit" => 1,
+            "BitArea" => self.number(node, "BitLength")?,
+            _ => 0,
+        };
+        if bits > 0 {
+            let shift = u32::from(self.optional(node, "BitOffset")?.unwrap_or(0));
+            let value = parse(text).ok_or_else(wrong)?;
+            let shifted = value.checked_shl(shift).and_then(|value| u8::try_from(value).ok());
+            let fits = shift < 8 && u32::from(bits) <= 8 - shift && value >> bits == 0;
+            return shifted.filter(|_| fits).map(|value| Some(vec![byte | value])).ok_or_else(wrong);
+        }
+        if kind == "VisibleString" || kind == "OctetString" {
+            return Ok(None);
+        }
+        if kind == "Float32" {
+            let value: f32 = text.parse().map_err(|_| wrong())?;
+            return Ok(Some(value.to_be_bytes().to_vec()));
+        }
+        let size = usize::from(self.size(node)?);
+        let value = text.parse::<i64>().ok().or_else(|| parse(text).map(i64::from)).ok_or_else(wrong)?;
+        let bytes = value.to_be_bytes();
+        let (upper, lower) = bytes.split_at(bytes.len().saturating_sub(size));
+        // What is cut off must be nothing but the sign.
+        let fits = upper.iter().all(|byte| *byte == 0) || upper.iter().all(|byte| *byte == 0xFF);
+        if fits { Ok(Some(lower.to_vec())) } else { Err(wrong()) }
+    }
+
+    /// The name of something for people, by its text.
+    fn name(&self, node: Node<'a, 'input>) -> String {
+        let name = node.children().find(|item| item.has_tag_name_local("ModuleInfo"));
+        let name = name.and_then(|info| info.children().find(|item| item.has_tag_name_local("Name")));
+        let id = name.and_then(|name| name.attribute("TextId"));
+        let text = id.and_then(|id| {
+            let primary = self.all("PrimaryLanguage").next()?;
+            let mut texts = primary.descendants().filter(|text| text.has_tag_name_local("Text"));
+            texts.find(|text| text.attribute("TextId") == Some(id))?.attribute("Value")
+        });
+        text.unwrap_or_default().chars().filter(|c| !c.is_control()).collect()
+    }
+
+    fn text(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<&'a str> {
+        node.attribute(name).ok_or_else(|| self.wrong(node, format!("{name} is missing")))
+    }
+
+    fn number32(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<u32> {
+        let text = self.text(node, name)?;
+        parse(text).ok_or_else(|| self.wrong(node, format!("{name} is no number: '{text}'")))
+    }
+
+    fn number(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<u16> {
+        let number = self.number32(node, name)?;
+        u16::try_from(number).map_err(|_| self.wrong(node, format!("{name} is above 65535: {number}")))
+    }
+
+    fn optional(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<Option<u16>> {
+        node.attribute(name).map(|_| self.number(node, name)).transpose()
+    }
+
+    /// A list of numbers and ranges, such as `0..4 7`.
+    fn slots(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<Vec<u16>> {
+        let mut slots = Vec::new();
+        for part in node.attribute(name).unwrap_or_default().split_whitespace() {
+            let number = |text: &str| parse(text).and_then(|number| u16::try_from(number).ok());
+            let (first, last) = part.split_once("..").unwrap_or((part, part));
+            let wrong = || self.wrong(node, format!("{name} is no list of numbers: '{part}'"));
+            let (first, last) = (number(first).ok_or_else(wrong)?, number(last).ok_or_else(wrong)?);
+            slots.extend(first..=last);
+        }
+        Ok(slots)
+    }
+}
+
+/// Elements by their name in whatever version of the namespace.
+trait LocalName {
+    fn has_tag_name_local(&self, name: &str) -> bool;
+}
+
+impl LocalName for Node<'_, '_> {
+    fn has_tag_name_local(&self, name: &str) -> bool {
+        self.is_element() && self.tag_name().name() == name
+    }
+}
+
+/// A number, decimal or with `0x`.
+fn parse(text: &str) -> Option<u32> {
+    let text = text.trim();
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) if digits.starts_with(|c: char| c.is_ascii_hexdigit()) => u32::from_str_radix(digits, 16).ok(),
+        None if text.starts_with(|c: char| c.is_ascii_digit()) => text.parse().ok(),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Files of another hand, of our own, and broken ones.
+
+use pnio::config::{DeviceConfig, Slot};
+use pnio::data::FieldType;
+use pnio::gsdml::{GsdmlMeta, render};
+use proptest::prelude::*;
+
+use super::*;
+
+fn file(inputs: usize, outputs: usize) -> String {
+    let config = DeviceConfig::builder("yrcx-sim")
+        .identity(0xFFFF, 0x1234)
+        .min_device_interval(32)
+        .input(Slot(1), &vec![FieldType::Word; inputs])
+        .output(Slot(2), &vec![FieldType::Word; outputs])
+        .build()
+        .unwrap();
+    let text = |text: &str| text.to_owned();
+    let meta =
+        GsdmlMeta { vendor_name: text("a"), product_family: text("b"), info_text: text("c"), date: (2026, 1, 2) };
+    render(&config, &meta)
+}
+
+/// By another hand: the file that the crate `pnio` writes for a layout is that layout.
+#[test]
+fn a_file_that_others_wrote_is_the_layout_it_was_written_for() {
+    let gsdml = Gsdml::parse(file(24, 24).as_bytes()).unwrap();
+    assert_eq!((gsdml.vendor, gsdml.device, gsdml.heads.len()), (0xFFFF, 0x1234, 1));
+    let head = &gsdml.heads[0];
+    assert_eq!((head.ident, head.instance, head.shortest, head.startup), (1, 1, 32, (true, false)));
+    let chosen = head.choose(48, 48).unwrap();
+    assert_eq!(chosen.iter().map(|(slot, _)| *slot).collect::<Vec<_>>(), [1, 2]);
+    assert_eq!(head.layout(&chosen), Ok(Layout::two_modules(0x101, 0x102)));
+    assert_eq!(head.parameters(&chosen), Ok(Vec::new()));
+    assert_eq!(head.choose(46, 48), None);
+    let swapped = [(2, chosen[0].1)];
+    assert!(head.layout(&swapped).unwrap_err().contains("does not fit slot 2"));
+}
+
+const OWN: &str = r#"<?xml version="1.0" encoding="iso-8859-1"?>
+<ISO15745Profile xmlns="http://www.profibus.com/GSDML/2003/11/DeviceProfile"><ProfileBody>
+<DeviceIdentity VendorID="0x0123" DeviceID="77"/>
+<ApplicationProcess><DeviceAccessPointList>
+<DeviceAccessPointItem ID="D" ModuleIdentNumber="0x10" PhysicalSlots="0..3" MinDeviceInterval="32" DNS_CompatibleName="x">
+<ModuleInfo><Name TextId="T"/></ModuleInfo>
+<UseableModules>
+<ModuleItemRef ModuleItemTarget="M" FixedInSlots="1"/><ModuleItemRef ModuleItemTarget="N"/>
+</UseableModules>
+<VirtualSubmoduleList><VirtualSubmoduleItem ID="S" SubmoduleIdentNumber="1"><IOData/></VirtualSubmoduleItem></VirtualSubmoduleList>
+</DeviceAccessPointItem></DeviceAccessPointList>
+<ModuleList>
+<ModuleItem ID="M" ModuleIdentNumber="0x40"><VirtualSubmoduleList>
+<VirtualSubmoduleItem ID="MS" SubmoduleIdentNumber="2"><IOData>
+<Input><DataItem DataType="OctetString" Length="48"/></Input><Output><DataItem DataType="Unsigned16"/><DataItem DataType="OctetString" Length="46"/></Output>
+</IOData><RecordDataList>
+<ParameterRecordDataItem Index="5" Length="8"><Const Data="0x01,0x02"/>
+<Ref ByteOffset="2" DataType="Unsigned16" DefaultValue="258"/><Ref ByteOffset="4" DataType="Bit" BitOffset="3" DefaultValue="1"/>
+<Ref ByteOffset="4" DataType="BitArea" BitOffset="0" BitLength="2" DefaultValue="2"/><Ref ByteOffset="5" DataType="Integer8" DefaultValue="-2"/>
+</ParameterRecordDataItem></RecordDataList></VirtualSubmoduleItem></VirtualSubmoduleList></ModuleItem>
+<ModuleItem ID="N" ModuleIdentNumber="0x41"><VirtualSubmoduleList/></ModuleItem>
+</ModuleList>
+<ExternalTextList><PrimaryLanguage><Text TextId="T" Value="Unit &#228;"/></PrimaryLanguage></ExternalTextList>
+</ApplicationProcess></ProfileBody></ISO15745Profile>
+"#;
+
+#[test]
+fn fixed_modules_parameters_and_names_are_read() {
+    let gsdml = Gsdml::parse(OWN.as_bytes()).unwrap();
+    let head = &gsdml.heads[0];
+    assert_eq!((gsdml.vendor, gsdml.device, head.name.as_str()), (0x123, 77, "Unit ä"));
+    assert_eq!(head.startup, (false, true), "legacy, where nothing is said");
+    assert_eq!(head.modules[1].slots, [1, 2, 3]);
+    let chosen = head.choose(48, 48).unwrap();
+    assert_eq!(head.layout(&chosen).unwrap().to_string(), "0:0x10,1:0x40/0x2:i48o48");
+    let data = vec![1, 2, 1, 2, 0x0A, 0xFE, 0, 0];
+    assert_eq!(head.parameters(&chosen), Ok(vec![Parameter { slot: 1, subslot: 1, index: 5, data }]));
+    // One byte of it makes it no UTF-8.
+    let latin: Vec<u8> =
+        OWN.replace("&#228;", "\u{1}").bytes().map(|byte| if byte == 1 { 0xE4 } else { byte }).collect();
+    assert_eq!(Gsdml::parse(&latin).unwrap(), gsdml);
+}
+
+#[test]
+fn mistakes_are_named_with_line_and_element() {
+    let cases = [
+        ("VendorID=\"0x0123\"", "", 3, "DeviceIdentity", "VendorID is missing"),
+        ("DeviceID=\"77\"", "DeviceID=\"70000\"", 3, "DeviceIdentity", "above 65535"),
+        ("ModuleIdentNumber=\"0x40\"", "ModuleIdentNumber=\"x\"", 14, "ModuleItem", "no number: 'x'"),
+        ("ModuleItemTarget=\"N\"", "ModuleItemTarget=\"Q\"", 8, "ModuleItemRef", "no ModuleItem 'Q'"),
+        ("DataType=\"Unsigned16\"/", "DataType=\"Blob\"/", 16, "DataItem", "'Blob' is not known"),
+        ("PhysicalSlots=\"0..3\"", "PhysicalSlots=\"a..3\"", 5, "DeviceAccessPointItem", "no list of numbers"),
+        ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "are no bytes"),
+        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "does not fit its record"),
+        ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is no Unsigned16"),
+        ("</ModuleList>", "", 24, "file", "no XML"),
+    ];
+    for (from, to, line, element, problem) in cases {
+        let broken = OWN.replacen(from, to, 1);
+        assert_ne!(broken, OWN, "{from}");
+        let error = Gsdml::parse(broken.as_bytes()).unwrap_err();
+        assert!(error.problem.contains(problem), "{from}: {error}");
+        assert_eq!(error.element, element, "{from}: {error}");
+        assert!(error.line.abs_diff(line) <= 1, "{from}: {error}");
+    }
+    assert!(Gsdml::parse(b"").is_err());
+    let bomb = "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>";
+    assert!(Gsdml::parse(bomb.as_bytes()).unwrap_err().problem.contains("no XML"));
+}
+
+proptest! {
+    #[test]
+    fn damaged_files_are_read_without_a_panic(at in 0usize..3000, byte in any::<u8>(), cut in 0usize..4000) {
+        let mut bytes = OWN.as_bytes().to_vec();
+        if let Some(place) = bytes.get_mut(at) {
+            *place = byte;
+        }
+        bytes.truncate(cut);
+        if let Ok(gsdml) = Gsdml::parse(&bytes) {
+            for head in &gsdml.heads {
+                let _ = head.choose(48, 48).map(|chosen| (head.layout(&chosen), head.parameters(&chosen)));
+            }
+        }
+    }
+}

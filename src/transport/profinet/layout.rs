@@ -1,0 +1,353 @@
+//! Which modules a device has, and where the data of each is in cyclic frames.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::error::Misfit;
+use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, Offset};
+
+/// Shortest data of a frame.
+const SHORTEST: u16 = 40;
+/// Longest data of a frame.
+const LONGEST: u16 = 1440;
+/// Most submodules, which bounds what is sent.
+const MOST: usize = 64;
+
+/// A submodule with its data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Submodule {
+    /// Its slot.
+    pub slot: u16,
+    /// Its subslot.
+    pub subslot: u16,
+    /// The kind of the module in the slot.
+    pub module: u32,
+    /// Its own kind.
+    pub ident: u32,
+    /// Bytes that it sends.
+    pub input: u16,
+    /// Bytes that it takes.
+    pub output: u16,
+}
+
+/// The submodules of a device, by slot and subslot.
+///
+/// As text: `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, one after the other with commas between them, such as
+/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. Subslot and submodule are 1 unless they are given.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
+pub struct Layout(Vec<Submodule>);
+
+/// Which way data goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// From the device.
+    Input,
+    /// To the device.
+    Output,
+}
+
+/// Where things are in the frames of one direction.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FrameLayout {
+    /// Data, each followed by its provider's status: where, how many bytes, and where in the image.
+    pub objects: Vec<(Offset, u16)>,
+    /// The statuses of consumers.
+    pub consumers: Vec<Offset>,
+    /// Bytes in all, with filling.
+    pub length: u16,
+}
+
+impl Layout {
+    /// These submodules, in the order of their slots.
+    ///
+    /// # Errors
+    /// When two share a place, a slot has two kinds of modules, or the data does not fit a frame.
+    pub fn new(mut submodules: Vec<Submodule>) -> Result<Self, String> {
+        if submodules.is_empty() || submodules.len() > MOST {
+            return Err(format!("a layout has 1 to {MOST} submodules, not {}", submodules.len()));
+        }
+        submodules.sort_by_key(|submodule| (submodule.slot, submodule.subslot));
+        for pair in submodules.windows(2) {
+            let [one, two] = [pair[0], pair[1]];
+            if (one.slot, one.subslot) == (two.slot, two.subslot) {
+                return Err(format!("slot {}, subslot {:#x} is there twice", one.slot, one.subslot));
+            }
+            if one.slot == two.slot && one.module != two.module {
+                return Err(format!("slot {} has two modules, {:#x} and {:#x}", one.slot, one.module, two.module));
+            }
+        }
+        let layout = Self(submodules);
+        for direction in [Direction::Input, Direction::Output] {
+            if layout.place(direction).1 > usize::from(LONGEST) {
+                return Err(format!("the data does not fit a frame, which has {LONGEST} bytes"));
+            }
+        }
+        Ok(layout)
+    }
+
+    /// The usual one: a head without data, a module that sends 48 bytes in slot 1, one that takes 48 in slot 2.
+    pub fn two_modules(input: u32, output: u32) -> Self {
+        let head = |subslot, ident| Submodule { slot: 0, subslot, module: 1, ident, input: 0, output: 0 };
+        Self(vec![
+            head(1, 1),
+            head(0x8000, 0x8000),
+            head(0x8001, 0x8001),
+            Submodule { slot: 1, subslot: 1, module: input, ident: 1, input: 48, output: 0 },
+            Submodule { slot: 2, subslot: 1, module: output, ident: 1, input: 0, output: 48 },
+        ])
+    }
+
+    /// The submodules.
+    pub fn submodules(&self) -> &[Submodule] {
+        &self.0
+    }
+
+    /// Bytes of the image in this direction.
+    pub fn size(&self, direction: Direction) -> usize {
+        self.0.iter().map(|submodule| usize::from(submodule.length(direction))).sum()
+    }
+
+    /// Where things are in the frames of this direction: all data with its status, then all statuses of consumers.
+    pub fn frame(&self, direction: Direction) -> FrameLayout {
+        let (mut frame, end) = self.place(direction);
+        frame.length = u16::try_from(end).unwrap_or(LONGEST).max(SHORTEST);
+        frame
+    }
+
+    fn place(&self, direction: Direction) -> (FrameLayout, usize) {
+        let mut frame = FrameLayout::default();
+        let mut at = 0;
+        // What does not fit is refused when a layout is made.
+        let offset = |submodule: &Submodule, at: usize| Offset {
+            slot: submodule.slot,
+            subslot: submodule.subslot,
+            offset: u16::try_from(at).unwrap_or(u16::MAX),
+        };
+        for submodule in self.0.iter().filter(|submodule| submodule.provides(direction)) {
+            let length = submodule.length(direction);
+            frame.objects.push((offset(submodule, at), length));
+            at += usize::from(length) + 1;
+        }
+        for submodule in self.0.iter().filter(|submodule| submodule.provides(direction.other())) {
+            frame.consumers.push(offset(submodule, at));
+            at += 1;
+        }
+        (frame, at)
+    }
+
+    /// The modules as Connect names them, one block for each slot.
+    pub fn expected(&self) -> Vec<ExpectedModule> {
+        let mut modules: Vec<ExpectedModule> = Vec::new();
+        for submodule in &self.0 {
+            if modules.last().is_none_or(|module| module.slot != submodule.slot) {
+                let (slot, ident) = (submodule.slot, submodule.module);
+                modules.push(ExpectedModule { api: 0, slot, ident, submodules: Vec::new() });
+            }
+            if let Some(module) = modules.last_mut() {
+                module.submodules.push(submodule.expected());
+            }
+        }
+        modules
+    }
+
+    /// What of a device's answer is not as it is here. Modules that do nothing here may differ.
+    pub fn misfits(&self, modules: &[ModuleDiff]) -> Vec<Misfit> {
+        let mut misfits = Vec::new();
+        for module in modules {
+            let expected = self.0.iter().find(|submodule| submodule.slot == module.slot);
+            let expected = expected.map(|submodule| submodule.module);
+            // A substitute does what is asked of it, and a proper module may have submodules that do not fit.
+            if module.state < 2 {
+                let found = (module.state == 1).then_some(module.ident);
+                misfits.push(Misfit { slot: module.slot, subslot: None, found, expected });
+                continue;
+            }
+            for submodule in module.submodules.iter().filter(|submodule| !submodule.is_usable()) {
+                let expected = self.find(module.slot, submodule.subslot).map(|expected| expected.ident);
+                let (slot, subslot) = (module.slot, Some(submodule.subslot));
+                let found = (!submodule.is_missing()).then_some(submodule.ident);
+                misfits.push(Misfit { slot, subslot, found, expected });
+            }
+        }
+        misfits
+    }
+
+    /// The submodule at a place.
+    pub fn find(&self, slot: u16, subslot: u16) -> Option<&Submodule> {
+        self.0.iter().find(|submodule| (submodule.slot, submodule.subslot) == (slot, subslot))
+    }
+}
+
+impl Direction {
+    /// The other one.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Input => Self::Output,
+            Self::Output => Self::Input,
+        }
+    }
+}
+
+impl Submodule {
+    /// Bytes of its data.
+    pub const fn length(&self, direction: Direction) -> u16 {
+        match direction {
+            Direction::Input => self.input,
+            Direction::Output => self.output,
+        }
+    }
+
+    /// Whether its data, or its status where it has no data, is in frames of this direction.
+    pub const fn provides(&self, direction: Direction) -> bool {
+        match direction {
+            Direction::Input => self.input > 0 || self.output == 0,
+            Direction::Output => self.output > 0,
+        }
+    }
+
+    fn expected(&self) -> ExpectedSubmodule {
+        let describe = |direction, length| DataDescription { direction, length, consumer: 1, provider: 1 };
+        let (properties, data) = match (self.input > 0, self.output > 0) {
+            (false, false) => (0, vec![describe(1, 0)]),
+            (true, false) => (1, vec![describe(1, self.input)]),
+            (false, true) => (2, vec![describe(2, self.output)]),
+            (true, true) => (3, vec![describe(1, self.input), describe(2, self.output)]),
+        };
+        ExpectedSubmodule { subslot: self.subslot, ident: self.ident, properties, data }
+    }
+}
+
+/// A number as people write it, decimal or with `0x`.
+fn number(text: &str) -> Option<u32> {
+    match text.strip_prefix("0x") {
+        Some(digits) if !digits.starts_with('+') => u32::from_str_radix(digits, 16).ok(),
+        None if text.starts_with(|c: char| c.is_ascii_digit()) => text.parse().ok(),
+        _ => None,
+    }
+}
+
+impl FromStr for Layout {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::new(text.split(',').map(str::parse).collect::<Result<_, _>>()?)
+    }
+}
+
+impl FromStr for Submodule {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "'{text}' is not a submodule such as 1:0x101:i48 (SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES])"
+            )
+        };
+        let small = |text: &str| number(text).and_then(|number| u16::try_from(number).ok());
+        let mut parts = text.split(':');
+        let place = parts.next().unwrap_or_default();
+        let kind = parts.next().ok_or_else(wrong)?;
+        let data = parts.next().unwrap_or_default();
+        if parts.next().is_some() {
+            return Err(wrong());
+        }
+        let (slot, subslot) = place.split_once('.').unwrap_or((place, "1"));
+        let (module, ident) = kind.split_once('/').unwrap_or((kind, "1"));
+        let (input, output) = match data.split_once('o') {
+            Some((input, output)) => (input, Some(output)),
+            None => (data, None),
+        };
+        let input = match input.strip_prefix('i') {
+            Some(bytes) => Some(bytes),
+            None if input.is_empty() => None,
+            None => return Err(wrong()),
+        };
+        let bytes = |text: Option<&str>| match text {
+            None => Ok(0),
+            Some(text) => small(text).filter(|bytes| *bytes <= LONGEST).ok_or_else(wrong),
+        };
+        Ok(Self {
+            slot: small(slot).ok_or_else(wrong)?,
+            subslot: small(subslot).ok_or_else(wrong)?,
+            module: number(module).ok_or_else(wrong)?,
+            ident: number(ident).ok_or_else(wrong)?,
+            input: bytes(input)?,
+            output: bytes(output)?,
+        })
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, submodule) in self.0.iter().enumerate() {
+            write!(f, "{}{submodule}", if at == 0 { "" } else { "," })?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Submodule {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { slot, subslot, module, ident, input, output } = self;
+        write!(f, "{slot}")?;
+        if *subslot != 1 {
+            write!(f, ".{subslot:#x}")?;
+        }
+        write!(f, ":{module:#x}")?;
+        if *ident != 1 {
+            write!(f, "/{ident:#x}")?;
+        }
+        match (input, output) {
+            (0, 0) => Ok(()),
+            (_, 0) => write!(f, ":i{input}"),
+            (0, _) => write!(f, ":o{output}"),
+            _ => write!(f, ":i{input}o{output}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// notes, worked example: the places in both blocks of cyclic data.
+    #[test]
+    fn places_in_frames_are_those_of_the_example() {
+        let layout = Layout::two_modules(0x101, 0x102);
+        let places = |offsets: &[Offset]| offsets.iter().map(|at| (at.slot, at.subslot, at.offset)).collect::<Vec<_>>();
+        let objects = |frame: &FrameLayout| places(&frame.objects.iter().map(|(at, _)| *at).collect::<Vec<_>>());
+        let input = layout.frame(Direction::Input);
+        assert_eq!(objects(&input), [(0, 1, 0), (0, 0x8000, 1), (0, 0x8001, 2), (1, 1, 3)]);
+        assert_eq!((places(&input.consumers), input.length), (vec![(2, 1, 0x34)], 0x35));
+        let output = layout.frame(Direction::Output);
+        assert_eq!(objects(&output), [(2, 1, 0)]);
+        let consumers = vec![(0, 1, 0x31), (0, 0x8000, 0x32), (0, 0x8001, 0x33), (1, 1, 0x34)];
+        assert_eq!((places(&output.consumers), output.length), (consumers, 0x35));
+        assert_eq!((layout.size(Direction::Input), layout.size(Direction::Output)), (48, 48));
+        assert_eq!(layout.expected().iter().map(|module| module.submodules.len()).collect::<Vec<_>>(), [3, 1, 1]);
+    }
+
+    #[test]
+    fn layouts_read_as_they_print() {
+        let text = "0:0x1,0.0x8000:0x1/0x8000,1:0x101:i48,2:0x102/0x2:o48,3:0x103:i2o4";
+        let layout: Layout = text.parse().unwrap();
+        assert_eq!(layout.to_string(), text);
+        assert_eq!("2:1:o1,1:0x7:i1".parse::<Layout>().unwrap().to_string(), "1:0x7:i1,2:0x1:o1");
+        assert_eq!(layout.frame(Direction::Input).length, 54 + 1 + 1);
+    }
+
+    #[test]
+    fn layouts_that_cannot_be_are_refused() {
+        for text in ["", "1", "1:", "x:1", "1:1:48", "1:1:i", "1:1:i48:o2", "1:1:i9999", "70000:1", "1:0x+1", "1:-1"] {
+            assert!(text.parse::<Layout>().is_err(), "{text}");
+        }
+        for (text, reason) in [
+            ("1:1:i1,1:1:o1", "is there twice"),
+            ("1:1:i1,1.2:2:o1", "two modules"),
+            ("1:1:i1400,2:1:i41", "does not fit"),
+        ] {
+            assert!(text.parse::<Layout>().unwrap_err().contains(reason), "{text}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The seam for fieldbuses over PROFINET: a connection as the IO controller of a device.
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::controller::view::State;
+use super::error::ProfinetError;
+use super::layout::Direction;
+use super::network::{Connection, Network};
+use super::settings::Settings;
+use crate::image::tap::Tap;
+use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+
+/// What raw Ethernet needs.
+const PRIVILEGE: &str = "run `sudo setcap cap_net_raw+ep $(command -v armctl)`, or run armctl as root";
+/// What of a URL a device may not like.
+const MODULES: &[&str] = &["layout", "gsdml"];
+const TIMES: &[&str] = &["cycle", "watchdog"];
+
+/// A connection as the IO controller of a device.
+#[derive(Debug)]
+pub struct Link {
+    connection: Connection,
+    sizes: Sizes,
+    settings: Settings,
+    /// The opening that is known of.
+    generation: u32,
+    /// The change that has not left yet.
+    pending: Option<u64>,
+}
+
+impl Link {
+    /// Opens it over an interface. All of a process share the sockets of an interface.
+    pub async fn open(interface: &str, settings: Settings, tap: Tap) -> Result<Self, ProfinetError> {
+        let size = |direction| settings.layout.size(direction);
+        let sizes = Sizes { output: size(Direction::Output), input: size(Direction::Input) };
+        let connection = Network::shared(interface)?.open(settings.clone(), tap).await?;
+        let generation = connection.view().generation;
+        Ok(Self { connection, sizes, settings, generation, pending: None })
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            let view = self.connection.view();
+            let is_open = view.state == State::Open;
+            if known.is_up && !(is_open && view.generation == self.generation) {
+                self.pending = None;
+                let text = view.trouble.as_ref().map_or("it was opened anew".to_owned(), ToString::to_string);
+                let outputs = match view.trouble {
+                    // It hears the resting image instead.
+                    Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
+                    _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
+                };
+                return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs });
+            }
+            if !known.is_up && is_open {
+                self.generation = view.generation;
+                return Event::Reopened;
+            }
+            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
+                self.pending = None;
+                return Event::Sent;
+            }
+            if let Some(input) = view.input.filter(|input| known.is_news(&input.image)) {
+                return Event::Image(input.image);
+            }
+            self.connection.changed().await;
+        }
+    }
+}
+
+impl ImageConnection for Link {
+    fn sizes(&self) -> Sizes {
+        self.sizes
+    }
+
+    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+        // What was to be seen before is replaced, whatever becomes of this.
+        self.pending = None;
+        match self.connection.set_image(self.generation, image) {
+            Ok(change) => {
+                self.pending = Some(change);
+                Ok(())
+            }
+            // The loss is told by `next`.
+            Err(ProfinetError::Outdated | ProfinetError::Ended) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        let counted = self.connection.view().statistics;
+        let odd = vec![
+            (counted.stale, "late or doubled"),
+            (counted.skipped, "not sent in time"),
+            (counted.alarms, "alarms"),
+            (counted.losses, "losses"),
+        ];
+        let intervals = Some((self.settings.cycle, self.settings.cycle));
+        Some(Traffic { sent: counted.sent, received: counted.received, intervals, odd })
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    }
+}
+
+impl From<ProfinetError> for LinkError {
+    fn from(error: ProfinetError) -> Self {
+        use ProfinetError as E;
+        let code = error.status().map(|status| format!("{:#010x}", status.0));
+        let cause = Cause { code, ..Cause::new(&error) };
+        match error {
+            E::NotFound { .. } => Self::Silent(cause.advice(
+                "check the name with `armctl robots discover`, the cable, and that the unit of the controller is on",
+            )),
+            E::Duplicate { .. } => Self::Silent(cause.advice("give one of the two another name")),
+            E::NoAddress { .. } => {
+                Self::Silent(cause.advice("give it one where names are set, or name it with ip= in the target"))
+            }
+            E::AddressConflict { .. } => Self::Silent(cause.advice("give one of the two another address")),
+            E::OtherNetwork { .. } => Self::Settings(
+                cause.advice("give this machine an address in the device's network, or the device one with ip="),
+            ),
+            E::Dcp { .. } => Self::Refused(cause.options(&["ip"])),
+            E::NoAnswer { .. } => Self::Silent(
+                cause
+                    .advice("check that no firewall drops UDP port 34964, and that no other controller has the device"),
+            ),
+            E::Refused { status, .. } if status.is_owned() => Self::Owned(cause),
+            E::Refused { .. } => Self::Refused(cause.options(MODULES)),
+            E::Rejected { .. } => Self::Refused(cause),
+            E::Malformed { .. } | E::Senseless { .. } => {
+                Self::Malformed(cause.advice("check that an IO device of PROFINET has this name"))
+            }
+            E::Modules(_) => Self::Size(cause.options(MODULES)),
+            E::NeverReady { .. } => Self::Refused(cause.options(MODULES).advice(
+                "a device that takes everything and is never ready mostly has other data lengths, or wants parameters",
+            )),
+            E::NoData { .. } | E::Unusable(_) => {
+                Self::Refused(cause.advice("check the state of the controller behind the device"))
+            }
+            E::Silent { .. } | E::Aborted(_) | E::Plugged { .. } | E::AlarmUnanswered => {
+                Self::Silent(cause.options(TIMES))
+            }
+            E::Impossible(_) | E::NoInterface { .. } => Self::Settings(cause),
+            E::Privilege => Self::Local(cause.advice(PRIVILEGE)),
+            E::Interface { .. } => Self::Local(cause.advice("check the cable and the settings of the interface")),
+            E::PortTaken { .. } => {
+                Self::Silent(cause.advice("close the other program: `ss -lunp sport = 34964` shows which it is"))
+            }
+            E::Outdated | E::Ended | E::Local { .. } => {
+                Self::Local(cause.advice("check the network settings of this machine"))
+            }
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! PROFINET IO: images to and from a device, cyclically in Ethernet frames, and calls to it over UDP.
+//!
+//! Knows bytes of submodules and no robot.
+
+use std::time::Duration;
+
+#[cfg(target_os = "linux")]
+pub mod commission;
+pub mod controller;
+pub mod device;
+pub mod error;
+pub mod gsdml;
+#[cfg(target_os = "linux")]
+pub mod interface;
+pub mod layout;
+#[cfg(target_os = "linux")]
+pub mod link;
+#[cfg(target_os = "linux")]
+pub mod network;
+pub mod settings;
+#[cfg(test)]
+mod tests;
+pub mod wire;
+
+/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+pub type Now = Duration;

@@ -1,0 +1,326 @@
+//! Connections to any number of devices on one interface: one raw socket, one UDP socket, one thread.
+//!
+//! Frames go out on time whatever the rest of the program does, so they have a thread of their own: a prompt that waits
+//! for a person must not make a robot stop. It waits for sockets and clock at once, to a fraction of a millisecond.
+
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
+use std::os::unix::net::UnixStream;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use socket2::Socket;
+use tokio::sync::watch;
+
+use super::Now;
+use super::controller::numbers::Numbers;
+use super::controller::view::{State, View};
+use super::controller::{Action, Controller, Here};
+use super::error::ProfinetError;
+use super::interface::Interface;
+use super::settings::Settings;
+use super::wire::alarm::Notification;
+use super::wire::rpc;
+use crate::image::tap::{Passed, Tap};
+
+/// Frames or datagrams taken at once before the clock is looked at.
+const AT_ONCE: usize = 64;
+/// Room for the longest datagram.
+const BUFFER: usize = 65_536;
+
+/// Holds connections over one interface. It is cheap to clone; its thread ends with the last clone and the last
+/// connection.
+#[derive(Debug, Clone)]
+pub struct Network {
+    owner: Arc<Owner>,
+}
+
+#[derive(Debug)]
+struct Owner {
+    name: String,
+    inner: Arc<Inner>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Inner {
+    start: Instant,
+    here: Here,
+    numbers: Arc<Numbers>,
+    raw: Socket,
+    udp: UdpSocket,
+    /// A byte in it wakes the thread.
+    bell: UnixStream,
+    slots: Mutex<BTreeMap<u64, Slot>>,
+    last: AtomicU64,
+    is_over: AtomicBool,
+}
+
+/// A connection and what belongs to it.
+#[derive(Debug)]
+struct Slot {
+    core: Controller,
+    tap: Tap,
+    view: watch::Sender<View>,
+}
+
+impl Network {
+    /// The one of this process on an interface, which is started when there is none.
+    ///
+    /// # Errors
+    /// When there is no such interface, it cannot be used, or its sockets cannot be had.
+    pub fn shared(interface: &str) -> Result<Self, ProfinetError> {
+        static SHARED: Mutex<Vec<Weak<Owner>>> = Mutex::new(Vec::new());
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        shared.retain(|owner| owner.strong_count() > 0);
+        if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(|owner| owner.name == interface) {
+            return Ok(Self { owner });
+        }
+        let network = Self::start(&Interface::find(interface)?)?;
+        shared.push(Arc::downgrade(&network.owner));
+        Ok(network)
+    }
+
+    fn start(interface: &Interface) -> Result<Self, ProfinetError> {
+        let raw = interface.raw_socket()?;
+        interface.check()?;
+        let ip = interface.address()?;
+        let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);
+        let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
+            ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
+            _ => failed(&error),
+        })?;
+        udp.set_nonblocking(true).map_err(|error| failed(&error))?;
+        let (bell, heard) = UnixStream::pair().map_err(|error| failed(&error))?;
+        for end in [&bell, &heard] {
+            end.set_nonblocking(true).map_err(|error| failed(&error))?;
+        }
+        let inner = Arc::new(Inner {
+            start: Instant::now(),
+            here: Here { mac: interface.mac, ip },
+            numbers: Arc::new(Numbers::random()),
+            raw,
+            udp,
+            bell,
+            slots: Mutex::default(),
+            last: AtomicU64::new(0),
+            is_over: AtomicBool::new(false),
+        });
+        let runs = Arc::clone(&inner);
+        let thread = std::thread::Builder::new().name("profinet".to_owned());
+        let thread = thread.spawn(move || runs.run(heard)).map_err(|error| failed(&error))?;
+        Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
+    }
+
+    /// Opens a connection, and holds it until it is closed or dropped.
+    ///
+    /// # Errors
+    /// When the device is not there, does not answer, or refuses. Later losses are not errors but states of the view.
+    pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
+        let inner = &self.owner.inner;
+        let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
+        let (view, views) = watch::channel(core.view());
+        let id = inner.last.fetch_add(1, Ordering::Relaxed);
+        inner.slots().insert(id, Slot { core, tap, view });
+        inner.ring();
+        let mut connection = Connection { owner: Arc::clone(&self.owner), id, views };
+        let view = connection.until(|view| view.state == State::Open).await;
+        match (view.state, view.trouble) {
+            (State::Closed, Some(error)) => Err(error),
+            (State::Closed, None) => Err(ProfinetError::Ended),
+            _ => Ok(connection),
+        }
+    }
+}
+
+impl Drop for Owner {
+    fn drop(&mut self) {
+        self.inner.is_over.store(true, Ordering::SeqCst);
+        self.inner.ring();
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so already.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+#[derive(Debug)]
+pub struct Connection {
+    owner: Arc<Owner>,
+    id: u64,
+    views: watch::Receiver<View>,
+}
+
+impl Connection {
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        self.views.borrow().clone()
+    }
+
+    /// Waits for something new. After the view that says that the connection is closed nothing comes any more.
+    pub async fn changed(&mut self) {
+        // The other end goes with the slot, when all has ended; then nothing changes any more.
+        if self.views.changed().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+
+    /// Waits until the view is so, or the connection is closed.
+    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
+        loop {
+            let view = self.views.borrow_and_update().clone();
+            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
+                return self.view();
+            }
+        }
+    }
+
+    /// Sends this image from the next cycle on; see [`Controller::set_image`].
+    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
+        self.with(|core, _| core.set_image(generation, image)).unwrap_or(Err(ProfinetError::Ended))
+    }
+
+    /// An alarm that came, each once.
+    pub fn take_alarm(&self) -> Option<Notification> {
+        self.with(|core, _| core.take_alarm()).flatten()
+    }
+
+    /// Ends it; frames go on until the device has answered the release. Says if it did not.
+    pub async fn close(mut self) -> Result<(), ProfinetError> {
+        let before = self.view().trouble;
+        self.with(Controller::close);
+        self.owner.inner.ring();
+        let view = self.until(|view| view.state == State::Closed).await;
+        view.trouble.filter(|error| before.as_ref() != Some(error)).map_or(Ok(()), Err)
+    }
+
+    fn with<T>(&self, change: impl FnOnce(&mut Controller, Now) -> T) -> Option<T> {
+        let inner = &self.owner.inner;
+        let mut slots = inner.slots();
+        let now = inner.now();
+        slots.get_mut(&self.id).map(|slot| change(&mut slot.core, now))
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        self.with(Controller::close);
+        self.owner.inner.ring();
+    }
+}
+
+impl Inner {
+    fn now(&self) -> Now {
+        self.start.elapsed()
+    }
+
+    fn slots(&self) -> MutexGuard<'_, BTreeMap<u64, Slot>> {
+        self.slots.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Wakes the thread.
+    fn ring(&self) {
+        // Where the buffer is full it is awake.
+        let _ = (&self.bell).write(&[0]);
+    }
+
+    /// Does what is due, and waits for the next moment, frame or datagram, until all has ended.
+    fn run(&self, mut bell: UnixStream) {
+        let mut buffer = vec![0; BUFFER];
+        loop {
+            let next = self.turn();
+            let wait = match next {
+                None if self.is_over.load(Ordering::SeqCst) => return,
+                None => None,
+                Some(next) => Some(next.saturating_sub(self.now())),
+            };
+            let wait = wait.map(|wait| Timespec::try_from(wait).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
+            let mut sources = [
+                PollFd::new(&self.raw, PollFlags::IN),
+                PollFd::new(&self.udp, PollFlags::IN),
+                PollFd::new(&bell, PollFlags::IN),
+            ];
+            if poll(&mut sources, wait.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
+                // Nothing else would slow it down.
+                std::thread::park_timeout(Duration::from_millis(1));
+            }
+            while bell.read(&mut buffer).is_ok_and(|read| read > 0) {}
+            self.hear(&mut buffer);
+        }
+    }
+
+    /// Does what is due by the clock, and says when to do so again.
+    fn turn(&self) -> Option<Now> {
+        let mut slots = self.slots();
+        let now = self.now();
+        for slot in slots.values_mut() {
+            self.follow(slot, now);
+        }
+        slots.retain(|_, slot| !slot.core.is_finished());
+        slots.values().filter_map(|slot| slot.core.wake()).min()
+    }
+
+    /// Does what a connection wants done, and shows what came of it.
+    fn follow(&self, slot: &mut Slot, now: Now) {
+        while let Some(action) = slot.core.poll(now) {
+            match action {
+                Action::Frame(bytes) => {
+                    slot.tap.pass(|| Passed::Frame(bytes.clone()));
+                    if let Err(error) = (&self.raw).write(&bytes) {
+                        slot.core.failed(ProfinetError::local("sending a frame", &error));
+                    }
+                }
+                Action::Datagram(to, bytes) => {
+                    let from = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
+                    let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.clone() };
+                    slot.tap.pass(passed);
+                    if let Err(error) = self.udp.send_to(&bytes, to) {
+                        slot.core.failed(ProfinetError::local("sending a call", &error));
+                    }
+                }
+            }
+        }
+        if slot.core.take_changed() {
+            slot.view.send_replace(slot.core.view());
+        }
+    }
+
+    /// Takes what came, as far as it came at once.
+    fn hear(&self, buffer: &mut [u8]) {
+        for _ in 0..AT_ONCE {
+            let Ok(length) = (&self.raw).read(buffer) else { break };
+            let bytes = &buffer[..length];
+            let now = self.now();
+            for slot in self.slots().values_mut() {
+                if slot.core.concerns(bytes) {
+                    slot.tap.pass(|| Passed::Frame(bytes.to_vec()));
+                }
+                slot.core.frame(now, bytes);
+            }
+        }
+        for _ in 0..AT_ONCE {
+            let (length, from) = match self.udp.recv_from(buffer) {
+                Ok((length, SocketAddr::V4(from))) => (length, from),
+                // What a host says of an earlier call (port unreachable) is nothing to the others.
+                Ok(_) => continue,
+                Err(error) if error.kind() == ErrorKind::ConnectionRefused => continue,
+                Err(_) => break,
+            };
+            let bytes = &buffer[..length];
+            let now = self.now();
+            let to = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
+            for slot in self.slots().values_mut() {
+                if slot.core.address() == Some(*from.ip()) {
+                    let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.to_vec() };
+                    slot.tap.pass(passed);
+                }
+                slot.core.datagram(now, from, bytes);
+            }
+        }
+    }
+}

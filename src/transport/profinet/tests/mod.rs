@@ -1,0 +1,6 @@
+//! The controller against the device, in virtual time.
+
+mod faults;
+mod opening;
+mod tshark;
+mod world;

@@ -1,0 +1,317 @@
+//! How a connection comes about, what it sends, how it ends.
+
+use super::super::controller::view::State;
+use super::super::device::{Device, Event, Fault};
+use super::super::error::{Misfit, ProfinetError, Unusable};
+use super::super::layout::Direction;
+use super::super::settings::{Settings, Startup, Station};
+use super::super::wire::Mac;
+use super::super::wire::connect::Request;
+use super::super::wire::cyclic::{Cyclic, RUNNING};
+use super::super::wire::dcp::Setting;
+use super::super::wire::frame::{Frame, TAG_HIGH};
+use super::super::wire::record::Parameter;
+use super::super::wire::rpc::{Call, Datagram, operation};
+use super::super::wire::status::Status;
+use super::world::{ADDRESS, HERE, MS, Mirror, THERE, World, resting, settings, setup, suite, turned};
+
+fn image(mark: u8) -> Vec<u8> {
+    (0..48).map(|at| mark.wrapping_add(at)).collect()
+}
+
+/// What cyclic frames of the controller carry, with their times.
+fn outputs(world: &World) -> Vec<(std::time::Duration, Vec<u8>)> {
+    let is_data = |bytes: &[u8]| {
+        let frame = Frame::parse(bytes).unwrap();
+        frame.tag == Some(TAG_HIGH) && frame.id < 0xC000
+    };
+    let payload = |bytes: &[u8]| Frame::parse(bytes).unwrap().payload.to_vec();
+    world.frames.iter().filter(|(_, bytes)| is_data(bytes)).map(|(at, bytes)| (*at, payload(bytes))).collect()
+}
+
+#[test]
+fn images_travel_both_ways() {
+    let mut world = World::open(setup(), settings(), "");
+    let generation = world.view().generation;
+    let change = world.controller.set_image(generation, &image(3)).unwrap();
+    assert!(world.view().sent < change);
+    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(3))));
+    assert_eq!((world.view().sent, generation), (change, 1));
+    let device = world.view().device.unwrap();
+    assert_eq!((device.mac, device.address, device.id), (THERE, ADDRESS, (0xFFFF, 1)));
+}
+
+#[test]
+fn the_first_frame_is_the_resting_image_and_good() {
+    let world = World::open(setup(), settings(), "");
+    let sent = outputs(&world);
+    let first = Cyclic::parse(&sent[0].1, 53).unwrap();
+    assert_eq!((&first.data[..48], first.status), (&resting()[..], RUNNING));
+    assert!(first.data[48..].iter().all(|status| *status == 0x80));
+    assert_eq!(world.device.application().history, [Some(resting())], "the device never saw anything else");
+}
+
+#[test]
+fn frames_keep_their_time_and_counters_go_round() {
+    let mut world = World::open(setup(), settings(), "delay=0..3ms,seed=4");
+    world.run(60_000 * MS);
+    let sent = outputs(&world);
+    let (first, counter) = (sent[0].0, Cyclic::parse(&sent[0].1, 53).unwrap().counter);
+    for (index, (at, payload)) in (0u32..).zip(&sent) {
+        assert_eq!(*at, first + 16 * MS * index);
+        let step = u16::try_from((index * 512) & 0xFFFF).unwrap();
+        assert_eq!(Cyclic::parse(payload, 53).unwrap().counter, counter.wrapping_add(step));
+    }
+    assert!(sent.len() > 3700, "the counter goes round every 2 s");
+    let view = world.view();
+    assert_eq!((view.generation, view.statistics.losses, view.statistics.stale), (1, 0, 0));
+}
+
+#[test]
+fn nothing_is_called_more_often_than_it_must_be() {
+    let world = World::open(setup(), settings(), "");
+    for (operation, count) in [(operation::CONNECT, 1), (operation::WRITE, 0), (operation::CONTROL, 1)] {
+        assert_eq!(world.calls(operation).len(), count, "operation {operation}");
+    }
+}
+
+#[test]
+fn connect_is_never_sent_twice_and_what_it_began_is_released() {
+    let mut world = World::new(setup(), settings(), "");
+    world.device.set_fault(Some(Fault::Mute));
+    let view = world.run_out();
+    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Connect", .. })), "{view:?}");
+    assert_eq!((world.calls(operation::CONNECT).len(), world.calls(operation::RELEASE).len()), (1, 1));
+}
+
+#[test]
+fn every_connection_has_numbers_of_its_own() {
+    let mut world = World::open(setup(), settings(), "");
+    for reason in [0x1A, 0x05, 0x20] {
+        world.device.abort(world.now, reason);
+        world.until(1000 * MS, |world| world.view().state != State::Open);
+        assert_eq!(world.view().trouble, Some(ProfinetError::Aborted(Status::abort(reason))));
+        world.until_open();
+    }
+    let connects = world.calls(operation::CONNECT);
+    let mut seen: Vec<_> = connects
+        .iter()
+        .map(|bytes| {
+            let datagram = Datagram::parse(bytes).unwrap();
+            let call = Call::parse(datagram.body, datagram.header.order).unwrap();
+            let requests = Request::parse_all(call.blocks).unwrap();
+            let Request::Ar(ar) = &requests[0] else { panic!("{requests:?}") };
+            (ar.session_key, ar.uuid.0, datagram.header.activity.0)
+        })
+        .collect();
+    assert_eq!(seen.len(), 4);
+    for pair in seen.windows(2) {
+        assert_eq!(pair[1].0, pair[0].0.wrapping_add(1), "the key counts");
+    }
+    let all = seen.len();
+    seen.sort_unstable_by_key(|(_, uuid, activity)| (*uuid, *activity));
+    seen.dedup_by(|one, two| one.1 == two.1 || one.2 == two.2);
+    assert_eq!(seen.len(), all);
+    assert_eq!(world.view().generation, 4);
+}
+
+#[test]
+fn parameters_are_written_before_the_start() {
+    let parameter = |index| Parameter { slot: 1, subslot: 1, index, data: vec![1, 2, 3] };
+    for parameters in [vec![parameter(1)], vec![parameter(1), parameter(2)]] {
+        let world = World::open(setup(), Settings { parameters: parameters.clone(), ..settings() }, "");
+        let written: Vec<_> = world
+            .device
+            .application()
+            .events
+            .iter()
+            .filter_map(|event| match event {
+                Event::Written(parameter) => Some(parameter.clone()),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(written, parameters);
+        assert_eq!(world.calls(operation::WRITE).len(), 1);
+    }
+    let wrong = Parameter { slot: 9, ..parameter(1) };
+    let view = World::new(setup(), Settings { parameters: vec![wrong], ..settings() }, "").run_out();
+    assert_eq!(view.trouble, Some(ProfinetError::Refused { what: "Write", status: Status(0xDF80_B200) }));
+}
+
+#[test]
+fn a_legacy_start_uses_the_class_and_the_ids_of_its_time() {
+    let world = World::open(setup(), Settings { startup: Startup::Legacy, ..settings() }, "");
+    let data: Vec<_> = world
+        .frames
+        .iter()
+        .map(|(_, bytes)| Frame::parse(bytes).unwrap())
+        .filter(|frame| frame.tag == Some(TAG_HIGH))
+        .collect();
+    assert!(data.iter().all(|frame| (0xC000..=0xF7FF).contains(&frame.id)) && data.len() > 1);
+}
+
+#[test]
+fn a_station_is_found_by_its_card() {
+    let by_card = Settings { station: Station::Mac(THERE), ..settings() };
+    World::open(setup(), by_card.clone(), "");
+    let other = Settings { station: Station::Mac(Mac([2, 0, 0, 0, 0, 9])), ..by_card };
+    let view = World::new(setup(), other, "").run_out();
+    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
+}
+
+#[test]
+fn a_name_that_two_have_or_none_is_told() {
+    let mut world = World::new(setup(), settings(), "");
+    let mac = Mac([2, 0, 0, 0, 0, 3]);
+    world.twin = Some(Device::new(super::super::device::Setup { mac, ..setup() }, Mirror::default()));
+    let view = world.run_out();
+    let Some(ProfinetError::Duplicate { cards, .. }) = view.trouble else { panic!("{view:?}") };
+    let mut cards = [cards.0, cards.1];
+    cards.sort();
+    assert_eq!(cards, [THERE, mac]);
+    assert!(world.calls.is_empty(), "nobody was called");
+    let nobody = super::super::device::Setup { name: "other".to_owned(), ..setup() };
+    let mut world = World::new(nobody, settings(), "");
+    let view = world.run_out();
+    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
+    assert_eq!(world.frames.len(), 3, "it was looked for three times");
+}
+
+#[test]
+fn an_address_is_given_only_where_that_is_asked_for() {
+    let bare = super::super::device::Setup { ip: None, ..setup() };
+    let mut world = World::new(bare.clone(), settings(), "");
+    assert!(matches!(world.run_out().trouble, Some(ProfinetError::NoAddress { .. })));
+    assert!(world.device.application().events.is_empty());
+
+    let given = Settings { ip: Some(suite([192, 168, 78, 2])), ..settings() };
+    let world = World::open(bare.clone(), given.clone(), "");
+    let events = &world.device.application().events;
+    assert_eq!(events[0], Event::Addressed(suite([192, 168, 78, 2]), false), "until it is switched off");
+
+    let world = World::open(setup(), given.clone(), "");
+    assert!(matches!(world.device.application().events[0], Event::Connected(_)), "it has it already");
+
+    let mut world = World::new(bare.clone(), given.clone(), "");
+    world.device.set_fault(Some(Fault::KeepsAddress));
+    assert_eq!(world.run_out().trouble, Some(ProfinetError::Dcp { what: "DCP Set IP", error: 5 }));
+
+    let elsewhere = Settings { ip: Some(suite([10, 0, 0, 2])), ..settings() };
+    let mut world = World::new(bare, elsewhere, "");
+    assert!(matches!(world.run_out().trouble, Some(ProfinetError::OtherNetwork { .. })));
+    assert!(world.device.application().events.is_empty());
+
+    let far = super::super::device::Setup { ip: Some(suite([10, 0, 0, 2])), ..setup() };
+    let view = World::new(far, settings(), "").run_out();
+    let Some(ProfinetError::OtherNetwork { device, here, .. }) = view.trouble else { panic!("{view:?}") };
+    assert_eq!((device.octets(), here), ([10, 0, 0, 2], HERE.ip.address));
+}
+
+#[test]
+fn closing_releases_while_frames_go_on() {
+    let mut world = World::open(setup(), settings(), "delay=5ms");
+    let generation = world.view().generation;
+    world.controller.set_image(generation, &image(9)).unwrap();
+    world.run(100 * MS);
+    world.controller.close(world.now);
+    let before = outputs(&world).len();
+    let view = world.run_out();
+    assert_eq!(view.trouble, None);
+    assert!(matches!(world.device.application().events.last(), Some(Event::Ended(None))));
+    assert_eq!(world.calls(operation::RELEASE).len(), 1);
+    world.run(1000 * MS);
+    let after = outputs(&world);
+    assert!(after.len() <= before + 2, "silence after the answer");
+    assert!(matches!(world.controller.set_image(generation, &image(1)), Err(ProfinetError::Ended)));
+}
+
+#[test]
+fn a_release_that_nobody_answers_is_told() {
+    let mut world = World::open(setup(), settings(), "");
+    world.device.set_fault(Some(Fault::Mute));
+    world.controller.close(world.now);
+    let view = world.run_out();
+    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Release", .. })), "{view:?}");
+    assert_eq!(world.calls(operation::RELEASE).len(), 3);
+}
+
+#[test]
+fn what_a_device_does_wrong_has_a_name() {
+    type Check = fn(&ProfinetError) -> bool;
+    let cases: [(Fault, Check); 10] = [
+        (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady { .. })),
+        (Fault::WrongModule, |why| {
+            let misfit = Misfit { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
+            *why == ProfinetError::Modules(vec![misfit])
+        }),
+        (Fault::Silent, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Missing, .. })),
+        (Fault::BadProvider, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Provider(1, 1), .. })),
+        (Fault::BadConsumer, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Consumer(2, 1), .. })),
+        (Fault::Stop, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Status(0x25, 0), .. })),
+        (Fault::Invalid, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Status(0x31, 0), .. })),
+        (Fault::Garbage, |why| {
+            matches!(why, ProfinetError::Refused { what: "Connect", .. } | ProfinetError::Malformed { .. })
+        }),
+        (Fault::Foreign, |why| matches!(why, ProfinetError::NoAnswer { what: "Connect", .. })),
+        (Fault::Owned, |why| matches!(why, ProfinetError::Refused { what: "Connect", status } if status.is_owned())),
+    ];
+    for (fault, check) in cases {
+        let mut world = World::new(setup(), settings(), "");
+        world.device.set_fault(Some(fault));
+        let view = world.run_out();
+        assert!(view.trouble.as_ref().is_some_and(check), "{fault:?}: {:?}", view.trouble);
+        assert_eq!((view.generation, view.input), (0, None), "{fault:?} never is an image");
+        assert!(world.shown.is_empty(), "{fault:?}");
+    }
+    let misfit = Misfit { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x99) };
+    assert_eq!(misfit.to_string(), "slot 1 holds module 0x40, the layout says 0x99");
+}
+
+#[test]
+fn the_connection_of_a_process_that_died_is_waited_for() {
+    let mut world = World::new(setup(), settings(), "");
+    world.device.set_fault(Some(Fault::Owned));
+    world.run(3000 * MS);
+    world.device.set_fault(None);
+    world.until_open();
+}
+
+#[test]
+fn other_layouts_are_carried_too() {
+    for text in ["0:1,1:2:i48o48", "0:1,0.0x8000:1/0x8000,1:2:i32,2:3:i16,3:4:o32,4:5:o16", "1:7:i1,2:8:o48"] {
+        let layout: super::super::layout::Layout = text.parse().unwrap();
+        let setup = super::super::device::Setup { layout: layout.clone(), ..setup() };
+        let mut world = World::new(setup, Settings { layout: layout.clone(), ..settings() }, "");
+        let size = layout.size(Direction::Input);
+        world.until(30_000 * MS, |world| {
+            world.view().input.is_some_and(|input| *input.image == turned(&resting())[..size])
+        });
+    }
+}
+
+#[test]
+fn words_are_swapped_on_the_wire_only() {
+    let mut world = World::open(setup(), Settings { swapped: 32, ..settings() }, "");
+    world.controller.set_image(1, &image(1)).unwrap();
+    world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(1))));
+    let there = world.device.application().image.clone().unwrap();
+    assert_eq!((&there[..4], &there[30..]), (&[2, 1, 4, 3][..], &[&[32, 31][..], &image(1)[32..]].concat()[..]));
+}
+
+#[test]
+fn a_name_is_not_set_while_a_controller_is_connected() {
+    let mut world = World::open(setup(), settings(), "");
+    let dcp = super::super::wire::dcp::Dcp::change(7, vec![super::super::wire::dcp::Block::set_name("other", true)]);
+    let payload = dcp.emit();
+    let frame = Frame { destination: THERE, source: HERE.mac, tag: None, id: 0xFEFD, payload: &payload };
+    world.device.frame(world.now, &frame.emit());
+    let answers: Vec<_> = std::iter::from_fn(|| world.device.poll(world.now)).collect();
+    let outcome = answers.iter().find_map(|action| match action {
+        super::super::controller::Action::Frame(bytes) => {
+            let frame = Frame::parse(bytes).unwrap();
+            (frame.id == 0xFEFD).then(|| super::super::wire::dcp::Dcp::parse(frame.payload).unwrap().outcomes())
+        }
+        super::super::controller::Action::Datagram(..) => None,
+    });
+    assert_eq!(outcome, Some(vec![(Setting::NAME, 6)]));
+}

@@ -1,0 +1,612 @@
+//! The blocks of Connect and of its answer.
+
+use super::block::{self, Block, BlockType};
+use super::frame::{ETHER_TYPE, TAG_HIGH, TAG_LOW};
+use super::{Mac, Reader, Uuid, WireError, Writer, count16, text};
+
+/// ARProperties of a connection that starts in advanced mode: active, with the controller as parameter server.
+pub const ADVANCED: u32 = 0x4000_0011;
+/// The same in legacy mode.
+pub const LEGACY: u32 = 0x0000_0011;
+/// The device is to choose the FrameID of what it is sent.
+pub const ANY_FRAME_ID: u16 = 0xFFFF;
+
+/// ARBlockReq: the connection.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Ar {
+    /// 1 for a controller of cyclic data.
+    pub kind: u16,
+    /// The connection.
+    pub uuid: Uuid,
+    /// Its key, another one each time.
+    pub session_key: u16,
+    /// The card that calls.
+    pub mac: Mac,
+    /// Its object.
+    pub object: Uuid,
+    /// See [`ADVANCED`].
+    pub properties: u32,
+    /// How long the device waits for the next step, in steps of 100 ms.
+    pub activity_timeout: u16,
+    /// The type of frames for alarms.
+    pub port: u16,
+    /// The name of the controller.
+    pub name: String,
+}
+
+/// IOCRBlockReq: cyclic data in one direction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Iocr {
+    /// 1 from the device, 2 to it.
+    pub kind: u16,
+    /// Tells it from the others of the connection.
+    pub reference: u16,
+    /// The type of its frames.
+    pub ether_type: u16,
+    /// Class value 1 or 2.
+    pub properties: u32,
+    /// Bytes of data, statuses and filling.
+    pub length: u16,
+    /// The id of its frames.
+    pub frame_id: u16,
+    /// In units of 31.25 us.
+    pub send_clock: u16,
+    /// Every so many send clocks.
+    pub ratio: u16,
+    /// In which of them.
+    pub phase: u16,
+    /// Order among the frames of one phase.
+    pub sequence: u16,
+    /// When in the phase; all ones for as soon as possible.
+    pub offset: u32,
+    /// After so many frames without one the connection is lost.
+    pub watchdog: u16,
+    /// Likewise for its data.
+    pub hold: u16,
+    /// Priority of its frames.
+    pub tag: u16,
+    /// Where it goes, for multicast.
+    pub group: Mac,
+    /// Where data of submodules begins.
+    pub objects: Vec<Offset>,
+    /// Where statuses of consumers are.
+    pub consumers: Vec<Offset>,
+}
+
+/// A place in cyclic data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Offset {
+    /// Of the submodule.
+    pub slot: u16,
+    /// Of the submodule.
+    pub subslot: u16,
+    /// The byte.
+    pub offset: u16,
+}
+
+/// AlarmCRBlockReq: alarms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AlarmCr {
+    /// 1.
+    pub kind: u16,
+    /// The type of its frames.
+    pub ether_type: u16,
+    /// 0.
+    pub properties: u32,
+    /// How long to wait for an acknowledgement, in steps of 100 ms.
+    pub timeout: u16,
+    /// How often to repeat.
+    pub retries: u16,
+    /// The sender's number for it.
+    pub reference: u16,
+    /// Most bytes of an alarm.
+    pub most: u16,
+    /// Priorities of frames, high and low.
+    pub tags: (u16, u16),
+}
+
+/// A module that is expected in a slot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExpectedModule {
+    /// The profile; 0.
+    pub api: u32,
+    /// The slot.
+    pub slot: u16,
+    /// Its kind.
+    pub ident: u32,
+    /// What is in it.
+    pub submodules: Vec<ExpectedSubmodule>,
+}
+
+/// A submodule that is expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExpectedSubmodule {
+    /// The subslot.
+    pub subslot: u16,
+    /// Its kind.
+    pub ident: u32,
+    /// Bits 0 and 1: 0 no data, 1 input, 2 output, 3 both.
+    pub properties: u16,
+    /// Its data.
+    pub data: Vec<DataDescription>,
+}
+
+/// Data of a submodule in one direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DataDescription {
+    /// 1 input, 2 output.
+    pub direction: u16,
+    /// Bytes.
+    pub length: u16,
+    /// Bytes of the consumer's status.
+    pub consumer: u8,
+    /// Bytes of the provider's status.
+    pub provider: u8,
+}
+
+/// A block of Connect.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Request {
+    /// The connection.
+    Ar(Ar),
+    /// Cyclic data.
+    Iocr(Iocr),
+    /// Alarms.
+    AlarmCr(AlarmCr),
+    /// Modules.
+    Expected(Vec<ExpectedModule>),
+    /// Something else.
+    Other(BlockType),
+}
+
+impl Request {
+    /// Reads what a Connect carries, in its order.
+    ///
+    /// # Errors
+    /// When a block is cut short.
+    pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
+        block::walk(bytes)?.iter().map(Self::parse).collect()
+    }
+
+    fn parse(block: &Block<'_>) -> Result<Self, WireError> {
+        let mut reader = Reader::new(block.body);
+        Ok(match block.kind {
+            BlockType::AR => Self::Ar(Ar::read(&mut reader)?),
+            BlockType::IOCR => Self::Iocr(Iocr::read(&mut reader)?),
+            BlockType::ALARM_CR => Self::AlarmCr(AlarmCr::read(&mut reader)?),
+            BlockType::EXPECTED => Self::Expected(read_expected(&mut reader)?),
+            other => Self::Other(other),
+        })
+    }
+
+    /// The bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        let kind = match self {
+            Self::Ar(ar) => {
+                ar.write(&mut out);
+                BlockType::AR
+            }
+            Self::Iocr(iocr) => {
+                iocr.write(&mut out);
+                BlockType::IOCR
+            }
+            Self::AlarmCr(alarm) => {
+                alarm.write(&mut out);
+                BlockType::ALARM_CR
+            }
+            Self::Expected(modules) => {
+                write_expected(modules, &mut out);
+                BlockType::EXPECTED
+            }
+            Self::Other(kind) => *kind,
+        };
+        block::emit(kind, &out.bytes)
+    }
+}
+
+impl Ar {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
+        let kind = reader.u16("ARType")?;
+        let uuid = reader.uuid("ARUUID")?;
+        let session_key = reader.u16("SessionKey")?;
+        let mac = reader.mac("CMInitiatorMacAdd")?;
+        let object = reader.uuid("CMInitiatorObjectUUID")?;
+        let properties = reader.u32("ARProperties")?;
+        let activity_timeout = reader.u16("CMInitiatorActivityTimeoutFactor")?;
+        let port = reader.u16("InitiatorUDPRTPort")?;
+        let length = reader.u16("StationNameLength")?;
+        let name = text(reader.take(usize::from(length), "CMInitiatorStationName")?);
+        Ok(Self { kind, uuid, session_key, mac, object, properties, activity_timeout, port, name })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        out.u16(self.kind);
+        out.uuid(self.uuid);
+        out.u16(self.session_key);
+        out.put(&self.mac.0);
+        out.uuid(self.object);
+        out.u32(self.properties);
+        out.u16(self.activity_timeout);
+        out.u16(self.port);
+        out.u16(count16(self.name.len()));
+        out.put(self.name.as_bytes());
+    }
+}
+
+impl Iocr {
+    fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
+        let kind = reader.u16("IOCRType")?;
+        let reference = reader.u16("IOCRReference")?;
+        let ether_type = reader.u16("LT")?;
+        let properties = reader.u32("IOCRProperties")?;
+        let length = reader.u16("DataLength")?;
+        let frame_id = reader.u16("FrameID")?;
+        let send_clock = reader.u16("SendClockFactor")?;
+        let ratio = reader.u16("ReductionRatio")?;
+        let phase = reader.u16("Phase")?;
+        let sequence = reader.u16("Sequence")?;
+        let offset = reader.u32("FrameSendOffset")?;
+        let watchdog = reader.u16("WatchdogFactor")?;
+        let hold = reader.u16("DataHoldFactor")?;
+        let tag = reader.u16("IOCRTagHeader")?;
+        let group = reader.mac("IOCRMulticastMACAdd")?;
+        let (mut objects, mut consumers) = (Vec::new(), Vec::new());
+        for _ in 0..reader.u16("NumberOfAPIs")? {
+            reader.u32("API")?;
+            objects.extend(read_offsets(reader, "NumberOfIODataObjects")?);
+            consumers.extend(read_offsets(reader, "NumberOfIOCS")?);
+        }
+        Ok(Self {
+            kind,
+            reference,
+            ether_type,
+            properties,
+            length,
+            frame_id,
+            send_clock,
+            ratio,
+            phase,
+            sequence,
+            offset,
+            watchdog,
+            hold,
+            tag,
+            group,
+            objects,
+            consumers,
+        })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        out.u16(self.kind);
+        out.u16(self.reference);
+        out.u16(self.ether_type);
+        out.u32(self.properties);
+        for number in [self.length, self.frame_id, self.send_clock, self.ratio, self.phase, self.sequence] {
+            out.u16(number);
+        }
+        out.u32(self.offset);
+        out.u16(self.watchdog);
+        out.u16(self.hold);
+        out.u16(self.tag);
+        out.put(&self.group.0);
+        out.u16(1);
+        out.u32(0);
+        for offsets in [&self.objects, &self.consumers] {
+            out.u16(count16(offsets.len()));
+            for place in offsets {
+                out.u16(place.slot);
+                out.u16(place.subslot);
+                out.u16(place.offset);
+            }
+        }
+    }
+}
+
+fn read_offsets(reader: &mut Reader<'_>, field: &'static str) -> Result<Vec<Offset>, WireError> {
+    let count = reader.u16(field)?;
+    (0..count)
+        .map(|_| {
+            let slot = reader.u16("SlotNumber")?;
+            let subslot = reader.u16("SubslotNumber")?;
+            Ok(Offset { slot, subslot, offset: reader.u16("FrameOffset")? })
+        })
+        .collect()
+}
+
+impl AlarmCr {
+    /// As controllers have it: 100 ms, three repeats, 200 bytes.
+    pub const fn usual(reference: u16) -> Self {
+        Self {
+            kind: 1,
+            ether_type: ETHER_TYPE,
+            properties: 0,
+            timeout: 1,
+            retries: 3,
+            reference,
+            most: 200,
+            tags: (TAG_HIGH, TAG_LOW),
+        }
+    }
+
+    fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
+        Ok(Self {
+            kind: reader.u16("AlarmCRType")?,
+            ether_type: reader.u16("LT")?,
+            properties: reader.u32("AlarmCRProperties")?,
+            timeout: reader.u16("RTATimeoutFactor")?,
+            retries: reader.u16("RTARetries")?,
+            reference: reader.u16("LocalAlarmReference")?,
+            most: reader.u16("MaxAlarmDataLength")?,
+            tags: (reader.u16("AlarmCRTagHeaderHigh")?, reader.u16("AlarmCRTagHeaderLow")?),
+        })
+    }
+
+    fn write(&self, out: &mut Writer) {
+        out.u16(self.kind);
+        out.u16(self.ether_type);
+        out.u32(self.properties);
+        for number in [self.timeout, self.retries, self.reference, self.most, self.tags.0, self.tags.1] {
+            out.u16(number);
+        }
+    }
+}
+
+fn read_expected(reader: &mut Reader<'_>) -> Result<Vec<ExpectedModule>, WireError> {
+    let count = reader.u16("NumberOfAPIs")?;
+    (0..count)
+        .map(|_| {
+            let api = reader.u32("API")?;
+            let slot = reader.u16("SlotNumber")?;
+            let ident = reader.u32("ModuleIdentNumber")?;
+            reader.u16("ModuleProperties")?;
+            let count = reader.u16("NumberOfSubmodules")?;
+            let submodules = (0..count).map(|_| read_submodule(reader)).collect::<Result<_, _>>()?;
+            Ok(ExpectedModule { api, slot, ident, submodules })
+        })
+        .collect()
+}
+
+fn read_submodule(reader: &mut Reader<'_>) -> Result<ExpectedSubmodule, WireError> {
+    let subslot = reader.u16("SubslotNumber")?;
+    let ident = reader.u32("SubmoduleIdentNumber")?;
+    let properties = reader.u16("SubmoduleProperties")?;
+    let descriptions = if properties & 3 == 3 { 2 } else { 1 };
+    let data = (0..descriptions)
+        .map(|_| {
+            Ok(DataDescription {
+                direction: reader.u16("DataDescription")?,
+                length: reader.u16("SubmoduleDataLength")?,
+                consumer: reader.u8("LengthIOCS")?,
+                provider: reader.u8("LengthIOPS")?,
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(ExpectedSubmodule { subslot, ident, properties, data })
+}
+
+fn write_expected(modules: &[ExpectedModule], out: &mut Writer) {
+    out.u16(count16(modules.len()));
+    for module in modules {
+        out.u32(module.api);
+        out.u16(module.slot);
+        out.u32(module.ident);
+        out.u16(0);
+        out.u16(count16(module.submodules.len()));
+        for submodule in &module.submodules {
+            out.u16(submodule.subslot);
+            out.u32(submodule.ident);
+            out.u16(submodule.properties);
+            for data in &submodule.data {
+                out.u16(data.direction);
+                out.u16(data.length);
+                out.put(&[data.consumer, data.provider]);
+            }
+        }
+    }
+}
+
+/// A block of the answer to Connect; a ModuleDiffBlock may also come with ApplicationReady.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Response {
+    /// The connection.
+    Ar {
+        /// Which one.
+        uuid: Uuid,
+        /// Its key.
+        session_key: u16,
+        /// The card of the device.
+        mac: Mac,
+    },
+    /// Cyclic data.
+    Iocr {
+        /// 1 from the device, 2 to it.
+        kind: u16,
+        /// Which one.
+        reference: u16,
+        /// The id of its frames.
+        frame_id: u16,
+    },
+    /// Alarms.
+    AlarmCr {
+        /// The device's number for it.
+        reference: u16,
+        /// Most bytes of an alarm.
+        most: u16,
+    },
+    /// What differs from the modules that are expected.
+    ModuleDiff(Vec<ModuleDiff>),
+    /// The name of the device.
+    Name(String),
+    /// Something else.
+    Other(BlockType),
+}
+
+/// A module that is not as expected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ModuleDiff {
+    /// Its slot.
+    pub slot: u16,
+    /// The kind that is there.
+    pub ident: u32,
+    /// 0 none, 1 wrong, 2 proper, 3 substitute.
+    pub state: u16,
+    /// What is in it.
+    pub submodules: Vec<SubmoduleDiff>,
+}
+
+/// A submodule that is not as expected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SubmoduleDiff {
+    /// Its subslot.
+    pub subslot: u16,
+    /// The kind that is there.
+    pub ident: u32,
+    /// With bit 15: bits 11 to 14 are 0 fine, 1 substitute, 2 wrong, 3 none.
+    pub state: u16,
+}
+
+impl SubmoduleDiff {
+    /// Bits 11 to 14, where they are told; without bit 15 the whole of it is 0 none, 1 wrong, 2 proper, 3 substitute.
+    const fn ident_info(&self) -> u16 {
+        match (self.state & 0x8000 != 0, self.state) {
+            (true, state) => (state >> 11) & 0xF,
+            (false, 0) => 3,
+            (false, 1) => 2,
+            (false, 2 | 7) => 0,
+            (false, _) => 1,
+        }
+    }
+
+    /// Whether it is the one that is expected, or one that does the same.
+    pub const fn is_usable(&self) -> bool {
+        self.ident_info() < 2
+    }
+
+    /// Whether there is none.
+    pub const fn is_missing(&self) -> bool {
+        self.ident_info() == 3
+    }
+}
+
+impl Response {
+    /// Reads what an answer to Connect carries, in its order.
+    ///
+    /// # Errors
+    /// When a block is cut short.
+    pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
+        block::walk(bytes)?.iter().map(Self::parse).collect()
+    }
+
+    /// Reads one block.
+    ///
+    /// # Errors
+    /// When it is cut short.
+    pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
+        let mut reader = Reader::new(block.body);
+        let reader = &mut reader;
+        Ok(match BlockType(block.kind.0) {
+            BlockType(0x8101) => {
+                reader.u16("ARType")?;
+                let uuid = reader.uuid("ARUUID")?;
+                let session_key = reader.u16("SessionKey")?;
+                Self::Ar { uuid, session_key, mac: reader.mac("CMResponderMacAdd")? }
+            }
+            BlockType(0x8102) => Self::Iocr {
+                kind: reader.u16("IOCRType")?,
+                reference: reader.u16("IOCRReference")?,
+                frame_id: reader.u16("FrameID")?,
+            },
+            BlockType(0x8103) => {
+                reader.u16("AlarmCRType")?;
+                Self::AlarmCr { reference: reader.u16("LocalAlarmReference")?, most: reader.u16("MaxAlarmDataLength")? }
+            }
+            BlockType::MODULE_DIFF => Self::ModuleDiff(read_diff(reader)?),
+            BlockType::AR_SERVER => {
+                let length = reader.u16("StationNameLength")?;
+                Self::Name(text(reader.take(usize::from(length), "CMResponderStationName")?))
+            }
+            other => Self::Other(other),
+        })
+    }
+
+    /// The bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        let kind = match self {
+            Self::Ar { uuid, session_key, mac } => {
+                out.u16(1);
+                out.uuid(*uuid);
+                out.u16(*session_key);
+                out.put(&mac.0);
+                out.u16(ETHER_TYPE);
+                BlockType::AR.answer()
+            }
+            Self::Iocr { kind, reference, frame_id } => {
+                out.u16(*kind);
+                out.u16(*reference);
+                out.u16(*frame_id);
+                BlockType::IOCR.answer()
+            }
+            Self::AlarmCr { reference, most } => {
+                out.u16(1);
+                out.u16(*reference);
+                out.u16(*most);
+                BlockType::ALARM_CR.answer()
+            }
+            Self::ModuleDiff(modules) => {
+                write_diff(modules, &mut out);
+                BlockType::MODULE_DIFF
+            }
+            Self::Name(name) => {
+                out.u16(count16(name.len()));
+                out.put(name.as_bytes());
+                // Answers are padded to four bytes, with the header of six.
+                out.zeros((4 - (6 + out.bytes.len()) % 4) % 4);
+                BlockType::AR_SERVER
+            }
+            Self::Other(kind) => *kind,
+        };
+        block::emit(kind, &out.bytes)
+    }
+}
+
+fn read_diff(reader: &mut Reader<'_>) -> Result<Vec<ModuleDiff>, WireError> {
+    let mut modules = Vec::new();
+    for _ in 0..reader.u16("NumberOfAPIs")? {
+        reader.u32("API")?;
+        for _ in 0..reader.u16("NumberOfModules")? {
+            let slot = reader.u16("SlotNumber")?;
+            let ident = reader.u32("ModuleIdentNumber")?;
+            let state = reader.u16("ModuleState")?;
+            let count = reader.u16("NumberOfSubmodules")?;
+            let submodules = (0..count)
+                .map(|_| {
+                    let subslot = reader.u16("SubslotNumber")?;
+                    let ident = reader.u32("SubmoduleIdentNumber")?;
+                    Ok(SubmoduleDiff { subslot, ident, state: reader.u16("SubmoduleState")? })
+                })
+                .collect::<Result<_, WireError>>()?;
+            modules.push(ModuleDiff { slot, ident, state, submodules });
+        }
+    }
+    Ok(modules)
+}
+
+fn write_diff(modules: &[ModuleDiff], out: &mut Writer) {
+    out.u16(1);
+    out.u32(0);
+    out.u16(count16(modules.len()));
+    for module in modules {
+        out.u16(module.slot);
+        out.u32(module.ident);
+        out.u16(module.state);
+        out.u16(count16(module.submodules.len()));
+        for submodule in &module.submodules {
+            out.u16(submodule.subslot);
+            out.u32(submodule.ident);
+            out.u16(submodule.state);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Ethernet frames of PROFINET, with and without a tag, and what their ids are for.
+
+use super::{Mac, Reader, WireError, Writer};
+
+/// The type of Ethernet frames that carry PROFINET.
+pub const ETHER_TYPE: u16 = 0x8892;
+/// The type of a tag.
+const TAGGED: u16 = 0x8100;
+/// Priority 6 in network 0: cyclic data and alarms of high priority.
+pub const TAG_HIGH: u16 = 0xC000;
+/// Priority 5 in network 0: alarms of low priority.
+pub const TAG_LOW: u16 = 0xA000;
+/// Shortest frame without a tag, less the four bytes of its check.
+const SHORTEST: usize = 60;
+
+/// What a frame is for.
+pub mod id {
+    use std::ops::RangeInclusive;
+
+    /// Cyclic data from one to one, class value 2.
+    pub const RT_CLASS_1: RangeInclusive<u16> = 0x8000..=0xBBFF;
+    /// The same of older devices, class value 1.
+    pub const RT_CLASS_1_LEGACY: RangeInclusive<u16> = 0xC000..=0xF7FF;
+    /// An alarm of high priority.
+    pub const ALARM_HIGH: u16 = 0xFC01;
+    /// An alarm of low priority.
+    pub const ALARM_LOW: u16 = 0xFE01;
+    /// A station announces itself.
+    pub const DCP_HELLO: u16 = 0xFEFC;
+    /// Get, Set, and their answers.
+    pub const DCP_GET_SET: u16 = 0xFEFD;
+    /// Identify.
+    pub const DCP_IDENTIFY: u16 = 0xFEFE;
+    /// The answer to Identify.
+    pub const DCP_IDENTIFIED: u16 = 0xFEFF;
+}
+
+/// A frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame<'a> {
+    /// Where it goes.
+    pub destination: Mac,
+    /// Where it comes from.
+    pub source: Mac,
+    /// The tag's priority and network, where it has one; drivers take it off.
+    pub tag: Option<u16>,
+    /// What it is for.
+    pub id: u16,
+    /// What it carries, maybe with padding behind it.
+    pub payload: &'a [u8],
+}
+
+impl<'a> Frame<'a> {
+    /// Reads a frame.
+    ///
+    /// # Errors
+    /// When it is none of PROFINET.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let destination = reader.mac("destination")?;
+        let source = reader.mac("source")?;
+        let mut kind = reader.u16("type")?;
+        let mut tag = None;
+        if kind == TAGGED {
+            tag = Some(reader.u16("tag")?);
+            kind = reader.u16("type")?;
+        }
+        if kind != ETHER_TYPE {
+            return Err(reader.wrong("type", 2, kind));
+        }
+        let id = reader.u16("FrameID")?;
+        Ok(Self { destination, source, tag, id, payload: reader.rest() })
+    }
+
+    /// The bytes, padded to the shortest frame there is.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        out.put(&self.destination.0);
+        out.put(&self.source.0);
+        if let Some(tag) = self.tag {
+            out.u16(TAGGED);
+            out.u16(tag);
+        }
+        out.u16(ETHER_TYPE);
+        out.u16(self.id);
+        out.put(self.payload);
+        let shortest = if self.tag.is_some() { SHORTEST + 4 } else { SHORTEST };
+        out.zeros(shortest.saturating_sub(out.bytes.len()));
+        out.bytes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Problem, hex};
+    use super::*;
+
+    #[test]
+    fn frames_are_padded_and_read_with_and_without_a_tag() {
+        let frame =
+            Frame { destination: Mac([2; 6]), source: Mac([4; 6]), tag: Some(TAG_HIGH), id: 0x8001, payload: &[7; 3] };
+        let bytes = frame.emit();
+        assert_eq!(bytes[..23].to_vec(), hex("020202020202 040404040404 8100 C000 8892 8001 070707"));
+        assert_eq!(bytes.len(), 64);
+        let read = Frame::parse(&bytes).unwrap();
+        assert_eq!((read.tag, read.id, read.payload[..3].to_vec()), (Some(0xC000), 0x8001, vec![7; 3]));
+        let plain = Frame { tag: None, ..frame }.emit();
+        assert_eq!((plain.len(), Frame::parse(&plain).unwrap().tag), (60, None));
+    }
+
+    #[test]
+    fn other_frames_are_named() {
+        let error = Frame::parse(&hex("020202020202 040404040404 0800 4500")).unwrap_err();
+        assert_eq!((error.field, error.offset, error.problem), ("type", 12, Problem::Value { found: 0x800 }));
+    }
+}

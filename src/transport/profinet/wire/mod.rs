@@ -1,0 +1,318 @@
+//! The bytes of PROFINET IO: Ethernet frames, DCP, RPC, blocks, records, cyclic data, alarms.
+//!
+//! Big-endian, but for the header of an RPC datagram and its five numbers of NDR, which are in the order that the
+//! datagram names. Parsing takes what devices send (reserved bytes are not looked at); emitting writes what IEC 61158-6-10
+//! says.
+
+use std::fmt;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+pub mod alarm;
+pub mod block;
+pub mod connect;
+pub mod cyclic;
+pub mod dcp;
+pub mod frame;
+pub mod record;
+pub mod rpc;
+pub mod status;
+#[cfg(test)]
+mod tests;
+
+/// Bytes that are no such message, with the field that says so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("{field} at offset {offset}: {problem}")]
+pub struct WireError {
+    /// The field.
+    pub field: &'static str,
+    /// Where it begins, from the start of the message or block it belongs to.
+    pub offset: usize,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// What can be wrong with a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Problem {
+    /// The message ends before it does.
+    #[error("needs {needed} bytes, {present} are there")]
+    Short {
+        /// Its length.
+        needed: usize,
+        /// What is left of the message.
+        present: usize,
+    },
+    /// A value that it cannot have.
+    #[error("is {found:#x}")]
+    Value {
+        /// The value.
+        found: u32,
+    },
+    /// Something that must be there is not.
+    #[error("is missing")]
+    Missing,
+}
+
+/// The address of a network card.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct Mac(
+    /// Its bytes in the order of the wire.
+    pub [u8; 6],
+);
+
+impl Mac {
+    /// Where requests of DCP go that any station may answer.
+    pub const DCP_IDENTIFY: Self = Self([0x01, 0x0E, 0xCF, 0, 0, 0]);
+    /// Where stations announce themselves.
+    pub const DCP_HELLO: Self = Self([0x01, 0x0E, 0xCF, 0, 0, 1]);
+
+    /// Whether it stands for several cards.
+    pub const fn is_group(self) -> bool {
+        self.0[0] & 1 == 1
+    }
+}
+
+impl fmt::Display for Mac {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, byte) in self.0.iter().enumerate() {
+            write!(f, "{}{byte:02x}", if at == 0 { "" } else { ":" })?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Mac {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl FromStr for Mac {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is not a MAC address such as 02:00:00:00:00:01");
+        let mut bytes = [0; 6];
+        let mut parts = text.split([':', '-']);
+        for byte in &mut bytes {
+            let part = parts.next().filter(|part| part.len() == 2 && !part.starts_with('+')).ok_or_else(wrong)?;
+            *byte = u8::from_str_radix(part, 16).map_err(|_| wrong())?;
+        }
+        if parts.next().is_some() { Err(wrong()) } else { Ok(Self(bytes)) }
+    }
+}
+
+/// A UUID, in the order of bytes that blocks have it in.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Uuid(
+    /// Its bytes.
+    pub [u8; 16],
+);
+
+impl Uuid {
+    /// None.
+    pub const NIL: Self = Self([0; 16]);
+
+    /// With the order of bytes in its first three fields turned round.
+    fn swapped(self) -> Self {
+        let mut bytes = self.0;
+        bytes[..4].reverse();
+        bytes[4..6].reverse();
+        bytes[6..8].reverse();
+        Self(bytes)
+    }
+
+    /// One that nobody else has (version 4).
+    pub fn random() -> Self {
+        let mut bytes = fastrand::u128(..).to_be_bytes();
+        bytes[6] = bytes[6] & 0x0F | 0x40;
+        bytes[8] = bytes[8] & 0x3F | 0x80;
+        Self(bytes)
+    }
+}
+
+impl fmt::Display for Uuid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (at, byte) in self.0.iter().enumerate() {
+            let dash = if matches!(at, 4 | 6 | 8 | 10) { "-" } else { "" };
+            write!(f, "{dash}{byte:02x}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Uuid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The order of bytes in an RPC header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Order {
+    /// As everywhere else; what is sent from here.
+    #[default]
+    Big,
+    /// As Siemens controllers call.
+    Little,
+}
+
+/// Reads a message field by field.
+#[derive(Debug, Clone, Copy)]
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    order: Order,
+}
+
+impl<'a> Reader<'a> {
+    const fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0, order: Order::Big }
+    }
+
+    fn left(&self) -> usize {
+        self.bytes.len().saturating_sub(self.at)
+    }
+
+    fn take(&mut self, len: usize, field: &'static str) -> Result<&'a [u8], WireError> {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let Some(taken) = rest.get(..len) else {
+            let problem = Problem::Short { needed: len, present: rest.len() };
+            return Err(WireError { field, offset: self.at, problem });
+        };
+        self.at += len;
+        Ok(taken)
+    }
+
+    fn array<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], WireError> {
+        let mut out = [0; N];
+        out.copy_from_slice(self.take(N, field)?);
+        Ok(out)
+    }
+
+    fn u8(&mut self, field: &'static str) -> Result<u8, WireError> {
+        self.array(field).map(u8::from_be_bytes)
+    }
+
+    fn u16(&mut self, field: &'static str) -> Result<u16, WireError> {
+        let bytes = self.array(field)?;
+        Ok(if self.order == Order::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
+    }
+
+    fn u32(&mut self, field: &'static str) -> Result<u32, WireError> {
+        let bytes = self.array(field)?;
+        Ok(if self.order == Order::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    }
+
+    fn mac(&mut self, field: &'static str) -> Result<Mac, WireError> {
+        self.array(field).map(Mac)
+    }
+
+    fn uuid(&mut self, field: &'static str) -> Result<Uuid, WireError> {
+        let uuid = Uuid(self.array(field)?);
+        Ok(if self.order == Order::Big { uuid } else { uuid.swapped() })
+    }
+
+    fn rest(&mut self) -> &'a [u8] {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        self.at = self.bytes.len();
+        rest
+    }
+
+    /// The error of a field of `len` bytes that was just read.
+    fn wrong(&self, field: &'static str, len: usize, found: impl Into<u32>) -> WireError {
+        let problem = Problem::Value { found: found.into() };
+        WireError { field, offset: self.at.saturating_sub(len), problem }
+    }
+
+    fn missing(&self, field: &'static str) -> WireError {
+        WireError { field, offset: self.at, problem: Problem::Missing }
+    }
+}
+
+/// Writes a message field by field.
+#[derive(Debug, Default)]
+struct Writer {
+    bytes: Vec<u8>,
+    order: Order,
+}
+
+impl Writer {
+    fn u8(&mut self, value: u8) {
+        self.bytes.push(value);
+    }
+
+    fn u16(&mut self, value: u16) {
+        self.bytes.extend(if self.order == Order::Big { value.to_be_bytes() } else { value.to_le_bytes() });
+    }
+
+    fn u32(&mut self, value: u32) {
+        self.bytes.extend(if self.order == Order::Big { value.to_be_bytes() } else { value.to_le_bytes() });
+    }
+
+    fn uuid(&mut self, uuid: Uuid) {
+        self.bytes.extend(if self.order == Order::Big { uuid.0 } else { uuid.swapped().0 });
+    }
+
+    fn put(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// As many zeros.
+    fn zeros(&mut self, count: usize) {
+        self.bytes.resize(self.bytes.len() + count, 0);
+    }
+}
+
+/// A length or a count as the two bytes of its field.
+///
+/// # Panics
+/// Above 65535; whoever builds messages bounds what goes into them.
+fn count16(count: usize) -> u16 {
+    u16::try_from(count).expect("lengths of messages are bounded where they are built")
+}
+
+/// Likewise in four bytes.
+fn count32(count: usize) -> u32 {
+    u32::try_from(count).expect("lengths of messages are bounded where they are built")
+}
+
+/// Text of a fixed field, without the blanks and zeros behind it.
+fn text(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    text.trim_end_matches(['\0', ' ']).chars().filter(|c| !c.is_control()).collect()
+}
+
+#[cfg(test)]
+pub(super) fn hex(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = text.bytes().filter(u8::is_ascii_hexdigit).collect();
+    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+    digits.chunks(2).map(byte).collect()
+}
+
+#[cfg(test)]
+mod unit {
+    use super::*;
+
+    #[test]
+    fn mac_addresses_read_as_they_print() {
+        let mac = Mac([2, 0, 0xAB, 0, 0, 1]);
+        assert_eq!(mac.to_string(), "02:00:ab:00:00:01");
+        for text in ["02:00:ab:00:00:01", "02-00-AB-00-00-01"] {
+            assert_eq!(text.parse(), Ok(mac));
+        }
+        for text in ["", "02:00:ab:00:00", "02:00:ab:00:00:01:02", "2:0:ab:0:0:1", "+2:00:ab:00:00:01", "yrcx"] {
+            assert!(text.parse::<Mac>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_uuid_turns_its_first_three_fields_only() {
+        let uuid = Uuid(hex("DEA00001 6C97 11D1 8271 00A02442DF7D").try_into().unwrap());
+        assert_eq!(uuid.to_string(), "dea00001-6c97-11d1-8271-00a02442df7d");
+        assert_eq!(uuid.swapped().0.to_vec(), hex("0100A0DE 976C D111 8271 00A02442DF7D"));
+        assert_eq!(uuid.swapped().swapped(), uuid);
+    }
+}

@@ -1,0 +1,322 @@
+//! Records: settings and facts of a submodule, by number.
+
+use super::block::{self, BlockType};
+use super::{Problem, Reader, Uuid, WireError, Writer, count16, count32, text};
+
+/// Numbers of records.
+pub mod index {
+    /// I&M0: vendor, order number, serial number, versions.
+    pub const IM0: u16 = 0xAFF0;
+    /// Which modules there are.
+    pub const REAL_IDENTIFICATION: u16 = 0xF000;
+    /// Why connections ended.
+    pub const LOGBOOK: u16 = 0xF830;
+    /// Several records written at once.
+    pub const MULTIPLE_WRITE: u16 = 0xE040;
+}
+
+/// Bytes behind the header of a block before the record.
+const FIXED: usize = 60;
+/// Bytes of the header of a block.
+const BLOCK_HEADER: usize = 4;
+
+/// Which record, and how many bytes: of the record, or of the room for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Record {
+    /// Counts the reads and writes of a connection.
+    pub sequence: u16,
+    /// The connection; nil outside of one.
+    pub ar: Uuid,
+    /// The profile; 0.
+    pub api: u32,
+    /// The slot.
+    pub slot: u16,
+    /// The subslot.
+    pub subslot: u16,
+    /// Its number.
+    pub index: u16,
+    /// Bytes.
+    pub length: u32,
+}
+
+impl Record {
+    /// Reads the block that a call or its answer begins with, and gives what is behind it.
+    ///
+    /// # Errors
+    /// When it is another block, or shorter than it says.
+    pub fn parse(bytes: &[u8], kind: BlockType) -> Result<(Self, &[u8]), WireError> {
+        let mut reader = Reader::new(bytes);
+        let found = reader.u16("BlockType")?;
+        if found != kind.0 {
+            return Err(reader.wrong("BlockType", 2, found));
+        }
+        let length = reader.u16("BlockLength")?;
+        let mut body = Reader::new(reader.take(usize::from(length), "block")?);
+        body.u16("BlockVersion")?;
+        let sequence = body.u16("SeqNumber")?;
+        let ar = body.uuid("ARUUID")?;
+        let api = body.u32("API")?;
+        let slot = body.u16("SlotNumber")?;
+        let subslot = body.u16("SubslotNumber")?;
+        body.u16("padding")?;
+        let index = body.u16("Index")?;
+        let length = body.u32("RecordDataLength")?;
+        Ok((Self { sequence, ar, api, slot, subslot, index, length }, reader.rest()))
+    }
+
+    /// Reads an answer to Read, and gives the record.
+    ///
+    /// # Errors
+    /// Likewise, or when the record is cut short.
+    pub fn parse_answer(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
+        let (record, rest) = Self::parse(bytes, BlockType::READ.answer())?;
+        let length = usize::try_from(record.length).unwrap_or(usize::MAX);
+        let short = Problem::Short { needed: length, present: rest.len() };
+        let found = rest.get(..length);
+        Ok((record, found.ok_or(WireError { field: "record", offset: FIXED + BLOCK_HEADER, problem: short })?))
+    }
+
+    /// The block of a call or an answer, with the status of an answer to Write, and what follows it.
+    pub fn emit(&self, kind: BlockType, status: u32, data: &[u8]) -> Vec<u8> {
+        let mut out = Writer::default();
+        out.u16(self.sequence);
+        out.uuid(self.ar);
+        out.u32(self.api);
+        out.u16(self.slot);
+        out.u16(self.subslot);
+        out.u16(0);
+        out.u16(self.index);
+        out.u32(self.length);
+        // Two additional values, then the status where it is an answer to Write.
+        out.u32(0);
+        out.u32(status);
+        out.zeros(FIXED - 2 - out.bytes.len());
+        let mut bytes = block::emit(kind, &out.bytes);
+        bytes.extend_from_slice(data);
+        bytes
+    }
+
+    /// The status in an answer to Write.
+    ///
+    /// # Errors
+    /// When it is another block, or cut short.
+    pub fn write_status(bytes: &[u8]) -> Result<(Self, u32, &[u8]), WireError> {
+        let (record, rest) = Self::parse(bytes, BlockType::WRITE.answer())?;
+        let mut reader = Reader { at: 44, ..Reader::new(bytes) };
+        Ok((record, reader.u32("PNIOStatus")?, rest))
+    }
+}
+
+/// A record with what is written to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Parameter {
+    /// The slot.
+    pub slot: u16,
+    /// The subslot.
+    pub subslot: u16,
+    /// Its number.
+    pub index: u16,
+    /// What is written.
+    pub data: Vec<u8>,
+}
+
+/// The blocks of a Write of one record, or of several at once.
+pub fn write(ar: Uuid, sequence: u16, parameters: &[Parameter]) -> Vec<u8> {
+    let record = |at: usize, parameter: &Parameter| Record {
+        sequence: sequence.wrapping_add(count16(at)),
+        ar,
+        api: 0,
+        slot: parameter.slot,
+        subslot: parameter.subslot,
+        index: parameter.index,
+        length: count32(parameter.data.len()),
+    };
+    if let [parameter] = parameters {
+        return record(0, parameter).emit(BlockType::WRITE, 0, &parameter.data);
+    }
+    let mut inner = Vec::new();
+    for (at, parameter) in parameters.iter().enumerate() {
+        inner.resize(inner.len().next_multiple_of(4), 0);
+        inner.extend(record(at + 1, parameter).emit(BlockType::WRITE, 0, &parameter.data));
+    }
+    let length = count32(inner.len());
+    let outer =
+        Record { sequence, ar, api: u32::MAX, slot: u16::MAX, subslot: u16::MAX, index: index::MULTIPLE_WRITE, length };
+    outer.emit(BlockType::WRITE, 0, &inner)
+}
+
+/// The records of a Write, one or several at once.
+///
+/// # Errors
+/// When a block is cut short, or is no write.
+pub fn parse_write(bytes: &[u8]) -> Result<(Record, Vec<Parameter>), WireError> {
+    let (outer, data) = Record::parse(bytes, BlockType::WRITE)?;
+    if outer.index != index::MULTIPLE_WRITE {
+        let (parameter, _) = parameter(&outer, data)?;
+        return Ok((outer, vec![parameter]));
+    }
+    let mut parameters = Vec::new();
+    let mut at = 0;
+    while at < data.len() {
+        let (record, rest) = Record::parse(&data[at..], BlockType::WRITE)?;
+        let (parameter, rest) = parameter(&record, rest)?;
+        parameters.push(parameter);
+        at = (data.len() - rest.len()).next_multiple_of(4);
+    }
+    Ok((outer, parameters))
+}
+
+fn parameter<'a>(record: &Record, data: &'a [u8]) -> Result<(Parameter, &'a [u8]), WireError> {
+    let length = usize::try_from(record.length).unwrap_or(usize::MAX);
+    let problem = Problem::Short { needed: length, present: data.len() };
+    let short = WireError { field: "record", offset: FIXED + BLOCK_HEADER, problem };
+    let (data, rest) = data.split_at_checked(length).ok_or(short)?;
+    let Record { slot, subslot, index, .. } = *record;
+    Ok((Parameter { slot, subslot, index, data: data.to_vec() }, rest))
+}
+
+/// The answer to a Write: each record with what became of it.
+pub fn write_answer(outer: &Record, statuses: &[(Record, u32)]) -> Vec<u8> {
+    if outer.index != index::MULTIPLE_WRITE {
+        let status = statuses.first().map_or(0, |(_, status)| *status);
+        return outer.emit(BlockType::WRITE.answer(), status, &[]);
+    }
+    let inner: Vec<u8> =
+        statuses.iter().flat_map(|(record, status)| record.emit(BlockType::WRITE.answer(), *status, &[])).collect();
+    let outer = Record { length: count32(inner.len()), ..*outer };
+    outer.emit(BlockType::WRITE.answer(), 0, &inner)
+}
+
+/// What became of each record of a Write.
+///
+/// # Errors
+/// When a block is cut short, or is another one.
+pub fn parse_write_answer(bytes: &[u8]) -> Result<Vec<(Record, u32)>, WireError> {
+    let (outer, status, mut rest) = Record::write_status(bytes)?;
+    let mut all = vec![(outer, status)];
+    if outer.index == index::MULTIPLE_WRITE {
+        while !rest.is_empty() {
+            let (record, status, behind) = Record::write_status(rest)?;
+            all.push((record, status));
+            rest = behind;
+        }
+    }
+    Ok(all)
+}
+
+/// I&M0: who a device is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Im0 {
+    /// The vendor.
+    pub vendor: u16,
+    /// What it is ordered as.
+    pub order_id: String,
+    /// Its serial number.
+    pub serial: String,
+    /// The version of its hardware.
+    pub hardware: u16,
+    /// The version of its software: `V` for released, and three numbers.
+    pub software: (char, u8, u8, u8),
+    /// How often it was changed.
+    pub revision: u16,
+}
+
+impl Im0 {
+    /// Reads the record.
+    ///
+    /// # Errors
+    /// When it is another block, or cut short.
+    pub fn parse(record: &[u8]) -> Result<Self, WireError> {
+        let blocks = block::walk(record)?;
+        let found = blocks.iter().find(|block| block.kind == BlockType::IM0);
+        let mut reader = Reader::new(found.ok_or(Reader::new(record).missing("I&M0"))?.body);
+        Ok(Self {
+            vendor: reader.u16("vendor")?,
+            order_id: text(reader.take(20, "order id")?),
+            serial: text(reader.take(16, "serial number")?),
+            hardware: reader.u16("hardware version")?,
+            software: (
+                char::from(reader.u8("software version")?),
+                reader.u8("software version")?,
+                reader.u8("software version")?,
+                reader.u8("software version")?,
+            ),
+            revision: reader.u16("revision counter")?,
+        })
+    }
+
+    /// The record.
+    pub fn emit(&self) -> Vec<u8> {
+        let mut out = Writer::default();
+        out.u16(self.vendor);
+        for (value, width) in [(&self.order_id, 20), (&self.serial, 16)] {
+            let mut bytes: Vec<u8> = value.bytes().take(width).collect();
+            bytes.resize(width, b' ');
+            out.put(&bytes);
+        }
+        out.u16(self.hardware);
+        let (prefix, major, minor, patch) = self.software;
+        out.put(&[u8::try_from(prefix).unwrap_or(b'V'), major, minor, patch]);
+        out.u16(self.revision);
+        // Profile none, version 1.1 of I&M, and none of I&M1 to I&M4.
+        out.put(&[0, 0, 0, 0, 1, 1, 0, 0]);
+        block::emit(BlockType::IM0, &out.bytes)
+    }
+}
+
+/// A module that is there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RealModule {
+    /// Its slot.
+    pub slot: u16,
+    /// Its kind.
+    pub ident: u32,
+    /// Its submodules: subslot and kind.
+    pub submodules: Vec<(u16, u32)>,
+}
+
+/// Reads the record of the modules that are there.
+///
+/// # Errors
+/// When it is another block, or cut short.
+pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError> {
+    let blocks = block::walk(record)?;
+    let found = blocks.iter().find(|block| block.kind == BlockType::REAL_IDENTIFICATION);
+    let found = found.ok_or(Reader::new(record).missing("RealIdentificationData"))?;
+    let mut reader = Reader::new(found.body);
+    let mut modules = Vec::new();
+    // Version 1.0 has no APIs.
+    let apis = if found.version.1 == 0 { 1 } else { reader.u16("NumberOfAPIs")? };
+    for _ in 0..apis {
+        if found.version.1 != 0 {
+            reader.u32("API")?;
+        }
+        for _ in 0..reader.u16("NumberOfSlots")? {
+            let slot = reader.u16("SlotNumber")?;
+            let ident = reader.u32("ModuleIdentNumber")?;
+            let submodules = (0..reader.u16("NumberOfSubslots")?)
+                .map(|_| Ok((reader.u16("SubslotNumber")?, reader.u32("SubmoduleIdentNumber")?)))
+                .collect::<Result<_, WireError>>()?;
+            modules.push(RealModule { slot, ident, submodules });
+        }
+    }
+    Ok(modules)
+}
+
+/// The record of the modules that are there.
+pub fn emit_identification(modules: &[RealModule]) -> Vec<u8> {
+    let mut out = Writer::default();
+    out.u16(1);
+    out.u32(0);
+    out.u16(count16(modules.len()));
+    for module in modules {
+        out.u16(module.slot);
+        out.u32(module.ident);
+        out.u16(count16(module.submodules.len()));
+        for (subslot, ident) in &module.submodules {
+            out.u16(*subslot);
+            out.u32(*ident);
+        }
+    }
+    block::emit_version(BlockType::REAL_IDENTIFICATION, (1, 1), &out.bytes)
+}

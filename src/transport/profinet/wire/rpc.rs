@@ -1,0 +1,336 @@
+//! Connectionless RPC (DCE 1.1, version 4) on UDP port 34964, and the numbers of NDR before the blocks.
+
+use super::{Order, Reader, Uuid, WireError, Writer, count16, count32};
+
+/// UDP port of both ends.
+pub const PORT: u16 = 34964;
+/// Bytes of the header.
+pub const HEADER_LEN: usize = 80;
+/// Bytes of the five numbers.
+const NDR_LEN: usize = 20;
+/// Room for an answer; fits all that is asked for.
+pub const ROOM: u32 = 4096;
+/// Most bytes that are collected of an answer in fragments.
+pub const MOST: usize = 65_536;
+
+/// What a datagram is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Kind(
+    /// The number.
+    pub u8,
+);
+
+impl Kind {
+    /// A call.
+    pub const REQUEST: Self = Self(0);
+    /// Asks whether a call is still worked on.
+    pub const PING: Self = Self(1);
+    /// The answer to a call.
+    pub const RESPONSE: Self = Self(2);
+    /// The call went wrong.
+    pub const FAULT: Self = Self(3);
+    /// The call is worked on.
+    pub const WORKING: Self = Self(4);
+    /// No such call is known.
+    pub const NO_CALL: Self = Self(5);
+    /// The call is not taken.
+    pub const REJECT: Self = Self(6);
+    /// The response has arrived.
+    pub const ACK: Self = Self(7);
+    /// A fragment has arrived.
+    pub const FRAGMENT_ACK: Self = Self(9);
+}
+
+/// Flags of a header.
+pub mod flag {
+    /// The last fragment.
+    pub const LAST_FRAGMENT: u8 = 0x02;
+    /// A fragment.
+    pub const FRAGMENT: u8 = 0x04;
+    /// A fragment that wants no acknowledgement.
+    pub const NO_ACK: u8 = 0x08;
+    /// A call that may be done twice.
+    pub const IDEMPOTENT: u8 = 0x20;
+}
+
+/// What is called.
+pub mod operation {
+    /// Begins a connection.
+    pub const CONNECT: u16 = 0;
+    /// Ends it.
+    pub const RELEASE: u16 = 1;
+    /// Reads a record.
+    pub const READ: u16 = 2;
+    /// Writes records.
+    pub const WRITE: u16 = 3;
+    /// PrmEnd, ApplicationReady.
+    pub const CONTROL: u16 = 4;
+    /// Reads a record outside a connection.
+    pub const READ_IMPLICIT: u16 = 5;
+}
+
+/// The interface of devices.
+pub const DEVICE: Uuid = Uuid([0xDE, 0xA0, 0, 1, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, 0, 0xA0, 0x24, 0x42, 0xDF, 0x7D]);
+/// The interface of controllers.
+pub const CONTROLLER: Uuid =
+    Uuid([0xDE, 0xA0, 0, 2, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, 0, 0xA0, 0x24, 0x42, 0xDF, 0x7D]);
+
+/// The object of a station.
+pub fn object(instance: u16, device: u16, vendor: u16) -> Uuid {
+    let [i0, i1] = instance.to_be_bytes();
+    let [d0, d1] = device.to_be_bytes();
+    let [v0, v1] = vendor.to_be_bytes();
+    Uuid([0xDE, 0xA0, 0, 0, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, i0, i1, d0, d1, v0, v1])
+}
+
+/// The header of a datagram.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Header {
+    /// What it is.
+    pub kind: Kind,
+    /// See [`flag`].
+    pub flags: u8,
+    /// The order of bytes of header and NDR.
+    pub order: Order,
+    /// Whom it is about.
+    pub object: Uuid,
+    /// Which set of operations.
+    pub interface: Uuid,
+    /// Who calls: one for each client, its own.
+    pub activity: Uuid,
+    /// When the server started; 0 for unknown.
+    pub boot: u32,
+    /// Counts the calls of an activity.
+    pub sequence: u32,
+    /// See [`operation`].
+    pub operation: u16,
+    /// Counts fragments.
+    pub fragment: u16,
+}
+
+/// A datagram.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Datagram<'a> {
+    /// Its header.
+    pub header: Header,
+    /// NDR and blocks, or a part of them.
+    pub body: &'a [u8],
+}
+
+impl<'a> Datagram<'a> {
+    /// Reads a datagram.
+    ///
+    /// # Errors
+    /// When it is no RPC of version 4, or shorter than it says.
+    pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
+        let mut reader = Reader::new(bytes);
+        let version = reader.u8("RPC version")?;
+        if version != 4 {
+            return Err(reader.wrong("RPC version", 1, version));
+        }
+        let kind = Kind(reader.u8("packet type")? & 0x1F);
+        let flags = reader.u8("flags")?;
+        reader.u8("flags 2")?;
+        let order = match reader.u8("data representation")? >> 4 {
+            0 => Order::Big,
+            1 => Order::Little,
+            other => return Err(reader.wrong("data representation", 1, other)),
+        };
+        reader.take(3, "data representation")?;
+        reader.order = order;
+        let object = reader.uuid("object")?;
+        let interface = reader.uuid("interface")?;
+        let activity = reader.uuid("activity")?;
+        let boot = reader.u32("server boot time")?;
+        reader.u32("interface version")?;
+        let sequence = reader.u32("sequence number")?;
+        let operation = reader.u16("operation")?;
+        reader.u32("hints")?;
+        let length = reader.u16("fragment length")?;
+        let fragment = reader.u16("fragment number")?;
+        reader.u16("authentication")?;
+        let body = reader.take(usize::from(length), "fragment")?;
+        let header = Header { kind, flags, order, object, interface, activity, boot, sequence, operation, fragment };
+        Ok(Self { header, body })
+    }
+
+    /// The bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let header = &self.header;
+        let mut out = Writer { bytes: Vec::with_capacity(HEADER_LEN + self.body.len()), order: header.order };
+        let representation = if header.order == Order::Big { 0x00 } else { 0x10 };
+        out.put(&[4, header.kind.0, header.flags, 0, representation, 0, 0, 0]);
+        out.uuid(header.object);
+        out.uuid(header.interface);
+        out.uuid(header.activity);
+        out.u32(header.boot);
+        out.u32(1);
+        out.u32(header.sequence);
+        out.u16(header.operation);
+        out.u32(0xFFFF_FFFF);
+        out.u16(count16(self.body.len()));
+        out.u16(header.fragment);
+        out.put(&[0; 2]);
+        out.put(self.body);
+        out.bytes
+    }
+}
+
+impl Header {
+    /// The header of the answer to it.
+    #[must_use]
+    pub const fn answer(&self) -> Self {
+        Self { kind: Kind::RESPONSE, flags: flag::NO_ACK | flag::LAST_FRAGMENT, fragment: 0, ..*self }
+    }
+
+    /// Whether what it stands before is a part of something longer.
+    pub const fn is_fragment(&self) -> bool {
+        self.flags & flag::FRAGMENT != 0
+    }
+}
+
+/// A call as it is behind the header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Call<'a> {
+    /// Room for the blocks of the answer.
+    pub room: u32,
+    /// The blocks.
+    pub blocks: &'a [u8],
+}
+
+impl<'a> Call<'a> {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// When lengths are longer than what is there.
+    pub fn parse(body: &'a [u8], order: Order) -> Result<Self, WireError> {
+        let (room, blocks) = read_ndr(body, order)?;
+        Ok(Self { room, blocks })
+    }
+
+    /// The bytes.
+    pub fn emit(&self, order: Order) -> Vec<u8> {
+        write_ndr(self.room, self.room, self.blocks, order)
+    }
+}
+
+/// An answer as it is behind the header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reply<'a> {
+    /// 0 for done; see [`super::status`].
+    pub status: u32,
+    /// The room that the call gave.
+    pub room: u32,
+    /// The blocks.
+    pub blocks: &'a [u8],
+}
+
+impl<'a> Reply<'a> {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// When lengths are longer than what is there.
+    pub fn parse(body: &'a [u8], order: Order) -> Result<Self, WireError> {
+        let mut reader = Reader::new(body);
+        reader.order = order;
+        let status = reader.u32("PNIOStatus")?;
+        // What refuses may end behind its status.
+        if status != 0 && body.len() < NDR_LEN {
+            return Ok(Self { status, room: 0, blocks: &[] });
+        }
+        let mut room = Reader { at: 8, ..reader };
+        let room = room.u32("MaximumCount")?;
+        let (_, blocks) = read_ndr(body, order)?;
+        Ok(Self { status, room, blocks })
+    }
+
+    /// The bytes.
+    pub fn emit(&self, order: Order) -> Vec<u8> {
+        write_ndr(self.status, self.room, self.blocks, order)
+    }
+}
+
+fn read_ndr(body: &[u8], order: Order) -> Result<(u32, &[u8]), WireError> {
+    let mut reader = Reader::new(body);
+    reader.order = order;
+    let first = reader.u32("ArgsMaximum")?;
+    let length = reader.u32("ArgsLength")?;
+    reader.u32("MaximumCount")?;
+    let offset = reader.u32("Offset")?;
+    if offset != 0 {
+        return Err(reader.wrong("Offset", 4, offset));
+    }
+    reader.u32("ActualCount")?;
+    let blocks = reader.take(usize::try_from(length).unwrap_or(usize::MAX), "blocks")?;
+    Ok((first, blocks))
+}
+
+fn write_ndr(first: u32, room: u32, blocks: &[u8], order: Order) -> Vec<u8> {
+    let mut out = Writer { bytes: Vec::with_capacity(NDR_LEN + blocks.len()), order };
+    let length = count32(blocks.len());
+    for number in [first, length, room, 0, length] {
+        out.u32(number);
+    }
+    out.put(blocks);
+    out.bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hex;
+    use super::*;
+
+    fn header(order: Order) -> Header {
+        Header {
+            kind: Kind::REQUEST,
+            flags: flag::IDEMPOTENT,
+            order,
+            object: object(1, 1, 0xFFFF),
+            interface: DEVICE,
+            activity: Uuid(hex("AAAAAAAA BBBB CCCC DDDD EEEEEEEEEEEE").try_into().unwrap()),
+            boot: 0,
+            sequence: 0,
+            operation: operation::CONNECT,
+            fragment: 0,
+        }
+    }
+
+    const BLOCKS: [u8; 394] = [7; 394];
+
+    /// notes, worked example: the header of Connect and its NDR.
+    #[test]
+    fn headers_in_both_orders_are_as_printed() {
+        let big = hex(concat!(
+            "04 00 20 00 000000 00 DEA00000 6C97 11D1 8271 0001 0001 FFFF DEA00001 6C97 11D1 8271 00A02442DF7D",
+            "AAAAAAAA BBBB CCCC DDDD EEEEEEEEEEEE 00000000 00000001 00000000 0000 FFFF FFFF 019E 0000 00 00",
+            "00001000 0000018A 00001000 00000000 0000018A",
+        ));
+        let little = hex(concat!(
+            "04 00 20 00 100000 00 0000A0DE 976C D111 8271 0001 0001 FFFF 0100A0DE 976C D111 8271 00A02442DF7D",
+            "AAAAAAAA BBBB CCCC DDDD EEEEEEEEEEEE 00000000 01000000 00000000 0000 FFFF FFFF 9E01 0000 00 00",
+            "00100000 8A010000 00100000 00000000 8A010000",
+        ));
+        for (order, start) in [(Order::Big, big), (Order::Little, little)] {
+            let body = Call { room: ROOM, blocks: &BLOCKS }.emit(order);
+            let datagram = Datagram { header: header(order), body: &body };
+            let bytes = [start, BLOCKS.to_vec()].concat();
+            assert_eq!(datagram.emit(), bytes);
+            let read = Datagram::parse(&bytes).unwrap();
+            assert_eq!(read, datagram);
+            assert_eq!(Call::parse(read.body, order), Ok(Call { room: ROOM, blocks: &BLOCKS }));
+        }
+    }
+
+    /// Likewise: the answer.
+    #[test]
+    fn answers_begin_with_their_status() {
+        let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(Order::Big);
+        assert_eq!(body[..20].to_vec(), hex("00000000 00000056 00001000 00000000 00000056"));
+        let refusal = hex("DB810209");
+        let read = Reply::parse(&refusal, Order::Big).unwrap();
+        assert_eq!((read.status, read.blocks), (0xDB81_0209, &[][..]));
+        assert_eq!(Reply::parse(&hex("00000000"), Order::Big).unwrap_err().field, "MaximumCount");
+        let longer = hex("00000000 00000056 00001000 00000000 00000056 00");
+        assert_eq!(Reply::parse(&longer, Order::Big).unwrap_err().field, "blocks");
+    }
+}

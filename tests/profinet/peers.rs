@@ -1,0 +1,308 @@
+//! Our controller and a device that others wrote (the crate `pnio`), and our controller and our simulated device: each
+//! in a network namespace of its own with a pair of virtual cards between them. Needs no rights, but user namespaces;
+//! where there are none it says so and passes.
+
+#![cfg(target_os = "linux")]
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use armctl_transport::image::tap::Tap;
+use armctl_transport::image::{Event as LinkEvent, ImageLink, LinkError};
+use armctl_transport::profinet::commission;
+use armctl_transport::profinet::controller::view::State;
+use armctl_transport::profinet::device::server::Server;
+use armctl_transport::profinet::device::{Application, Event, Fault, Setup};
+use armctl_transport::profinet::error::ProfinetError;
+use armctl_transport::profinet::interface::Interface;
+use armctl_transport::profinet::layout::Layout;
+use armctl_transport::profinet::link::Link;
+use armctl_transport::profinet::network::Network;
+use armctl_transport::profinet::settings::{Settings, Station};
+use armctl_transport::profinet::wire::Mac;
+use armctl_transport::profinet::wire::dcp::Block;
+use armctl_transport::profinet::wire::record::Im0;
+use pnio::api::{IoDevice, StartOptions};
+use pnio::config::{DeviceConfig, Slot};
+use pnio::data::FieldType;
+use pnio::device::RtOptions;
+use pnio::diag::{ChannelError, Severity};
+
+/// Both namespaces; the two programs are this one, told by the name of the test which end it is.
+const SCRIPT: &str = r#"
+set -e
+mount -t sysfs none /sys
+ip link set lo up
+ip link add pc0 type veth peer name pd0
+unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 60' & P=$!
+until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
+ip link set pd0 netns $P
+ip addr add 192.168.79.1/24 dev pc0
+ip link set pc0 up
+nsenter -t $P -n -m sh -c 'ip link set lo up; ip addr add 192.168.79.2/24 dev pd0; ip link set pd0 up'
+ROLE=end nsenter -t $P -n -m "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
+ROLE=end "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture; R=$?
+kill $D $P
+exit $R
+"#;
+
+#[test]
+fn our_controller_runs_a_device_that_others_wrote() {
+    if !run("others") {
+        println!("{SKIPPED}");
+    }
+}
+
+#[test]
+fn our_controller_finds_asks_and_runs_our_device() {
+    if !run("our") {
+        println!("{SKIPPED}");
+    }
+}
+
+const SKIPPED: &str = "skipped: there are no user namespaces here";
+
+/// Runs the two ends of this name, and wants the controller's to come to its end; false where that cannot be.
+fn run(name: &str) -> bool {
+    let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
+    if !can.is_ok_and(|status| status.success()) {
+        return false;
+    }
+    let program = std::env::current_exe().expect("this program has a path");
+    let mut command = Command::new("unshare");
+    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("PROGRAM", program).env("NAME", name);
+    let output = command.output().expect("unshare can be started");
+    let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(text.contains("the controller has seen all"), "{text}");
+    true
+}
+
+fn is_an_end() -> bool {
+    std::env::var_os("ROLE").is_some()
+}
+
+/// Shows back what it is shown, and raises a diagnosis while the first word says so.
+#[test]
+#[ignore = "one end of a test above"]
+fn others_device() {
+    const RAISE: u16 = 0x4141;
+    if !is_an_end() {
+        return;
+    }
+    let config = DeviceConfig::builder("yrcx-sim")
+        .station_type("YRCX like")
+        .identity(0xFFFF, 1)
+        .min_device_interval(32)
+        .input(Slot(1), &[FieldType::Word; 24])
+        .output(Slot(2), &[FieldType::Word; 24])
+        .build()
+        .unwrap();
+    let rt = RtOptions { iface: "pd0".to_owned(), cpu_pin: None, rt_priority: None, lock_memory: false };
+    let options =
+        StartOptions { iface: "pd0".to_owned(), ip: [192, 168, 79, 2], rt: Some(rt), app_cpus: None, im_store: None };
+    let device = IoDevice::start(config, options).unwrap();
+    let mut is_raised = false;
+    loop {
+        std::thread::park_timeout(Duration::from_millis(2));
+        if !device.ready() {
+            continue;
+        }
+        let Ok(outputs) = device.outputs(Slot(2)) else { continue };
+        let wanted = outputs.word(0).is_ok_and(|word| word == RAISE);
+        if wanted != is_raised {
+            is_raised = wanted;
+            if wanted {
+                device.raise_diagnosis(Slot(1), 0, ChannelError::LineBreak, Severity::Fault).unwrap();
+            } else {
+                device.clear_diagnosis(Slot(1), 0, ChannelError::LineBreak).unwrap();
+            }
+            assert_eq!(device.alarm_stats().unexpected_rx, 0);
+        }
+        let _ = device.with_inputs(Slot(1), |writer| {
+            for at in 0..24 {
+                writer.word(at, outputs.word(at)?)?;
+            }
+            Ok(())
+        });
+    }
+}
+
+fn settings() -> Settings {
+    let layout = Layout::two_modules(0x101, 0x102);
+    // A busy machine must not lose the connection.
+    let watchdog = Duration::from_millis(1920);
+    let mut settings = Settings::new(Station::Name("yrcx-sim".to_owned()), layout);
+    (settings.watchdog, settings.resting[32]) = (watchdog, 0x41);
+    settings
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn others_controller() {
+    if !is_an_end() {
+        return;
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let network = Network::shared("pc0").unwrap();
+        let begin = Instant::now();
+        // The device may not have started yet.
+        let mut connection = loop {
+            match network.open(settings(), Tap::default()).await {
+                Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
+                opened => break opened.unwrap(),
+            }
+        };
+        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().device);
+        for round in 0..3u8 {
+            let mut image = vec![round + 1; 48];
+            let generation = connection.view().generation;
+            connection.set_image(generation, &image).unwrap();
+            let shown = image.clone();
+            connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *shown)).await;
+            assert_eq!(connection.view().generation, 1);
+            // Diagnosis comes, and goes.
+            for (word, kind) in [(0x41, 0x01), (0, 0x0C)] {
+                image[..2].fill(word);
+                connection.set_image(generation, &image).unwrap();
+                let alarms = connection.view().statistics.alarms;
+                connection.until(|view| view.statistics.alarms > alarms || view.state != State::Open).await;
+                let alarm = connection.take_alarm().expect("an alarm came");
+                println!("{}", alarm.describe());
+                assert!(alarm.kind == kind || kind == 0x0C, "{alarm:?}");
+            }
+        }
+        let counted = connection.view().statistics;
+        println!("{counted:?}");
+        assert_eq!((connection.view().generation, counted.losses, counted.stale), (1, 0, 0));
+        connection.close().await.unwrap();
+
+        // Once more at once: the release has freed it.
+        let connection = network.open(settings(), Tap::default()).await.unwrap();
+        connection.close().await.unwrap();
+
+        let wrong = Settings { layout: Layout::two_modules(0x99, 0x102), ..settings() };
+        let refused = network.open(wrong, Tap::default()).await.unwrap_err();
+        println!("another module: {refused}");
+        assert!(matches!(refused, ProfinetError::Refused { .. } | ProfinetError::Modules(_)));
+
+        let nobody = Settings { station: Station::Name("nobody".to_owned()), ..settings() };
+        let refused = network.open(nobody, Tap::default()).await.unwrap_err();
+        assert!(matches!(refused, ProfinetError::NotFound { .. }));
+    });
+    println!("the controller has seen all");
+}
+
+/// Shows back what it is shown.
+#[derive(Debug, Default)]
+struct Echo(Vec<u8>);
+
+impl Application for Echo {
+    fn image_out(&mut self, _: Duration, image: Option<&[u8]>) {
+        self.0 = image.unwrap_or_default().to_vec();
+    }
+
+    fn image_in(&mut self, _: Duration, image: &mut [u8]) {
+        image.fill(0);
+        let length = image.len().min(self.0.len());
+        image[..length].copy_from_slice(&self.0[..length]);
+    }
+
+    fn event(&mut self, _: Duration, _: &Event) {}
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn our_device() {
+    if !is_an_end() {
+        return;
+    }
+    let interface = Interface::find("pd0").unwrap();
+    let setup = Setup {
+        mac: Mac::default(),
+        name: "yrcx-sim".to_owned(),
+        kind: "YRCX like".to_owned(),
+        id: (0xFFFF, 1),
+        instance: 1,
+        ip: None,
+        takes_ip: false,
+        layout: Layout::two_modules(0x101, 0x102),
+        shortest: 32,
+        im0: Im0 { order_id: "RCX340".to_owned(), software: ('V', 1, 2, 3), ..Im0::default() },
+    };
+    let server = Server::start(&interface, setup, Echo::default()).unwrap();
+    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
+    loop {
+        // Whoever shows 0x55 first wants the device to stop.
+        let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
+        if wants_stop {
+            server.with(|device, _| device.set_fault(Some(Fault::Stop)));
+            std::thread::park_timeout(Duration::from_millis(200));
+            server.with(|device, _| device.set_fault(None));
+        }
+        std::thread::park_timeout(Duration::from_millis(5));
+    }
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn our_controller() {
+    if !is_an_end() {
+        return;
+    }
+    let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
+    assert!(present.contains(&"pc0".to_owned()), "{present:?}");
+    let interface = Interface::find("pc0").unwrap();
+    let begin = Instant::now();
+    let found = loop {
+        match commission::by_name(&interface, "yrcx-sim") {
+            Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
+            found => break found.unwrap(),
+        }
+    };
+    let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
+    assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
+    let identity = commission::identity(interface.ip.unwrap().address, &found).unwrap();
+    assert_eq!(identity.im0.unwrap().order_id, "RCX340");
+    assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
+    commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();
+    let bad = commission::change(&interface, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
+    assert!(matches!(bad, ProfinetError::Dcp { error: 3, .. }), "{bad}");
+    let nobody =
+        commission::change(&interface, Mac([2, 0, 0, 0, 0, 0x77]), "DCP signal", &Block::signal()).unwrap_err();
+    assert!(matches!(nobody, ProfinetError::NoAnswer { .. }), "{nobody}");
+
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let soon = || tokio::time::Instant::now() + Duration::from_secs(30);
+        let mut link = ImageLink::over(Link::open("pc0", settings(), Tap::default()).await.unwrap());
+        let mut image = settings().resting;
+        image[0] = 0x55;
+        link.show(&image).unwrap();
+        let mut events = Vec::new();
+        while !events.iter().any(|event| matches!(event, LinkEvent::Reopened)) {
+            let event = link.next(soon()).await;
+            assert_ne!(event, LinkEvent::Timeout, "{events:?}");
+            events.push(event);
+        }
+        assert!(events.contains(&LinkEvent::Sent), "{events:?}");
+        let lost = events.iter().find_map(|event| match event {
+            LinkEvent::Lost(error) => Some(error.to_string()),
+            _ => None,
+        });
+        assert!(lost.unwrap().contains("in stop"));
+        // What was shown before is not shown again.
+        let rest = settings().resting;
+        loop {
+            match link.next(soon()).await {
+                LinkEvent::Image(image) if *image == *rest => break,
+                LinkEvent::Image(image) => assert_ne!(image[0], 0x55),
+                event => assert_ne!(event, LinkEvent::Timeout),
+            }
+        }
+        let second = Link::open("pc0", settings(), Tap::default()).await.unwrap_err();
+        assert!(matches!(LinkError::from(second), LinkError::Owned(_)));
+        link.close().await.unwrap();
+    });
+    println!("the controller has seen all");
+}
