@@ -48,9 +48,9 @@ pub enum Top {
     /// A family
     #[command(flatten)]
     Family(FamilyWord),
-    /// Type commands one after the other, over one link
+    /// Interactive prompt on one open connection
     Repl(Repl),
-    /// Run the commands of a file, over one link
+    /// Run commands from a file
     Batch(Batch),
     /// Commands that every family shares
     #[command(flatten)]
@@ -150,7 +150,7 @@ pub struct Globals {
     /// Only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say more on stderr: -v a summary, -vv frames, -vvv bytes
+    /// Increase verbosity: -v a summary, -vv frames, -vvv bytes
     #[arg(short, long, global = true, hide_short_help = true, action = clap::ArgAction::Count, help_heading = "Output")]
     pub verbose: u8,
     /// Colour
@@ -200,7 +200,7 @@ pub struct Globals {
     /// Repeat a read, every second or every INTERVAL
     #[arg(long, global = true, hide_short_help = true, value_name = "INTERVAL", num_args = 0..=1, default_missing_value = "1s", value_parser = duration::parse_some, help_heading = "Repeat")]
     pub watch: Option<Duration>,
-    /// Stop after so many reads
+    /// Stop after N reads
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
     pub count: Option<u64>,
     /// Repeat a read until a jq filter over its JSON is true

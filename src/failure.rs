@@ -24,7 +24,7 @@ pub enum Kind {
     /// A state-changing request went out and its answer was lost.
     OutcomeUnknown,
     /// Refused on this side, before anything was sent.
-    RefusedHere,
+    Rejected,
     /// The condition of `--until` or `--check` was not met.
     ConditionNotMet,
     /// Some robots or items failed, some did not.
@@ -40,13 +40,13 @@ impl Kind {
     /// Every kind with its exit code and what the code means, in the order of `armctl help exit-codes`.
     pub const TABLE: [(Self, u8, &'static str); 11] = [
         (Self::PipeClosed, 0, "done (also when the reader of stdout went away)"),
-        (Self::Local, 1, "own fault, or a local file or disk"),
+        (Self::Local, 1, "internal error, or a local file or disk"),
         (Self::Usage, 2, "usage or configuration"),
         (Self::Refused, 3, "the controller refused"),
         (Self::NoAnswer, 4, "no answer, or port absent or busy"),
         (Self::Malformed, 5, "malformed or unexpected answer"),
         (Self::OutcomeUnknown, 6, "outcome unknown: a state-changing request was sent, the answer was lost"),
-        (Self::RefusedHere, 7, "refused here: not confirmed, or a read-only robot"),
+        (Self::Rejected, 7, "rejected by armctl: not confirmed, or a read-only robot"),
         (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
         (Self::Mixed, 9, "some robots or items failed, some did not"),
         (Self::Interrupted, 130, "interrupted"),

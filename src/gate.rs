@@ -105,7 +105,7 @@ impl Gate {
         if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
         }
-        Err(Failure::new(Kind::RefusedHere, format!("{} is read-only", robot.label())).hint(match &robot.bound_by {
+        Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(match &robot.bound_by {
             Some(entry) => format!("its address is that of '{entry}' in robots.toml, which is read-only"),
             None => "remove read_only from its entry in robots.toml if it may be changed".to_owned(),
         }))
@@ -124,7 +124,7 @@ impl Gate {
         let names: Vec<&str> = unnamed.iter().map(|(robot, _)| robot.name.as_str()).collect();
         let counted = format!("{} of {} robots", unnamed.len(), robots.len());
         let message = format!("not confirmed: on {counted} ({}) this would {}", names.join(", "), intent.text);
-        Err(Failure::new(Kind::RefusedHere, message).hint(
+        Err(Failure::new(Kind::Rejected, message).hint(
             "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
         ))
     }
@@ -204,7 +204,7 @@ impl Change {
 /// Nobody can be asked.
 pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
     let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
-    Failure::new(Kind::RefusedHere, format!("not confirmed: on {} this would {text}", robot.label()))
+    Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))
         .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
 }
 

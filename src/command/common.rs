@@ -10,37 +10,37 @@ use super::frame::run::{Run, RunError};
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]
 pub enum Common {
-    /// One line a robot: reachable, mode, servo, state, alarm, position
+    /// Show a one-line status per robot
     Status(Overview),
-    /// All robots, or one, live on the whole screen
+    /// Full-screen live monitor
     Top(top::Top),
     /// The inventory: list, show, add, remove; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
-    /// Hold a link for all commands that follow: open, list, close
+    /// Keep a connection open for later commands: open, list, close
     #[command(subcommand)]
     Session(session::Session),
-    /// Save what controllers store in a folder of files
+    /// Save everything a controller stores to a folder
     Backup(backup::Backup),
-    /// Write back what a backup holds
+    /// Restore a backup
     Restore(backup::Restore),
     /// Compare a backup with another one, or with a controller
     Diff(backup::Diff),
-    /// Serve the simulators on real sockets
+    /// Run a simulator as a network or serial server
     Sim(tools::Sim),
-    /// Explain bytes of the line
+    /// Decode protocol bytes or a capture file
     #[command(subcommand)]
     Decode(tools::Decode),
-    /// What an error or alarm code means and what to do
+    /// Explain an error or alarm code: meaning, cause, remedy
     #[command(subcommand)]
     Explain(tools::Explain),
     /// Print the completion script of a shell
     Completions(completions::Completions),
-    /// Write the man pages
+    /// Write the man pages to a folder
     Man(man::Man),
     /// Print the JSON Schema of a report
     Schema(schema::SchemaOf),
-    /// Explain a topic, or a command
+    /// Show help for a command or a topic
     Help(help::Help),
 }
 

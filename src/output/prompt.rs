@@ -30,7 +30,7 @@ impl Screen {
         // A terminal that cannot be read any more, as it was closed, gives no answer either.
         if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {
             Self::stderr("\n");
-            return Err(Failure::new(Kind::RefusedHere, "not confirmed: there was no answer; nothing was sent")
+            return Err(Failure::new(Kind::Rejected, "not confirmed: there was no answer; nothing was sent")
                 .hint("answer the question, or use --yes"));
         }
         Ok(answer)

@@ -110,7 +110,7 @@ fn every_command_is_held_by_the_gate() {
         };
         let is_stop = STOPS.contains(line);
         let refused =
-            |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::RefusedHere);
+            |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
         let is_when_known = intent.confirmation == crate::gate::Confirmation::WhenKnown;
         let is_asked = *risk == Motion || *risk == Destroy && !is_when_known;
         for (what, is_right) in [

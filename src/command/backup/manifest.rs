@@ -299,7 +299,7 @@ pub fn admit(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(), Fail
     if force || robot.target.value.is_simulated() || *target == robot.target.value.url() {
         return Ok(());
     }
-    Err(Failure::new(Kind::RefusedHere, format!("the backup is of {name} ({target}), not of {}", robot.label()))
+    Err(Failure::new(Kind::Rejected, format!("the backup is of {name} ({target}), not of {}", robot.label()))
         .hint("name the robot that the backup is of; --force takes it for this one all the same"))
 }
 

@@ -185,7 +185,7 @@ const MOST_KEYS: usize = 6;
 
 /// Whether the next file or part can be tried after a failure.
 pub fn goes_on(failure: &Failure) -> bool {
-    matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::RefusedHere)
+    matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::Rejected)
 }
 
 /// What a person must know first: that something may have been done, then that the work ended early.

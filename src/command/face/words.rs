@@ -31,7 +31,7 @@ enum Verb<C: Subcommand> {
     /// A command of the family
     #[command(flatten)]
     Command(C),
-    /// Type commands one after the other, over one link
+    /// Interactive prompt on one open connection
     Repl(Repl),
 }
 

@@ -24,15 +24,15 @@ use crate::settings::{Setting, duration};
 /// What can be done with the inventory.
 #[derive(Debug, Subcommand)]
 pub enum Robots {
-    /// Every robot of the inventory
+    /// List the robots of the inventory
     List,
-    /// One robot with every setting in force
+    /// Show the effective settings of a robot
     Show(Show),
     /// Add a robot
     Add(Add),
     /// Remove a robot
     Remove(Remove),
-    /// What is wrong between this machine and a robot, and what to set
+    /// Diagnose a connection step by step
     Check(check::Check),
     /// Which controllers answer on the network, and which serial ports are there
     Discover(discover::Discover),

@@ -129,7 +129,7 @@ pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
         }
         SessionBusy::Moved(holder) => {
             let message = format!("{label}: another client moves the robot: {}; nothing was sent", peer(holder));
-            Failure::new(Kind::RefusedHere, message)
+            Failure::new(Kind::Rejected, message)
                 .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
         }
     }

@@ -108,7 +108,7 @@ async fn ask(
     });
     match interruptible(asked).await {
         Ok(Ok(Ok(true))) => Ok(()),
-        Ok(Ok(Ok(false))) => Err(Failure::new(Kind::RefusedHere, format!("not confirmed; {otherwise}"))),
+        Ok(Ok(Ok(false))) => Err(Failure::new(Kind::Rejected, format!("not confirmed; {otherwise}"))),
         Ok(Ok(Err(failure))) => Err(failure),
         Ok(Err(error)) => Err(Failure::local(format!("confirmation prompt failed: {error}"))),
         Err(failure) => {

@@ -323,7 +323,7 @@ impl Run {
             .collect();
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == outcomes.len() && failures.iter().all(|failure| failure.kind == first.kind) {
-            Failure::new(first.kind, "every robot failed")
+            Failure::new(first.kind, "all robots failed")
         } else {
             Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
         };

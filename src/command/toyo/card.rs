@@ -17,9 +17,9 @@ use crate::output::view::{Cell, Tone, View};
 commands! {
     /// The memory card.
     pub enum Card {
-        /// Read everything from the card, over what the controller holds
+        /// Restore the controller from the memory card
         Read(Read),
-        /// Write everything that the controller holds to the card
+        /// Save the controller to the memory card
         Write(Write),
     }
 }

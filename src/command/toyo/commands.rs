@@ -10,39 +10,39 @@ use crate::command::{Offline, Subcommands, commands};
 commands! {
     /// What can be asked of a Toyo controller.
     pub enum Commands {
-        /// All five status pages in words
+        /// Show all status flags
         Status(status::Status),
         /// Return to the origin
         Home(home::Home),
-        /// Where the axes are
+        /// Current position of the axes
         Position(position::Position),
-        /// Take or give back the command of the controller
+        /// Take or release host control (host ON / OFF)
         Host(host::Host),
-        /// Choose how programs run, or which kind of them
+        /// Select run mode or program type
         Mode(orders::Mode),
         /// Switch servo power
         Servo(orders::Servo),
-        /// Stop what runs, or what is jogged
+        /// Stop the running program or jog
         Stop(orders::Stop),
-        /// Put programs back to their beginning
+        /// Reset programs to the first step
         Reset(orders::Reset),
         /// Errors
         Error(Subcommands<error::Error>),
-        /// Run programs, and move to a point
+        /// Start programs, move to a point
         Run(Subcommands<run::Run>),
-        /// Move one axis, for a time or by small steps
+        /// Jog one axis, for a time or in small steps
         Jog(jog::Jog),
         /// Parameters: read, change, save, restore
         Param(Subcommands<param::Param>),
         /// Points of the coordinate table
         Point(Subcommands<point::Point>),
-        /// Speeds that programs name by their row
+        /// Speed table
         SpeedTable(Subcommands<rows::SpeedTable>),
-        /// Acceleration times that programs name by their row
+        /// Acceleration table
         AccelTable(Subcommands<rows::AccelTable>),
-        /// Groups of the MVM table, from which MVM moves along a matrix
+        /// MVM table (matrix moves)
         Mvm(Subcommands<mvm::Mvm>),
-        /// Torque limits that programs name by their row
+        /// Torque table
         TorqueTable(Subcommands<rows::TorqueTable>),
         /// Sequential programs: read, write, edit, check
         Program(Subcommands<program::Program>),
@@ -50,9 +50,9 @@ commands! {
         Palletizing(Subcommands<palletizing::Palletizing>),
         /// Easy programs
         Easy(Subcommands<easy::Easy>),
-        /// Save all that is stored in the controller in a folder
+        /// Save everything the controller stores to a folder
         Backup(backup::Backup),
-        /// Write back what a backup holds
+        /// Restore a backup
         Restore(backup::Restore),
         /// Input, output and internal ports
         Io(Subcommands<io::Io>),
@@ -60,17 +60,17 @@ commands! {
         Counter(Subcommands<counter::Counter>),
         /// Timers
         Timer(Subcommands<timer::Timer>),
-        /// The share of their speeds that programs run at
+        /// Speed override (percent)
         Override(Subcommands<overrides::Override>),
-        /// The task that programs and points are those of
+        /// Show or select the current task
         Task(Subcommands<task::Task>),
-        /// How far coordinates are shifted at present
+        /// Current coordinate offset
         Offset(offset::Offset),
-        /// Supply coordinates to a program
+        /// Send coordinates to a waiting RSMV step
         Coordinate(Subcommands<coordinate::Coordinate>),
         /// Settings and errors of CC-Link
         Bus(bus::Bus),
-        /// The memory card
+        /// Memory card: read, write
         Card(Subcommands<card::Card>),
         /// Clear memory
         Init(init::Init),
@@ -78,11 +78,11 @@ commands! {
         RobotType(robot_type::RobotType),
         /// Robot type, versions, axes, task, override
         Info(info::Info),
-        /// Send any block, and explain the answer
+        /// Send any block and decode the answer
         Raw(raw::Raw),
-        /// The serial ports of this machine
+        /// List the serial ports of this machine
         Ports(Offline<ports::Ports>),
-        /// Programs at the desk, without any controller
+        /// Run programs offline
         Sim(Subcommands<sim::Sim>),
     }
 }

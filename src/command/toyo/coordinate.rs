@@ -15,7 +15,7 @@ use crate::failure::Failure;
 commands! {
     /// Coordinates that the host supplies.
     pub enum Coordinate {
-        /// Supply coordinates to an RSMV, which moves there
+        /// Send coordinates to a waiting RSMV step, which moves there
         Set(Set),
     }
 }

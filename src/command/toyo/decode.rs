@@ -17,7 +17,7 @@ use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
 
-/// Lines of the host communication, of either side
+/// Lines of the Toyo host communication, either direction
 #[derive(Debug, Args)]
 #[command(
     after_help = "Who sent a line is told by its form, or by -> or <- in front of it: `armctl decode toyo -` takes what \

@@ -22,13 +22,13 @@ use crate::output::view::{Cell, Table, Tone, View};
 commands! {
     /// Errors.
     pub enum Error {
-        /// The error that is present, with cause and remedy
+        /// Show the present error with cause and remedy
         Show(Show),
-        /// The errors of the past, the latest first
+        /// Error history, the latest first
         History(History),
         /// Cancel the error
         Cancel(Cancel),
-        /// The point at which the error came up
+        /// The point at which the error occurred
         Point(Point),
     }
 }

@@ -12,7 +12,7 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::target::Family;
 
-/// An error code of a Toyo controller
+/// Error code of a Toyo controller
 #[derive(Debug, Args)]
 pub struct Explain {
     /// The code in hexadecimal, as in 28 or 0xA1

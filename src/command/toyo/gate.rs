@@ -128,7 +128,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
         read_only.read_only.value = true;
         let refused = Gate::default().must_ask(&QUIET, &read_only, &intent);
         let is_refused =
-            refused.is_err_and(|failure| failure.kind == Kind::RefusedHere && failure.message.contains("read-only"));
+            refused.is_err_and(|failure| failure.kind == Kind::Rejected && failure.message.contains("read-only"));
         if is_refused == (*risk_of_it == Read || intent.is_stop) {
             wrong.push(format!("{line}: a read-only robot"));
         }
@@ -139,7 +139,7 @@ fn nothing_is_changed_that_was_not_confirmed() {
             let kind = came.as_ref().err().map(|failure| failure.kind);
             // What would fall out at the end is refused whatever anybody says.
             let is_told = |message: &str| message.starts_with("not confirmed: ") || message.contains("would fall out");
-            if kind != Some(Kind::RefusedHere) || !came.as_ref().is_err_and(|failure| is_told(&failure.message)) {
+            if kind != Some(Kind::Rejected) || !came.as_ref().is_err_and(|failure| is_told(&failure.message)) {
                 wrong.push(format!("{line}: {came:?}"));
             }
             if intent.confirmation != Confirmation::WhenKnown && !heard.borrow().is_empty() {
@@ -246,7 +246,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     let mut refused = |line: &str| {
         let words: Vec<&str> = line.split(' ').collect();
         let failure = bench.unasked(&words).expect_err(line);
-        assert_eq!(failure.kind, Kind::RefusedHere, "{line}");
+        assert_eq!(failure.kind, Kind::Rejected, "{line}");
         failure.message.split(" this would ").nth(1).unwrap_or_default().to_owned()
     };
     for (line, question) in [

@@ -21,7 +21,7 @@ commands! {
     pub enum Override {
         /// Read the override
         Get(Get),
-        /// Write the override to the EEPROM; it counts while no program runs
+        /// Write the override to the EEPROM; takes effect while no program runs
         Set(Set),
     }
 }

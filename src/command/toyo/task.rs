@@ -18,9 +18,9 @@ use crate::output::view::View;
 commands! {
     /// What can be done with the current task.
     pub enum Task {
-        /// Which task is the current one
+        /// Show the current task
         Get(Get),
-        /// Choose the task whose program and points are read, written and cleared
+        /// Select the task whose program and points are read and written
         Set(Set),
     }
 }

@@ -27,9 +27,9 @@ use crate::output::view::{Cell, Table, Tone, View};
 commands! {
     /// Alarms.
     pub enum Alarm {
-        /// The alarms that are present
+        /// Present alarms
         List(List),
-        /// The alarms of the past, the latest of each class first
+        /// Alarm history, the latest of each class first
         History(History),
         /// Reset the alarm
         Reset(Reset),
@@ -241,7 +241,7 @@ macro_rules! order {
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
     Reset, "yerc.alarm.reset", query::ResetAlarm,
-    "the controller took the reset; `yerc alarm list` shows what is left"
+    "alarm reset accepted; `yerc alarm list` shows what is left"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).

@@ -70,7 +70,7 @@ impl Chosen {
             (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
             (old, new) => format!("{new} is selected now, the question was about {old}"),
         };
-        Err(Failure::new(Kind::RefusedHere, format!("{message}; nothing was started"))
+        Err(Failure::new(Kind::Rejected, format!("{message}; nothing was started"))
             .hint("somebody else is at work there: look, then repeat the command"))
     }
 }

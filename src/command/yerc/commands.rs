@@ -6,7 +6,7 @@ use crate::command::{Subcommands, commands};
 commands! {
     /// What can be asked of an FS100 or DX200.
     pub enum Commands {
-        /// Mode, cycle, servo, hold, alarm: every status bit
+        /// Show mode, cycle, servo, hold, alarm: every status bit
         Status(status::Status),
         /// Alarms: list, history, reset, cancel
         Alarm(Subcommands<alarm::Alarm>),
@@ -14,13 +14,13 @@ commands! {
         Job(Subcommands<job::Job>),
         /// Files: list, get, put, delete, diff, backup, restore, cmos
         File(Subcommands<file::File>),
-        /// Where a control group stands: pulses, base coordinates, form
+        /// Current position of a control group
         Position(position::Position),
-        /// The axes of each control group
+        /// List the axes of each control group
         Axes(axes::AxesOf),
-        /// How far each axis is from where it should be
+        /// Position deviation (following error) per axis
         PositionError(axes::PositionError),
-        /// The torque of each axis
+        /// Torque per axis
         Torque(axes::Torque),
         /// Variables: get, set, dump, restore
         Var(Subcommands<var::Var>),
@@ -30,21 +30,21 @@ commands! {
         Register(Subcommands<register::Register>),
         /// Switch servo power
         Servo(orders::Servo),
-        /// Hold the robot, or let it go on
+        /// Apply (on) or release (off) HOLD
         Hold(orders::Hold),
         /// Lock or unlock the pendant and the operation signals
         Hlock(orders::Hlock),
-        /// Choose step, one cycle or continuous
+        /// Select step, one cycle or continuous
         Cycle(orders::Cycle),
         /// Show a message on the pendant
         Say(orders::Say),
-        /// Move a robot or station
+        /// Move a robot or station: joint, linear, relative, pulse
         Move(Subcommands<moves::Move>),
-        /// Running times: power, servo, playback, motion, applications
+        /// Operating hours: power, servo, playback, motion, applications
         Hours(hours::Hours),
         /// Software version, robot models, parameters
         Info(info::Info),
-        /// Send any request and explain the answer
+        /// Send any request and decode the answer
         Raw(raw::Raw),
     }
 }

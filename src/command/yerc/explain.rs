@@ -11,7 +11,7 @@ use crate::output::Screen;
 use crate::output::view::{Section, View};
 use crate::settings::target::Family;
 
-/// A status code (one byte) or added status code (two bytes) of an FS100 or DX200
+/// Status code (1 byte) or added status code (2 bytes) of an FS100 or DX200
 #[derive(Debug, Args)]
 pub struct Explain {
     /// The code in hexadecimal, as in 0x2060, 2060 or 1F

@@ -108,7 +108,7 @@ fn every_command_passes_the_gate_by_its_risk() {
         if *risk == Read || intent.is_stop {
             assert_eq!(passed, Ok(false), "{line}");
         } else {
-            assert_eq!(passed.unwrap_err().kind, Kind::RefusedHere, "{line}");
+            assert_eq!(passed.unwrap_err().kind, Kind::Rejected, "{line}");
         }
 
         let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));

@@ -36,9 +36,9 @@ use crate::settings::duration;
 commands! {
     /// Jobs.
     pub enum Job {
-        /// What runs: job, line, step and speed override of a task
+        /// Show the running job: name, line, step, speed override
         Show(Show),
-        /// Choose the job that a start will run
+        /// Select the job to start
         Select(Select),
         /// Start the selected job
         Start(Start),

@@ -26,13 +26,13 @@ use crate::failure::Failure;
 commands! {
     /// Motions.
     pub enum Move {
-        /// To a position, each axis on its own way
+        /// Joint-interpolated move (MOVJ)
         Joint(Joint),
-        /// To a position, in a straight line
+        /// Linear move (MOVL)
         Linear(Linear),
-        /// By a distance, in a straight line
+        /// Linear move by a distance (IMOV)
         Relative(Relative),
-        /// To pulses: joint, linear
+        /// Move to pulse positions: joint, linear
         Pulse(Subcommands<Pulse>),
     }
 }
@@ -40,9 +40,9 @@ commands! {
 commands! {
     /// Motions to pulses.
     pub enum Pulse {
-        /// Each axis on its own way
+        /// Joint-interpolated move (MOVJ)
         Joint(PulseJoint),
-        /// In a straight line
+        /// Linear move (MOVL)
         Linear(PulseLinear),
     }
 }
@@ -174,7 +174,7 @@ macro_rules! motion {
 motion! {
     /// Moves to a position, axes interpolated (0x8A, instance 1).
     Joint {
-        /// Share of the greatest speed, such as 10%
+        /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: Target
     }, "yerc.move.joint",
     |this, link| this.target.intent("by its joints", this.speed), this.target.going(link, MoveKind::Link, this.speed)
@@ -199,7 +199,7 @@ motion! {
 motion! {
     /// Moves to pulses, axes interpolated (0x8B, instance 1).
     PulseJoint {
-        /// Share of the greatest speed, such as 10%
+        /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
     }, "yerc.move.pulse.joint",
     |this, link| this.target.intent("by its joints", this.speed),

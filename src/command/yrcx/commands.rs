@@ -14,15 +14,15 @@ commands! {
         Status(status::Status),
         /// Move a robot to a point or to coordinates
         Move(Moving<motion::Move>),
-        /// Move a robot by distances
+        /// Relative move
         Movei(Moving<motion::Movei>),
-        /// Move a robot to a point in the coordinates of its tool
+        /// Move to a point in tool coordinates
         Movet(Moving<motion::Movet>),
-        /// Move one axis to a place
+        /// Move one axis to an absolute position
         Drive(Moving<motion::Drive>),
-        /// Move one axis by a distance
+        /// Move one axis by a relative distance
         Drivei(Moving<motion::Drivei>),
-        /// Move a robot to a place on a pallet
+        /// Move to a pallet position
         Pallet(Moving<motion::Pallet>),
         /// Push with one axis
         Push(Moving<motion::Push>),
@@ -32,7 +32,7 @@ commands! {
         Inch(Moving<motion::Inch>),
         /// Set the inching distance
         InchDistance(motion::InchDistance),
-        /// Store where the robot is in a point
+        /// Teach: store the current position as a point
         Teach(teach::Teach),
         /// Return to origin
         Origin(motion::Origin),
@@ -40,11 +40,11 @@ commands! {
         AbsReset(motion::AbsReset),
         /// Set a speed
         Speed(speed::Speed),
-        /// The shift of the coordinates
+        /// Coordinate shift selection
         Shift(Subcommands<select::Shift>),
-        /// The hand at the robot's end
+        /// Hand (end effector) selection
         Hand(Subcommands<select::Hand>),
-        /// The hand system of the arm
+        /// Arm hand system
         Arm(Subcommands<select::Arm>),
         /// Limit the torque of an axis
         TorqueLimit(torque_limit::TorqueLimit),
@@ -54,25 +54,25 @@ commands! {
         Motor(servo::Motor),
         /// Points
         Point(Subcommands<data::Point>),
-        /// Comments of points
+        /// Point comments: get, set
         Comment(Subcommands<data::Comment>),
         /// Pallets
         PalletData(Subcommands<data::PalletData>),
-        /// Shifts of coordinates
+        /// Coordinate shifts
         ShiftData(Subcommands<data::ShiftData>),
         /// Hands
         HandData(Subcommands<data::HandData>),
-        /// Points and shifts that the controller computes
+        /// Calculate points and shifts on the controller
         PointCalc(Subcommands<point_calc::PointCalc>),
-        /// Save points, pallets, shifts, hands, variables, parameters in a folder
+        /// Save points, pallets, shifts, hands, variables and parameters to a folder
         Backup(backup::Backup),
-        /// Write back what a backup holds
+        /// Restore a backup
         Restore(backup::Restore),
         /// Static variables SGI and SGR
         Var(Subcommands<var::Var>),
         /// Parameters of robots and axes
         Param(Subcommands<param::Param>),
-        /// Ports of eight signals
+        /// I/O ports of eight signals
         Port(Subcommands<port::Port>),
         /// Programs and their tasks
         Program(Subcommands<program::Program>),
@@ -82,27 +82,27 @@ commands! {
         Clock(Subcommands<clock::Clock>),
         /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
-        /// Signals: what the controller shows and is shown
+        /// Read and switch dedicated and general I/O (SI / SO)
         Io(Subcommands<io::Io>),
-        /// Servos on, by signals
+        /// Switch servos on with the dedicated inputs
         PowerOn(procedures::PowerOn),
-        /// Into emergency stop, by signals
+        /// Trigger the emergency-stop input SI(00)
         EmergencyStop(procedures::EmergencyStop),
-        /// Out of emergency stop with servos on, by signals
+        /// Clear the emergency stop and switch servos on
         Recover(procedures::Recover),
         /// Wait for AUTO mode
         AutoMode(procedures::AutoMode),
-        /// Reset the robot program, by signals
+        /// Reset the robot program with the dedicated inputs
         Reset(procedures::Reset),
-        /// Run the robot program, by signals
+        /// Start the robot program with the dedicated inputs
         Run(procedures::Run),
-        /// Stop the robot program, by signals
+        /// Stop the robot program with the dedicated inputs
         Stop(procedures::Stop),
-        /// Reset the status of remote commands
+        /// Reset the remote command status
         StatusReset(status_reset::StatusReset),
-        /// Send the words of any remote command, and explain the answer
+        /// Send the words of any remote command and decode the answer
         Raw(raw::Raw),
-        /// The network board itself: who it is, which assemblies it has (diagnosis)
+        /// Diagnose the network board: identity, assemblies, attributes
         Eip(Subcommands<eip::Eip>),
         /// The bus of a controller on DeviceNet: who is there, sizes, owner (diagnosis)
         Devicenet(Subcommands<devicenet::DeviceNet>),

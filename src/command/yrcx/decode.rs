@@ -20,7 +20,7 @@ use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
-/// Words of remote commands and their answers
+/// Words of YRCX remote commands and their answers
 #[derive(Debug, Args)]
 #[command(
     after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \

@@ -11,7 +11,7 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::target::Family;
 
-/// An alarm of a YRCX
+/// Alarm number of a YRCX
 #[derive(Debug, Args)]
 pub struct Explain {
     /// Group and category, as in 12.600

@@ -209,7 +209,7 @@ fn a_read_only_robot_is_read_and_stopped() {
         if risk == Risk::Read || ["stop", "emergency-stop"].contains(&line) {
             assert_eq!(passes, Ok(false), "{line}");
         } else {
-            assert_eq!(passes.unwrap_err().kind, Kind::RefusedHere, "{line}");
+            assert_eq!(passes.unwrap_err().kind, Kind::Rejected, "{line}");
         }
     }
 }

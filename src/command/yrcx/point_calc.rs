@@ -21,7 +21,7 @@ commands! {
         Add(Add),
         /// Subtract a point from another one: 100 --from 1
         Sub(Sub),
-        /// Copy a place of a pallet to a point: 2 --place 133 --to 100
+        /// Copy a pallet position to a point: 2 --place 133 --to 100
         Pallet(Pallet),
         /// Set one element of a point: 1 --element 4 --mm 1.0
         Element(Element),

@@ -22,15 +22,15 @@ commands! {
         Select(Select),
         /// Run a program, or all of them
         Run(Run),
-        /// Run one line, also of a subroutine
+        /// Step into: run one line, also of a subroutine
         Step(Step),
         /// Skip one line
         Skip(Skip),
-        /// Run one line, a subroutine as a whole
+        /// Step over: run one line, a subroutine as a whole
         Next(Next),
-        /// Put a program back to its first line, or all of them
+        /// Reset a program, or all of them, to the first line
         Reset(Reset),
-        /// Read what a program does
+        /// Show program states
         Show(Show),
     }
 }

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_manual_does_not_allow_is_refused_here() {
+    fn what_the_manual_does_not_allow_is_rejected() {
         assert!(objection(&["raw", "--wi", "0x0999"]).contains("0x0999 is no code"));
         assert!(objection(&["raw", "--wi", "1,0xC000,0,0,19"]).contains("alarm 4.202"));
         assert!(objection(&["raw", "--wi", "0x406,0x100"]).contains("WI1"));

@@ -1,4 +1,4 @@
-//! Why an order was not carried out, in words: refused here, refused by the controller, or nobody knows.
+//! Why an order was not carried out, in words: rejected by armctl, refused by the controller, or nobody knows.
 
 use super::io::named;
 use super::position::Unit;
@@ -150,7 +150,7 @@ pub fn no_commands(label: &str, row: &Row) -> Failure {
         "{label}: the fieldbus unit carries signals alone (I/O size \"Compact\"), and {} is a remote command",
         row.id
     );
-    Failure::new(Kind::RefusedHere, message).hint(
+    Failure::new(Kind::Rejected, message).hint(
         "set the unit's I/O size to Normal for remote commands; signals work: `yrcx status`, `yrcx io`, `yrcx run`, \
          `yrcx stop`, `yrcx recover`",
     )

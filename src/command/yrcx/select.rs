@@ -15,7 +15,7 @@ use crate::failure::Failure;
 commands! {
     /// What can be done about the shift.
     pub enum Shift {
-        /// Select a shift of the coordinates
+        /// Select a coordinate shift
         Select(ShiftSelect),
     }
 }
@@ -23,7 +23,7 @@ commands! {
 commands! {
     /// What can be done about the hand.
     pub enum Hand {
-        /// Select the hand at the robot's end
+        /// Select the hand
         Select(HandSelect),
     }
 }
@@ -31,7 +31,7 @@ commands! {
 commands! {
     /// What can be done about the arm.
     pub enum Arm {
-        /// Select the hand system that coordinates are reached in
+        /// Select the hand system for coordinates
         Select(ArmSelect),
     }
 }

@@ -103,7 +103,7 @@ fn is_named(info: &Info, name: &str) -> bool {
 
 fn still_open(label: &str, error: &AttachError) -> Failure {
     match error {
-        AttachError::Refused(why) => Failure::new(Kind::RefusedHere, format!("{label}: it stays open: {why}")).hint(
+        AttachError::Refused(why) => Failure::new(Kind::Rejected, format!("{label}: it stays open: {why}")).hint(
             "wait for the end of that, or stop it; --force closes the session all the same, and a controller then \
                    breaks the motion off",
         ),

@@ -15,11 +15,11 @@ use crate::command::frame::run::{Run, RunError};
 /// What can be done with sessions.
 #[derive(Debug, Subcommand)]
 pub enum Session {
-    /// Hold the link to a robot, for all commands that follow
+    /// Open a connection and keep it for later commands
     Open(open::Open),
-    /// Which links are held, and who uses them
+    /// List open sessions and who uses them
     List(list::List),
-    /// Let the link to a robot go
+    /// Close a session
     Close(close::Close),
 }
 

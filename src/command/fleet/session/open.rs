@@ -28,7 +28,7 @@ use crate::transport::session::place::{Place, Spot};
 /// Arguments of `session open`.
 #[derive(Debug, Args)]
 pub struct Open {
-    /// Go on behind the terminal; return once the link is up
+    /// Run in the background; return once the connection is open
     #[arg(long)]
     background: bool,
     /// The family, where the target does not tell
@@ -53,7 +53,7 @@ impl Open {
         if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
         {
             let message = format!("{} is read-only, and a session commands the controller", robot.label());
-            return Err(Failure::new(Kind::RefusedHere, message)
+            return Err(Failure::new(Kind::Rejected, message)
                 .hint("`yrcx status` and `yrcx io get` read without a command connection")
                 .into());
         }

@@ -117,7 +117,7 @@ pub const KEYS: [Explained; 15] = [
     explained((true, false), "/", "filter", "only robots with a text in name, family, address or tag"),
     explained((true, false), "Esc", "", "all robots again"),
     explained((true, false), "s", "sort", "as given, trouble first, by name, slowest first"),
-    explained((true, true), "Space", "pause", "hold the picture still; looking goes on"),
+    explained((true, true), "Space", "pause", "pause the display; polling continues"),
     explained((true, true), "+ -", "pace", "look more often, less often"),
     explained((true, true), "?", "help", "this list; also h"),
     explained((true, true), "q", "quit", "end"),

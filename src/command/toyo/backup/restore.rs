@@ -389,7 +389,7 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
     if other.is_empty() {
         return Ok(());
     }
-    Err(Failure::new(Kind::RefusedHere, format!("the backup is of another machine: {}", other.join(", ")))
+    Err(Failure::new(Kind::Rejected, format!("the backup is of another machine: {}", other.join(", ")))
         .hint("nothing was written; take the backup of this robot; --force writes it all the same"))
 }
 
@@ -429,7 +429,7 @@ async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Fai
     let message = format!(
         "step {step} is '{text}' in the backup, which is {NOT_IN_MANUAL} and is not written; here it is '{found}'"
     );
-    Err(Failure::new(Kind::RefusedHere, message)
+    Err(Failure::new(Kind::Rejected, message)
         .hint("nothing of this program was written; write the step with the teach pendant, then restore again"))
 }
 

@@ -186,7 +186,7 @@ fn another_robot_is_refused() {
     let folder = desk.saved();
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
-    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert_eq!(failed.kind, Kind::Rejected);
     assert_eq!(failed.message, "the backup is of another machine: robot type is 000000 in the backup and 000007 here");
     other.data(&["restore", &folder, "--force", "--only", "program"]);
 }
@@ -296,7 +296,7 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
     assert_eq!(part(&bench.data(&["restore", folder]), "program-1")["state"], "done");
     let (mut bench, heard) = Bench::with_faults(EMPTY, |_, _| Fault::None);
     let failed = failure(&mut bench, &["restore", folder]);
-    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert_eq!(failed.kind, Kind::Rejected);
     assert!(
         failed.message.contains("step 4 is 'FOO X=1' in the backup, which is not in the manual and is not written"),
         "{failed}"
@@ -319,13 +319,13 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
         let failed = failure(&mut bench, &["restore", &folder, "--only", "parameters"]);
         assert_eq!(
             (failed.kind, &*failed.message),
-            (Kind::RefusedHere, &*format!("the backup is of another machine: {told}"))
+            (Kind::Rejected, &*format!("the backup is of another machine: {told}"))
         );
         assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
         bench.data(&["restore", &folder, "--only", "parameters", "--force"]);
     }
     // Name and address are those of the list, as with `armctl restore`.
     let failed = blocks(&["restore", &folder]).unwrap_err();
-    assert_eq!(failed.kind, Kind::RefusedHere);
+    assert_eq!(failed.kind, Kind::Rejected);
     assert!(failed.message.contains("the backup is of sim (sim:), not of tcp://127.0.0.1:1"), "{failed}");
 }

@@ -26,11 +26,11 @@ commands! {
         Get(get::Get),
         /// Write a program: 1 START LOOP END
         Set(set::Set),
-        /// Copy a program to another place
+        /// Copy a program to another number
         Copy(orders::Copy),
-        /// Choose the program that run easy starts
+        /// Select the program that `run easy` starts
         Select(orders::Select),
-        /// How far the program is that runs
+        /// Progress of the running program
         Progress(progress::Progress),
     }
 }

@@ -25,7 +25,7 @@ commands! {
         Internal(read::Internal),
         /// Set outputs: 1.3=on, or 1=.......1 for the bits of a whole port
         Set(set::Set),
-        /// Order one of the direct outputs F1 to F4
+        /// Switch one of the direct outputs F1 to F4
         Direct(set::Direct),
     }
 }

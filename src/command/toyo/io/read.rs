@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn ports_that_there_are_not_are_refused_here() {
+    fn ports_that_there_are_not_are_rejected() {
         assert!(objection(&["io", "in", "--port", "24"]).contains("1..=23"));
         assert!(objection(&["io", "in", "--station", "5"]).contains("0..=4"));
         let message = |words: &[&str]| blocks(words).unwrap_err().message;

@@ -31,11 +31,11 @@ commands! {
         Get(get::Get),
         /// Write a record, or those of a TOML file: 1 source-p1 x=100
         Set(set::Set),
-        /// Copy a program to another place
+        /// Copy a program to another number
         Copy(orders::Copy),
-        /// Choose the program that run palletizing starts
+        /// Select the program that `run palletizing` starts
         Select(orders::Select),
-        /// How far the program is that runs
+        /// Progress of the running program
         Progress(progress::Progress),
     }
 }

@@ -28,7 +28,7 @@ commands! {
         List(list::List),
         /// Save all parameters and tables as TOML
         Dump(dump::Dump),
-        /// Write back what a file of parameters holds
+        /// Write parameters from a file
         Restore(restore::Restore),
     }
 }

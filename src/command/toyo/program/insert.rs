@@ -106,7 +106,7 @@ impl Insert {
         let last = link.read_content(&steps::read_request(room)).await?;
         if last != steps::nop() {
             let message = format!("step {room}, the last of task {task}, would fall out: {}", last.written());
-            return Err(Failure::new(Kind::RefusedHere, message)
+            return Err(Failure::new(Kind::Rejected, message)
                 .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
         }
         authority.confirm(&Change::nothing()).await?;

@@ -19,7 +19,7 @@ use crate::command::{Offline, commands};
 commands! {
     /// What can be done with sequential programs.
     pub enum Program {
-        /// The tasks, with the steps their programs have room for and use
+        /// List tasks with the steps used and available
         List(list::List),
         /// Read a program as text
         Get(get::Get),
@@ -33,7 +33,7 @@ commands! {
         Copy(copy::Copy),
         /// Find the step of a tag
         Search(search::Search),
-        /// The step at which the program stands
+        /// Show the current step of the program
         Show(show::Show),
         /// Check program files; takes no robot
         Check(Offline<check::Check>),

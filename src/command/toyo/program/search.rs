@@ -65,7 +65,7 @@ impl Search {
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {
             return Err(Failure::new(
-                Kind::RefusedHere,
+                Kind::Rejected,
                 "a program runs or is paused; a search would move its current step",
             )
             .hint("`toyo program get` tells all tags"));

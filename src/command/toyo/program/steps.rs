@@ -81,7 +81,7 @@ pub fn nop() -> Record {
 pub async fn open(link: &mut Link) -> Result<(), Failure> {
     let status = link.status_of(&[0, 2]).await?;
     let busy = |what: &str, hint: &str| {
-        Err(Failure::new(Kind::RefusedHere, format!("{what}, and steps are not written meanwhile")).hint(hint))
+        Err(Failure::new(Kind::Rejected, format!("{what}, and steps are not written meanwhile")).hint(hint))
     };
     if status.executing() || status.homing() {
         return busy("the controller executes a program or a command", "wait for its end, or `toyo stop`");

@@ -149,7 +149,7 @@ fn steps_are_inserted_and_deleted() {
 fn nothing_falls_out_at_the_end() {
     let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
-    assert_eq!(failure.kind, Kind::RefusedHere);
+    assert_eq!(failure.kind, Kind::Rejected);
     assert_eq!(failure.message, "step 2, the last of task 2, would fall out: END");
     assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
 }
@@ -176,9 +176,9 @@ fn while_a_program_runs_nothing_is_written() {
         "origin = true\nsteps = { 1 = [\"TAG TAG=001\", \"JMP TAG=001\"] }\nevent = [{ at_ms = 0, do = \"start\" }]",
     );
     let failure = desk.put(SAMPLE, &[]).unwrap_err();
-    assert_eq!(failure.kind, Kind::RefusedHere);
+    assert_eq!(failure.kind, Kind::Rejected);
     assert!(failure.message.starts_with("the controller executes a program"), "{}", failure.message);
-    assert_eq!(desk.failure(&["search", "1"]).kind, Kind::RefusedHere);
+    assert_eq!(desk.failure(&["search", "1"]).kind, Kind::Rejected);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::command::{Offline, commands};
 commands! {
     /// What can be done with the simulator of a controller; `armctl sim toyo` serves it.
     pub enum Sim {
-        /// Run a program file and print what happens and when; takes no robot
+        /// Run a program file offline and print its timeline
         Run(Offline<run::Run>),
     }
 }

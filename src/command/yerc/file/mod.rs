@@ -28,19 +28,19 @@ commands! {
     pub enum File {
         /// List the files on the controller
         List(list::List),
-        /// Fetch files
+        /// Download files from the controller
         Get(get::Get),
-        /// Send files
+        /// Upload files to the controller
         Put(put::Put),
         /// Delete files on the controller
         Delete(delete::Delete),
         /// Compare a file on the controller with a local one
         Diff(diff::Diff),
-        /// Fetch every file into a folder, with sizes and hashes
+        /// Save all files to a folder, with sizes and hashes
         Backup(Backup),
-        /// Send the files of a backup back
+        /// Restore files of a backup
         Restore(Restore),
-        /// Have the controller make its batch backup (CMOSBK.BIN), and fetch it
+        /// Create the batch backup CMOSBK.BIN on the controller and download it
         Cmos(cmos::Cmos),
     }
 }

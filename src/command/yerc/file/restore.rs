@@ -116,7 +116,7 @@ impl Command for Restore {
         let model = &manifest.controller.model;
         if *model != link.model.to_string() && !self.force {
             let message = format!("the backup is of a {model}, {} is a {}", robot.label(), link.model);
-            return Err(Failure::new(Kind::RefusedHere, message)
+            return Err(Failure::new(Kind::Rejected, message)
                 .hint("check the model (?model=…); --force sends the files all the same"));
         }
         let chosen = self.chosen(link, &manifest)?;

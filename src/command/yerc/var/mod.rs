@@ -24,7 +24,7 @@ commands! {
         Set(set::Set),
         /// Save variables to a JSON file
         Dump(dump::Dump),
-        /// Write back what a dump holds
+        /// Write variables from a dump
         Restore(restore::Restore),
     }
 }

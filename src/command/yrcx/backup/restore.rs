@@ -127,14 +127,14 @@ impl Restore {
     async fn admit(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
         let image = link.look().await?;
         if output::PROGRAM_RUNNING.is_on(&image) {
-            return Err(Failure::new(Kind::RefusedHere, "the robot program runs, and may use what would be written")
+            return Err(Failure::new(Kind::Rejected, "the robot program runs, and may use what would be written")
                 .hint("stop it first (`yrcx stop`), then restore"));
         }
         let found = Controller::ask(link).await?;
         if found.robots != backup.robots && !self.force {
             let message =
                 format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
-            return Err(Failure::new(Kind::RefusedHere, message)
+            return Err(Failure::new(Kind::Rejected, message)
                 .hint("take the backup of this controller; --force writes it all the same"));
         }
         Ok(())

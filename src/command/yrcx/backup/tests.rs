@@ -225,7 +225,7 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let mut other = Desk::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
     let saved = desk.path("saved");
     let other_robot = other.failure(&format!("restore {}", saved.display()));
-    assert_eq!(other_robot.kind, Kind::RefusedHere, "{other_robot}");
+    assert_eq!(other_robot.kind, Kind::Rejected, "{other_robot}");
     let (data, failure) = other.run(&format!("restore {} --force --machine", saved.display())).unwrap();
     let failure = failure.unwrap();
     assert_eq!(failure.kind, Kind::Mixed);
@@ -241,7 +241,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("backup @/saved --only variables");
     desk.data("run");
     let failure = desk.failure("restore @/saved");
-    assert_eq!(failure.kind, Kind::RefusedHere);
+    assert_eq!(failure.kind, Kind::Rejected);
     assert_eq!(failure.message, "the robot program runs, and may use what would be written");
 }
 

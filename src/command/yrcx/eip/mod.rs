@@ -31,13 +31,13 @@ const NO_UNIT: &str = "the board is that of the whole controller";
 commands! {
     /// What the network board can be asked.
     pub enum Eip {
-        /// Who the board is
+        /// Identity of the network board
         Identity(identity::Identify),
-        /// Find the assemblies of the board, their sizes, and what makes a connection
+        /// Find the assemblies of the board, their sizes and connection parameters
         Probe(probe::Probe),
-        /// Read an attribute of an object of the board (raw)
+        /// Read an attribute of a board object (raw)
         Get(message::Get),
-        /// Change an attribute of an object of the board (raw)
+        /// Write an attribute of a board object (raw)
         Set(message::Set),
     }
 }

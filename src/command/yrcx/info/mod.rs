@@ -19,33 +19,33 @@ use crate::command::commands;
 commands! {
     /// What the controller tells about itself.
     pub enum Info {
-        /// Versions of the software
+        /// Software versions
         Version(version::Version),
         /// Model numbers of a robot and its axes
         System(system::System),
-        /// Where a robot is, once or as it changes
+        /// Current position of a robot
         Position(position::Where),
-        /// The servo of each axis
+        /// Servo state per axis
         Servo(servo::Servo),
-        /// Whether the origin is known
+        /// Origin return status
         Origin(origin::Origin),
-        /// Hand systems: the selected one and the arm's
+        /// Selected and current hand system
         Arm(arm::Arm),
         /// Speed settings
         Speed(speed::Speed),
-        /// Torque of the axes
+        /// Torque per axis
         Torque(torque::Torque),
-        /// The inching amount
+        /// Inching distance
         Inch(inch::Inch),
-        /// What tasks do
+        /// Task states
         Tasks(tasks::Tasks),
-        /// Which line each task stands at
+        /// Current line of each task
         Line(tasks::Line),
-        /// What is in the option slots
+        /// Boards in the option slots
         Slots(slots::Slots),
-        /// Messages of the alarm history
+        /// Messages from the alarm history
         Message(message::Message),
-        /// An alarm of the history, or the latest of a remote command
+        /// An alarm from the history, or the last one of a remote command
         Alarm(alarm::Alarm),
     }
 }

@@ -21,9 +21,9 @@ commands! {
         Get(get::Get),
         /// Switch inputs of the controller: servo-on=on, 20=off, SIW2=5
         Set(set::Set),
-        /// Switch an input of the controller on and off again
+        /// Pulse an input of the controller
         Pulse(set::Pulse),
-        /// Tell each change of signals until Ctrl-C
+        /// Show signal changes until Ctrl-C
         Watch(watch::Watch),
         /// The addresses of words and signals on a fieldbus, for the PLC engineer
         Map(Offline<map::Map>),

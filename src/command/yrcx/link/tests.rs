@@ -209,7 +209,7 @@ fn without_words_for_commands_signals_work_and_nothing_else_leaves() {
     let mut bench = Bench::signals_alone(Scripted::new([]));
     for line in [&["info", "servo"][..], &["move", "--point", "19"], &["raw", "--wi", "0x604"]] {
         let failure = bench.run(line).unwrap_err();
-        assert_eq!(failure.kind, Kind::RefusedHere, "{line:?}: {failure}");
+        assert_eq!(failure.kind, Kind::Rejected, "{line:?}: {failure}");
         assert!(failure.message.contains("Compact"), "{failure}");
     }
     let at_rest = bench.peer(|peer| (peer.taken.clone(), peer.bits.clone()));

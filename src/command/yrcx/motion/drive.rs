@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_here() {
+    fn what_cannot_be_meant_is_rejected() {
         for (line, part) in [
             ("drive --axis 1,2 --to 5", "axes: 2 named; name exactly 1"),
             ("drive --axis 5 --to 5", "there are 1 to 4"),

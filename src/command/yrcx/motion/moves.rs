@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_here() {
+    fn what_cannot_be_meant_is_rejected() {
         for (line, part) in [
             ("move --to 1,2,3", "3 numbers for 4 axes"),
             ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),

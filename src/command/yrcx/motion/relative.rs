@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_meant_is_refused_here() {
+    fn what_cannot_be_meant_is_rejected() {
         for (line, part) in [
             ("movei --by 1,2", "2 numbers for 4 axes"),
             ("movei --by-pulse 1.5,2,3,4", "axis_1"),

@@ -122,7 +122,7 @@ fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
 }
 
 #[test]
-fn what_cannot_be_meant_is_refused_here() {
+fn what_cannot_be_meant_is_rejected() {
     assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("there are 1 to 4"));
     assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
     assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
