@@ -4,9 +4,9 @@ use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::connect;
 use super::each::{Outcome, Round};
 use super::failure::{failure, refused};
-use super::connect;
 use super::trace::Trace;
 use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
