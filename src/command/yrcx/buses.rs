@@ -18,11 +18,11 @@ pub const BUSES: [&dyn Fieldbus; 3] = [&eip::EtherNetIp, &devicenet::DeviceNet, 
 #[group(skip)]
 pub struct Searches {
     #[command(flatten)]
-    eip: eip::Search,
+    eip: Box<eip::Search>,
     #[command(flatten)]
     devicenet: devicenet::Search,
     #[command(flatten)]
-    profibus: profibus::Search,
+    profibus: Box<profibus::Search>,
 }
 
 impl Searches {
