@@ -5,9 +5,8 @@
 //! it was let through for cannot. What overwrites something is let through when the command knows what it overwrites and
 //! has that confirmed.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
-
+pub use crate::client::Grant;
+use crate::client::NotAuthorized;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -68,36 +67,10 @@ impl Intent {
     }
 }
 
-/// The most that may leave through a link. The gate raises it, the link checks it before every frame.
-#[derive(Debug, Clone)]
-pub struct Grant(Arc<AtomicU8>);
-
-const RISKS: [Risk; 4] = [Risk::Read, Risk::Write, Risk::Destroy, Risk::Motion];
-
-impl Grant {
-    /// Lets through what is not riskier than this.
-    pub fn of(risk: Risk) -> Self {
-        Self(Arc::new(AtomicU8::new(risk as u8)))
-    }
-
-    /// The most that may leave.
-    pub fn get(&self) -> Risk {
-        // Only `raise` writes it, and it writes the number of a risk.
-        RISKS[usize::from(self.0.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
-    }
-
-    /// Lets this through from now on as well.
-    pub fn raise(&self, risk: Risk) {
-        self.0.fetch_max(risk as u8, Ordering::Relaxed);
-    }
-
-    /// The last check before something leaves: whether `what` may.
-    pub fn check(&self, risk: Risk, what: &str) -> Result<(), Failure> {
-        if risk <= self.get() {
-            return Ok(());
-        }
-        Err(Failure::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
-            .hint("this is a fault of armctl; please report it"))
+impl From<NotAuthorized> for Failure {
+    fn from(NotAuthorized { what, risk }: NotAuthorized) -> Self {
+        Self::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
+            .hint("this is a fault of armctl; please report it")
     }
 }
 
@@ -238,18 +211,6 @@ pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_grant_is_raised_and_never_lowered() {
-        let grant = Grant::of(Risk::Read);
-        let shared = grant.clone();
-        assert!(shared.check(Risk::Write, "a write").is_err());
-        grant.raise(Risk::Destroy);
-        grant.raise(Risk::Write);
-        assert_eq!(shared.get(), Risk::Destroy);
-        assert!(shared.check(Risk::Destroy, "a delete").is_ok());
-        assert!(shared.check(Risk::Motion, "a move").unwrap_err().message.contains("a move (motion)"));
-    }
 
     #[test]
     fn a_long_change_is_counted() {

@@ -4,5 +4,7 @@
 mod eip;
 mod faults;
 mod peers;
+#[cfg(unix)]
+mod profibus;
 mod toyo_faults;
 mod toyo_peers;

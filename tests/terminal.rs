@@ -12,6 +12,7 @@ mod bounds;
 mod cli;
 mod eip_bad_input;
 mod environment;
+mod examples;
 mod gate;
 mod pictures;
 mod readme;

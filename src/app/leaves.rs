@@ -73,6 +73,8 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx comment set 1 text", Destroy),
     ("yrcx drive --axis 3 --to 5", Motion),
     ("yrcx drivei --axis 3 --by 5", Motion),
+    ("yrcx profibus scan", Read),
+    ("yrcx profibus probe", Read),
     ("yrcx eip identity", Read),
     ("yrcx eip probe", Read),
     ("yrcx eip get 1 1", Read),

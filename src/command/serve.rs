@@ -1,7 +1,7 @@
 //! Simulators as servers on real sockets and ports: what is the same for all families. `FAMILY/serve.rs` has the rest;
 //! `armctl sim` brings both together.
 
-pub mod link;
+pub mod terminal_link;
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};

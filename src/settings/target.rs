@@ -4,6 +4,7 @@ mod address;
 pub mod bus;
 pub mod devicenet;
 pub mod eip;
+pub mod profibus;
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -565,7 +566,7 @@ mod tests {
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
             ("sim:?axes=5", "axes is a number from 1 to 4"),
-            ("sim:?bus=can", "bus is eip, not 'can'"),
+            ("sim:?bus=can", "bus is eip or profibus, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
             ("serial://", "port is missing"),

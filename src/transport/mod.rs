@@ -10,6 +10,7 @@ pub mod image;
 pub mod line;
 mod port;
 pub mod ports;
+pub mod profibus;
 mod pty;
 pub mod serial;
 pub mod server;

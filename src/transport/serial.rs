@@ -17,8 +17,8 @@ use super::ports::ports;
 
 /// How long a port may take no byte, beyond the time that the bytes need.
 const STUCK: Duration = Duration::from_secs(2);
-/// How far the speed of a port may be off, in percent: a receiver loses track of the bits at about 4.
-const MOST_OFF: u32 = 3;
+/// How far the speed of a port may be off, in thousandths: a receiver loses track of the bits at about 40.
+pub(super) const MOST_OFF: u32 = 30;
 
 /// A port and how it is set.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,7 +80,7 @@ impl Serial {
     /// # Errors
     /// [`OpenError`] tells why not.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
-        Ok(Self { port: Threaded::new(open_port(line)?), pace: line.pace() })
+        Ok(Self { port: Threaded::new(open(line, MOST_OFF)?), pace: line.pace() })
     }
 
     /// Hands bytes to the port, whose driver goes on sending after this has returned.
@@ -106,8 +106,8 @@ impl Serial {
     }
 }
 
-/// Opens a port for whoever moves its bytes, and drops what arrived on it before.
-pub(super) fn open_port(line: &Line) -> Result<Box<dyn SerialPort>, OpenError> {
+/// Opens a port whose speed is off by so many thousandths at most, and drops what arrived on it before.
+pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, OpenError> {
     let port = serialport::new(&line.path, nominal_baud(line))
         .data_bits(line.data_bits)
         .parity(line.parity)
@@ -118,7 +118,7 @@ pub(super) fn open_port(line: &Line) -> Result<Box<dyn SerialPort>, OpenError> {
         .timeout(SLICE)
         .open()
         .map_err(|error| open_error(&error, &line.path))?;
-    check(port.as_ref(), line)?;
+    check(port.as_ref(), line, most_off)?;
     port.clear(ClearBuffer::Input).map_err(io::Error::from)?;
     Ok(port)
 }
@@ -135,13 +135,13 @@ fn is_pseudo_terminal(path: &str) -> bool {
 }
 
 /// Some drivers take what they cannot do without a word, and say so only when asked.
-fn check(port: &dyn SerialPort, line: &Line) -> Result<(), OpenError> {
+fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenError> {
     if is_pseudo_terminal(&line.path) {
         return Ok(());
     }
     let unsupported = |what: String| Err(OpenError::Unsupported(what));
     let baud = port.baud_rate().map_err(io::Error::from)?;
-    if baud.abs_diff(line.baud) > line.baud / 100 * MOST_OFF {
+    if u64::from(baud.abs_diff(line.baud)) * 1000 > u64::from(line.baud) * u64::from(most_off) {
         return unsupported(format!("{} baud (it has set {baud})", line.baud));
     }
     if port.data_bits().map_err(io::Error::from)? != line.data_bits {
@@ -291,7 +291,7 @@ mod tests {
     fn a_port_with_other_settings_is_refused() {
         let (_master, slave) = TTYPort::pair().unwrap();
         let usual = Line { parity: Parity::None, ..line("/dev/ttyUSB0") };
-        let settings = |line: Line| check(&slave, &line).err().map(|error| error.to_string());
+        let settings = |line: Line| check(&slave, &line, MOST_OFF).err().map(|error| error.to_string());
         assert_eq!(settings(Line { baud: 38_400, ..usual.clone() }), None);
         for (line, what) in [
             (Line { baud: 40_000, ..usual.clone() }, "40000 baud (it has set 38400)"),
@@ -301,5 +301,8 @@ mod tests {
         ] {
             assert_eq!(settings(line), Some(format!("the port does not take these settings: {what}")));
         }
+        // Near enough for one bus, and too far off for another.
+        let near = Line { parity: Parity::None, baud: 38_600, ..line("/dev/ttyUSB0") };
+        assert!(check(&slave, &near, 6).is_ok() && check(&slave, &near, 3).is_err());
     }
 }

@@ -38,6 +38,8 @@ impl Direction {
 
 /// `LINKTYPE_RAW`: packets begin with an IP header.
 pub const LINKTYPE_RAW: u16 = 101;
+/// `LINKTYPE_PROFIBUS_DL`: telegrams of PROFIBUS, from the start delimiter to the end delimiter.
+pub const LINKTYPE_PROFIBUS_DL: u16 = 257;
 /// `LINKTYPE_USER0`: for private use.
 const LINKTYPE_USER0: u16 = 147;
 /// Numbers of the interfaces, in the order of their blocks.

@@ -13,13 +13,14 @@ use armctl::settings::target::BUSES;
 use armctl::settings::target::bus::Scheme;
 
 /// A part of `src/` (a folder or a file) and the paths that must not occur in it.
-const BORDERS: [(&str, &[&str]); 6] = [
+const BORDERS: [(&str, &[&str]); 7] = [
     // Bytes and meaning: no sockets, no clock, no command line, no files, no printing.
     (
         "controller/",
         &[
             "crate::app",
             "crate::cli",
+            "crate::client",
             "crate::command",
             "crate::failure",
             "crate::gate",
@@ -37,12 +38,31 @@ const BORDERS: [(&str, &[&str]); 6] = [
             "std::time::SystemTime",
         ],
     ),
+    // Clients are a library: typed errors instead of prose, no command line, no printing, no files.
+    (
+        "client/",
+        &[
+            "crate::app",
+            "crate::cli",
+            "crate::command",
+            "crate::failure",
+            "crate::files",
+            "crate::gate",
+            "crate::output",
+            "crate::settings",
+            "clap",
+            "std::env",
+            "std::fs",
+            "std::process",
+        ],
+    ),
     // Bytes without meaning.
     (
         "transport/",
         &[
             "crate::app",
             "crate::cli",
+            "crate::client",
             "crate::command",
             "crate::controller",
             "crate::failure",
@@ -58,6 +78,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
         &[
             "crate::app",
             "crate::cli",
+            "crate::client",
             "crate::command",
             "crate::controller",
             "crate::gate",
@@ -67,7 +88,16 @@ const BORDERS: [(&str, &[&str]); 6] = [
     ),
     (
         "settings/",
-        &["crate::app", "crate::cli", "crate::command", "crate::gate", "crate::output", "crate::transport", "tokio"],
+        &[
+            "crate::app",
+            "crate::cli",
+            "crate::client",
+            "crate::command",
+            "crate::gate",
+            "crate::output",
+            "crate::transport",
+            "tokio",
+        ],
     ),
     // Everything may fail: this one knows nobody.
     (
@@ -75,6 +105,7 @@ const BORDERS: [(&str, &[&str]); 6] = [
         &[
             "crate::app",
             "crate::cli",
+            "crate::client",
             "crate::command",
             "crate::controller",
             "crate::gate",

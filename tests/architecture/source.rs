@@ -130,7 +130,7 @@ fn resolve(module: &[String], path: &str) -> String {
 
 /// A path as if all members of the workspace were modules of one crate, as `lib.rs` shows them.
 fn in_the_house(module: &[String], path: &str) -> String {
-    const MEMBERS: [&str; 3] = ["controller", "files", "transport"];
+    const MEMBERS: [&str; 4] = ["client", "controller", "files", "transport"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
     let member = match first {
         "crate" => module.get(1).map(String::as_str).filter(|part| MEMBERS.contains(part)),

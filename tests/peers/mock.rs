@@ -336,7 +336,8 @@ async fn files_are_listed_fetched_and_deleted() {
         assert_eq!(got, expected);
         assert_eq!(end, DownloadEnd::Complete { bytes: expected.len() as u64, blocks: 1 });
     }
-    peer.link.exchange(&FileName::new("A.JBI").unwrap().delete()).await.unwrap().unwrap();
+    let deleted = peer.link.raw(&FileName::new("A.JBI").unwrap().delete()).await.unwrap();
+    assert!(deleted.status.is_ok());
     assert!(peer.mock.state().read().await.get_file("A.JBI").is_none());
     assert_eq!(peer.mock.state().read().await.files.len(), 2);
 }

@@ -30,7 +30,8 @@ impl Sim {
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let simulator = match self.family {
             Some(simulator) => simulator,
-            None => OfFamily::first().map_err(|error| Failure::usage(error.to_string()))?,
+            None => OfFamily::first()
+                .map_err(|error| Failure::usage(error.to_string()).hint("name a family: `armctl sim -h` lists them"))?,
         };
         simulator.run(run).await
     }

@@ -2,66 +2,16 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::report::Report;
+pub use crate::client::{Plan, Reason};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
 
-/// What would be sent, in the order of sending.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Plan {
-    frames: Vec<Value>,
-    then: Option<String>,
-}
-
-/// What an order would do about the frames before it.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Reason<'a> {
-    /// What it is for.
-    pub about: Option<&'a str>,
-    /// What of the answers before it decides how it looks, or whether it is sent.
-    pub depends_on: Option<&'a str>,
-}
-
-impl<'a> Reason<'a> {
-    /// What a frame is for.
-    pub fn about(about: &'a str) -> Self {
-        Self { about: Some(about), depends_on: None }
-    }
-
-    /// What of the answers before a frame decides how it looks, or whether it is sent.
-    #[must_use]
-    pub fn depending_on(self, what: &'a str) -> Self {
-        Self { depends_on: Some(what), ..self }
-    }
-}
-
-impl Plan {
-    /// Notes a frame: `frame` has the key of its family.
-    pub fn note(&mut self, mut frame: Value, reason: Reason<'_>) {
-        if let Some(frame) = frame.as_object_mut() {
-            for (key, text) in [("about", reason.about), ("depends_on", reason.depends_on)] {
-                if let Some(text) = text {
-                    frame.insert(key.to_owned(), json!(text));
-                }
-            }
-        }
-        self.frames.push(frame);
-    }
-
-    /// Says in words what follows that cannot be shown.
-    pub fn then(&mut self, what: &str) {
-        let what = match self.then.take() {
-            Some(before) => format!("{before}; {what}"),
-            None => what.to_owned(),
-        };
-        self.then = Some(what);
-    }
-
-    /// The report.
-    pub fn into_report(self) -> DryRun {
-        DryRun { complete: self.then.is_none(), then: self.then, frames: self.frames }
+impl From<Plan> for DryRun {
+    fn from(Plan { frames, then }: Plan) -> Self {
+        Self { frames, complete: then.is_none(), then }
     }
 }
 
@@ -157,6 +107,8 @@ impl Report for DryRun {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]
@@ -164,11 +116,11 @@ mod tests {
         let mut plan = Plan::default();
         plan.note(json!({"text": "@STAS SNO=2"}), Reason::about("whether the host is ON"));
         plan.note(json!({"text": "@SPRM ?"}), Reason::about("write").depending_on("what the block holds"));
-        let complete = plan.clone().into_report();
+        let complete = DryRun::from(plan.clone());
         assert!(complete.complete && complete.then.is_none());
         plan.then("a look at each point");
         plan.then("the same for the next task");
-        let report = plan.into_report();
+        let report = DryRun::from(plan);
         assert!(!report.complete);
         assert_eq!(report.then.as_deref(), Some("a look at each point; the same for the next task"));
         assert_eq!(report.frames[0].get("depends_on"), None);

@@ -17,7 +17,7 @@ use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry};
-use super::dry_run::{Plan, is_end};
+use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
@@ -333,7 +333,7 @@ impl Run {
     /// One connection, one run.
     async fn once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
-            return Ok(Box::new(self.plan(command, robot, &self.screen).await?.into_report()));
+            return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
         let (mut link, grant) = self.connect(command, robot).await?;
         let outcome = self.attempt(command, robot, &mut *link, &grant).await;

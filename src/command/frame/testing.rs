@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::authority::Authority;
 use super::command::{AnyCommand, AnyContext, Context};
 use super::connection::{self, Access, ConnectMode, Connection, Family};
-use super::dry_run::{Plan, is_end};
+use super::dry_run::{DryRun, Plan, is_end};
 use super::report::{AnyReport as _, Outcome};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -81,7 +81,7 @@ pub fn planned<F: Family>(
     let context = AnyContext { robot, connection: &mut *connection, screen: &QUIET, several: false, authority };
     match command.run(context).now_or_never().expect("a dry run waits for nothing") {
         Err(failure) if !is_end(&failure) => Err(failure),
-        _ => connection.planned().into_report().data(),
+        _ => DryRun::from(connection.planned()).data(),
     }
 }
 

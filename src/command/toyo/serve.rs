@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::command::frame::interrupt::catch_interrupts;
-use crate::command::serve::link::Link;
+use crate::command::serve::terminal_link::TerminalLink;
 use crate::command::serve::{self, Serving, Started, address, cannot_listen};
 use crate::command::toyo::simulated::{self, Simulated};
 use crate::failure::{Failure, plain};
@@ -70,7 +70,7 @@ impl serve::Serve for Serve {
         let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
             let (server, path) = made.map_err(|error| no_terminal(&error))?;
-            let link = self.link.map(|link| Link::make(&link, &path)).transpose()?;
+            let link = self.link.map(|link| TerminalLink::make(&link, &path)).transpose()?;
             let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name().display().to_string());
             (server, format!("serial://{name}"), None, link)
         } else {
@@ -93,7 +93,7 @@ pub struct Toyo {
     server: StreamServer,
     simulated: Simulated,
     /// Removed with it.
-    _link: Option<Link>,
+    _link: Option<TerminalLink>,
 }
 
 impl serve::Server for Toyo {

@@ -184,7 +184,7 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
 
 /// Notes in a dry run all questions, and the first one of those that an older controller is asked instead.
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
-    let noted = link.dry_run(all);
+    let noted = link.plan_all(all);
     if texts && link.is_dry() {
         let about = "without texts, if the controller has none: from there on all are asked so";
         link.plan_if(&older.request(), Reason::about(about).depending_on("whether the request before is refused"));
@@ -200,12 +200,12 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
     question: impl Fn(bool) -> Result<Q, Failure>,
 ) -> Result<Outcome<payload::Alarm>, Failure> {
     if *texts {
-        match round.ask(link, &question(true)?).await? {
+        match link.ask_in(round, &question(true)?).await? {
             Err(Denied::Refused(refusal)) if may_be_unknown(refusal.status) => *texts = false,
             outcome => return Ok(outcome),
         }
     }
-    round.ask(link, &question(false)?).await
+    link.ask_in(round, &question(false)?).await
 }
 
 /// How a controller before FS1.14 may say that it has no 0x30A. None prints it, so every way to say "no such thing" leads

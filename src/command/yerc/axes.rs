@@ -235,7 +235,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use crate::command::yerc::fitted::Fitted;
+    use crate::client::yerc::Fitted;
     use crate::command::yerc::testing::{frames, frames_on, golden, reports};
     use crate::controller::yerc::payload::{Axes, Text};
     use crate::failure::Kind;

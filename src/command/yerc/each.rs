@@ -1,88 +1,24 @@
 //! Several questions of one command, each with its own outcome: one refusal hides nothing that was answered.
 
-use super::link::{Link, Refusal};
+use super::link::Link;
+use crate::client::yerc;
+pub use crate::client::yerc::Round;
 use crate::controller::yerc::query::Query;
-use crate::controller::yerc::status::is_absent;
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 
 /// Why one of several questions has no answer.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Denied {
-    /// The controller said no.
-    Refused(Refusal),
-    /// The answer made no sense, or contact was lost.
-    Failed(Failure),
-}
+pub type Denied = yerc::Denied<Failure>;
 
-impl Denied {
-    /// Whether the controller says that there is no such thing.
-    pub fn is_absent(&self) -> bool {
-        matches!(self, Self::Refused(refusal) if is_absent(refusal.status))
-    }
-}
+/// A question's outcome.
+pub type Outcome<T> = yerc::Outcome<T, Failure>;
 
 impl From<Denied> for Failure {
     fn from(denied: Denied) -> Self {
         match denied {
             Denied::Refused(refusal) => refusal.into(),
             Denied::Failed(failure) => failure,
+            Denied::NotAsked(failure) => Failure { message: format!("not asked: {}", failure.message), ..failure },
         }
-    }
-}
-
-/// A question's outcome.
-pub type Outcome<T> = Result<T, Denied>;
-
-/// The questions of one command, asked one after the other.
-#[derive(Debug, Default)]
-pub struct Round {
-    /// Whether the controller has answered anything, a refusal included.
-    is_heard: bool,
-    /// Answers that made no sense before any did.
-    nonsense: u32,
-    /// Why nothing more is asked.
-    lost: Option<Failure>,
-}
-
-/// So many senseless answers and no other, and it is no controller that answers.
-const MOST_NONSENSE: u32 = 2;
-
-impl Round {
-    /// Asks one question. It fails as a whole only while there is nothing to show; once contact is lost, the rest is not
-    /// asked.
-    pub async fn ask<Q: Query>(&mut self, link: &mut Link, query: &Q) -> Result<Outcome<Q::Answer>, Failure> {
-        if let Some(lost) = &self.lost {
-            let message = format!("not asked: {}", lost.message);
-            return Ok(Err(Denied::Failed(Failure { message, ..lost.clone() })));
-        }
-        match link.try_ask(query).await {
-            Ok(answer) => {
-                self.is_heard = true;
-                Ok(answer.map_err(Denied::Refused))
-            }
-            Err(failure) if failure.kind == Kind::Malformed && (self.is_heard || self.nonsense + 1 < MOST_NONSENSE) => {
-                self.nonsense = self.nonsense.saturating_add(1);
-                Ok(Err(Denied::Failed(failure)))
-            }
-            Err(failure) if failure.kind == Kind::NoAnswer && self.is_heard => {
-                self.lost = Some(failure.clone());
-                Ok(Err(Denied::Failed(failure)))
-            }
-            Err(failure) => Err(failure),
-        }
-    }
-}
-
-impl Link {
-    /// Asks several questions; each has its own outcome. A dry run notes them all.
-    pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Failure> {
-        self.dry_run(queries)?;
-        let mut round = Round::default();
-        let mut outcomes = Vec::with_capacity(queries.len());
-        for query in queries {
-            outcomes.push(round.ask(self, query).await?);
-        }
-        Ok(outcomes)
     }
 }
 
@@ -118,7 +54,7 @@ fn of_existing<K, A>(outcomes: impl Iterator<Item = (K, Outcome<A>)>) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::command::yerc::link::Asked;
+    use crate::client::yerc::{Asked, Refusal};
     use crate::controller::yerc::wire::Status;
 
     #[test]

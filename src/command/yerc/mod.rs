@@ -10,8 +10,8 @@ pub mod decode;
 mod each;
 mod explain;
 pub mod face;
+mod failure;
 pub mod file;
-mod fitted;
 #[cfg(test)]
 mod gated;
 mod hours;
@@ -27,7 +27,6 @@ mod overview;
 mod parts;
 mod position;
 mod raw;
-mod refusal;
 mod register;
 mod serve;
 pub mod simulated;

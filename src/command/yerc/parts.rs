@@ -41,7 +41,7 @@ pub async fn read_in_parts<S: PlannedRead>(
     while let Some(step) = steps.pop_front() {
         let asked = step.wanted();
         progress(asked, known.len());
-        let denied = match round.ask(link, &step).await? {
+        let denied = match link.ask_in(&mut round, &step).await? {
             Ok(values) => {
                 known.extend(values.into_iter().map(|(item, value)| (item, Ok(value))));
                 continue;
@@ -127,5 +127,6 @@ fn how(denied: &Denied, usual: Parts) -> Option<Parts> {
         }
         Denied::Refused(_) => Some(usual),
         Denied::Failed(failure) => (failure.kind == Kind::Malformed).then_some(Parts::Single),
+        Denied::NotAsked(_) => None,
     }
 }

@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Serialize, Serializer};
 
-use super::fitted::Fitted;
 use super::link::Link;
 use super::link::Yerc;
 use super::orders::usage;
+use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};

@@ -134,7 +134,7 @@ impl Command for Raw {
         let reply = if self.file && matches!(request.service, service::SAVE | service::LIST) {
             transfer(link, &request).await?
         } else {
-            link.reply(&request).await?
+            link.raw(&request).await?
         };
         Ok(Answer::new(&request, doubt, reply))
     }

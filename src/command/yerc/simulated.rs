@@ -1,28 +1,13 @@
-//! The simulated controller at the end of a transport: in this process, or as a server for many clients.
+//! How a simulated controller starts.
 
 use std::path::Path;
-use std::time::Duration;
 
+pub use crate::client::yerc::Simulated;
 use crate::controller::yerc::Model;
-use crate::controller::yerc::simulator::{Simulator, Start};
-use crate::controller::yerc::wire::Division;
+use crate::controller::yerc::simulator::Start;
 use crate::failure::Failure;
 use crate::files;
 use crate::transport::fault::FaultSpec;
-use crate::transport::server::Service;
-use crate::transport::sim::Peer;
-
-/// Robot and file server have a port each, which transports count as channels.
-pub const fn channel(division: Division) -> usize {
-    match division {
-        Division::Robot => 0,
-        Division::File => 1,
-    }
-}
-
-const fn division(channel: usize) -> Division {
-    if channel == 0 { Division::Robot } else { Division::File }
-}
 
 /// The start state: a file's, or the built-in one of the model; busy as often as the faults say.
 pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
@@ -48,40 +33,4 @@ fn load(path: &Path) -> Result<Start, Failure> {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")
     })
-}
-
-/// A simulated controller, whose clients have numbers.
-#[derive(Debug)]
-pub struct Simulated(pub Simulator);
-
-impl Service for Simulated {
-    fn receive(&mut self, now: Duration, channel: usize, client: u64, bytes: &[u8]) {
-        self.0.receive(now, division(channel), client, bytes);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, u64, Vec<u8>)> {
-        let outgoing = self.0.transmit(now)?;
-        Some((channel(outgoing.division), outgoing.peer, outgoing.bytes))
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.0.wake()
-    }
-}
-
-/// The only client of a simulator in this process.
-const ONLY_CLIENT: u64 = 0;
-
-impl Peer for Simulated {
-    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
-        Service::receive(self, now, channel, ONLY_CLIENT, bytes);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
-        Service::transmit(self, now).map(|(channel, _, bytes)| (channel, bytes))
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        Service::wake(self)
-    }
 }

@@ -21,9 +21,7 @@ pub trait Order: Query<Answer = ()> {
 /// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may
 /// have been, and what was not. So does Ctrl-C.
 pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
-    if link.is_dry() {
-        link.ask_all(orders).await?;
-    }
+    link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
     // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.

@@ -8,9 +8,10 @@ use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
+use super::profibus::bus as profibus;
 
 /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
-pub const BUSES: [&dyn Fieldbus; 2] = [&eip::EtherNetIp, &devicenet::DeviceNet];
+pub const BUSES: [&dyn Fieldbus; 3] = [&eip::EtherNetIp, &devicenet::DeviceNet, &profibus::ProfibusDp];
 
 /// How each is searched by `robots discover`: arguments of the command line.
 #[derive(Debug, Args)]
@@ -20,12 +21,18 @@ pub struct Searches {
     eip: eip::Search,
     #[command(flatten)]
     devicenet: devicenet::Search,
+    #[command(flatten)]
+    profibus: profibus::Search,
 }
 
 impl Searches {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 2] {
-        [(&eip::EtherNetIp, &self.eip), (&devicenet::DeviceNet, &self.devicenet)]
+    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 3] {
+        [
+            (&eip::EtherNetIp, &self.eip),
+            (&devicenet::DeviceNet, &self.devicenet),
+            (&profibus::ProfibusDp, &self.profibus),
+        ]
     }
 }
 
@@ -37,18 +44,28 @@ pub struct Servers {
     eip: eip::ServeArgs,
     #[command(flatten)]
     devicenet: devicenet::ServeArgs,
+    #[command(flatten)]
+    profibus: profibus::ServeArgs,
 }
 
 impl Servers {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 2] {
-        [(&eip::EtherNetIp, &self.eip), (&devicenet::DeviceNet, &self.devicenet)]
+    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 3] {
+        [
+            (&eip::EtherNetIp, &self.eip),
+            (&devicenet::DeviceNet, &self.devicenet),
+            (&profibus::ProfibusDp, &self.profibus),
+        ]
     }
 }
 
 /// What devices of each say of themselves.
 pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
-    vec![eip::Identity::json_schema(generator), devicenet::Node::json_schema(generator)]
+    vec![
+        eip::Identity::json_schema(generator),
+        devicenet::Node::json_schema(generator),
+        profibus::Station::json_schema(generator),
+    ]
 }
 
 /// The fieldbus of this name.

@@ -2,8 +2,8 @@
 
 use super::motion::Moving;
 use super::{
-    alarm, backup, clock, data, devicenet, eip, info, io, motion, param, point_calc, port, procedures, program, raw,
-    select, servo, speed, status, status_reset, teach, torque_limit, var,
+    alarm, backup, clock, data, devicenet, eip, info, io, motion, param, point_calc, port, procedures, profibus,
+    program, raw, select, servo, speed, status, status_reset, teach, torque_limit, var,
 };
 use crate::command::{Subcommands, commands};
 
@@ -106,5 +106,7 @@ commands! {
         Eip(Subcommands<eip::Eip>),
         /// The bus of a controller on DeviceNet: who is there, sizes, owner (diagnosis)
         Devicenet(Subcommands<devicenet::DeviceNet>),
+        /// The line and the stations of PROFIBUS, without owning any
+        Profibus(Subcommands<profibus::Profibus>),
     }
 }

@@ -62,6 +62,8 @@ const READS: &[&str] = &[
     "devicenet scan",
     "devicenet identity",
     "devicenet probe",
+    "profibus scan",
+    "profibus probe",
 ];
 
 const WRITES: &[&str] = &[
@@ -171,8 +173,18 @@ const AT_DESK: [&str; 1] = ["yrcx.io.map"];
 
 /// A controller that nothing is sent to, and the command of a line.
 fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
-    let line: Vec<&str> = line.split(' ').collect();
-    resolved("eip://127.0.0.1", &line).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
+    let words: Vec<&str> = line.split(' ').collect();
+    resolved(url_for(line), &words).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
+}
+
+/// Whether a line asks a device without a link for images.
+fn is_for_board(line: &str) -> bool {
+    ["eip ", "profibus "].iter().any(|bus| line.starts_with(bus))
+}
+
+/// Where a line leads: commands of a fieldbus want one.
+fn url_for(line: &str) -> &'static str {
+    if line.contains("profibus ") { "profibus:///dev/null?station=5" } else { "eip://127.0.0.1" }
 }
 
 #[test]
@@ -250,10 +262,9 @@ fn what_is_new_wants_no_yes() {
 fn a_dry_run_shows_a_frame_of_its_own_risk() {
     let desk = Desk::new();
     for (line, risk) in lines() {
-        let plan =
-            planned_line("eip://127.0.0.1", &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+        let plan = planned_line(url_for(line), &desk.line(line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
         let risks: Vec<Risk> = frames(&plan).iter().map(|(frame, _)| frame.risk()).collect();
-        if line.starts_with("eip ") {
+        if is_for_board(line) {
             assert!(plan["frames"][0]["hex"].is_string() || plan["then"].is_string(), "{line}: {plan}");
         } else if risk > Risk::Read {
             assert_eq!(risks.iter().max(), Some(&risk), "{line}: {plan}");
@@ -270,7 +281,7 @@ fn a_dry_run_shows_what_is_sent() {
     let desk = Desk::new();
     let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), *line));
     let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
-    for (before, line) in befores.chain(others).filter(|(_, line)| !line.starts_with("eip ") && !SHOWN.contains(line)) {
+    for (before, line) in befores.chain(others).filter(|(_, line)| !is_for_board(line) && !SHOWN.contains(line)) {
         let line = desk.line(line);
         let mut bench = Bench::new();
         if let Some(before) = before {

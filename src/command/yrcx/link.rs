@@ -598,7 +598,7 @@ impl Link {
 
     /// The last check before something leaves.
     pub fn permit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
-        self.granted.check(risk, name)
+        Ok(self.granted.check(risk, name)?)
     }
 
     fn admit(&self, name: &str, risk: Risk) -> Result<(), Failure> {

@@ -47,6 +47,7 @@ mod point_calc;
 mod port;
 mod position;
 mod procedures;
+pub mod profibus;
 mod program;
 mod raw;
 mod refusal;

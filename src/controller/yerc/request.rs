@@ -164,6 +164,23 @@ impl From<RequestFrame<'_>> for Request {
     }
 }
 
+/// The frame under id 0: sessions draw an id of their own.
+impl<'a> From<&'a Request> for RequestFrame<'a> {
+    fn from(request: &'a Request) -> Self {
+        Self {
+            division: request.division(),
+            ack: false,
+            id: 0,
+            block: 0,
+            command: request.command,
+            instance: request.instance,
+            attribute: request.attribute,
+            service: request.service,
+            data: &request.data,
+        }
+    }
+}
+
 impl Request {
     /// A request to the file server.
     pub fn file(service: u8, data: impl Into<Vec<u8>>) -> Self {
@@ -180,18 +197,7 @@ impl Request {
     /// # Panics
     /// If there are more than 479 data bytes; [`Request::check`] says so beforehand.
     pub fn frame(&self, id: u8) -> Vec<u8> {
-        RequestFrame {
-            division: self.division(),
-            ack: false,
-            id,
-            block: 0,
-            command: self.command,
-            instance: self.instance,
-            attribute: self.attribute,
-            service: self.service,
-            data: &self.data,
-        }
-        .emit()
+        RequestFrame { id, ..self.into() }.emit()
     }
 
     /// The row of the table.

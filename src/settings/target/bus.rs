@@ -6,13 +6,13 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Address, Query, devicenet, eip};
+use super::{Address, Query, devicenet, eip, profibus};
 
 /// The one that hints name first.
 pub const USUAL: Scheme = eip::SCHEME;
 
 /// All of them.
-pub static BUSES: [Scheme; 3] = [eip::SCHEME, devicenet::SLCAN, devicenet::CAN];
+pub static BUSES: [Scheme; 4] = [eip::SCHEME, devicenet::SLCAN, devicenet::CAN, profibus::SCHEME];
 
 /// What `bus=` of a `sim:` URL may be, with the fieldbus that it names.
 pub fn simulators() -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use etherparse::{EtherType, LaxNetSlice, LaxSlicedPacket, TransportSlice};
 
-use crate::tap::Direction;
+use crate::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
 /// What is in a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,7 +68,7 @@ pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
         113 => ethernet(packet, 14..16),
         276 => of_type(packet.get(..2), packet.get(20..)),
         147 => serial(packet),
-        super::LINKTYPE_CAN => Some(PacketContent::Frame),
+        super::LINKTYPE_CAN | LINKTYPE_PROFIBUS_DL => Some(PacketContent::Frame),
         _ => None,
     };
     content.unwrap_or(PacketContent::Other)

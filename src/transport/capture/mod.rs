@@ -130,7 +130,6 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
                     say(carrier, bytes, packet.is_cut);
                 }
             }
-            PacketContent::Frame => say(Carrier::Frame { link_type: packet.link_type }, packet.bytes, packet.is_cut),
             PacketContent::Packet { from, to, payload: Payload::Datagram(bytes), is_cut } if !bytes.is_empty() => {
                 say(Carrier::Datagram { from, to }, bytes, is_cut || packet.is_cut);
             }
@@ -139,7 +138,10 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
                 let is_cut = is_cut || packet.is_cut;
                 streams.take(key, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut each));
             }
-            PacketContent::Packet { .. } | PacketContent::Other => {}
+            PacketContent::Frame if !packet.bytes.is_empty() => {
+                say(Carrier::Frame { link_type: packet.link_type }, packet.bytes, packet.is_cut);
+            }
+            PacketContent::Packet { .. } | PacketContent::Frame | PacketContent::Other => {}
             PacketContent::Fragment => summary.fragments += 1,
         }
     }

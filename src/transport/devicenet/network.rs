@@ -542,7 +542,8 @@ async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
                 parity: Parity::None,
                 stop_bits: StopBits::One,
             };
-            let port = serial::open_port(&line).map_err(|error| failed(error.to_string(), serial_advice(&error)))?;
+            let port = serial::open(&line, serial::MOST_OFF)
+                .map_err(|error| failed(error.to_string(), serial_advice(&error)))?;
             Pipe::serial(port).map_err(|error| failed(error.to_string(), "plug the adapter in again"))?
         }
         Place::Tcp { host, port } => {

@@ -90,7 +90,8 @@ impl Command for Backup {
         let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
         let (types, only) = asked(&scope);
         if link.is_dry() {
-            link.plan_next(&Controller::question(link)?.request());
+            let question = Controller::question(link)?.request();
+            link.plan_next(&question)?;
             transfer::plan_all(link, transfer::LISTS, types.iter().map(|kind| files::list(*kind)))?;
             link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
             return Ok(BackedUp::new(&folder, Results::new(Vec::new(), SHAPE), &scope, false));

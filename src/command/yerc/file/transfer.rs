@@ -113,7 +113,7 @@ pub async fn fetch_backup(
 
 /// Deletes a file.
 pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
-    let reply = link.reply(&file.delete()).await.map_err(|failure| match failure.kind {
+    let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
         Kind::OutcomeUnknown => failure.hint("`yerc file list` tells whether it is still there"),
         _ => failure,
     })?;
@@ -162,12 +162,12 @@ pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason
     let unnumbered = Reason::about("whether it is there, if the last acknowledgement bears no block number");
     let mark = "whether the last acknowledgement bears a block number";
     let depends_on = reason.depends_on.map_or_else(|| mark.to_owned(), |before| format!("{before}, and {mark}"));
-    link.plan_download(&files::list(kind), unnumbered.depending_on(&depends_on))
+    Ok(link.plan_download(&files::list(kind), unnumbered.depending_on(&depends_on))?)
 }
 
 /// Notes in a dry run what would be sent, one transfer from the controller after the other.
 pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
-    requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))
+    Ok(requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))?)
 }
 
 /// What lists are for, in dry runs.

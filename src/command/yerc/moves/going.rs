@@ -188,7 +188,8 @@ impl<Q: Query<Answer = ()>> Going<Q> {
 fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
     let about = "again and again until the motion has ended";
     link.plan(&ReadStatus.request(), about);
-    link.plan(&ReadPosition::new(link.model, group, coordinates).map_err(usage)?.request(), about);
+    let question = ReadPosition::new(link.model, group, coordinates).map_err(usage)?;
+    link.plan(&question.request(), about);
     plan_alarm(link)
 }
 

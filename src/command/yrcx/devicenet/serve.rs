@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::simulated::{self, Controller, fault, faults, setup, size};
 #[cfg(unix)]
-use crate::command::serve::link::Link;
+use crate::command::serve::terminal_link::TerminalLink;
 use crate::command::serve::{address, cannot_listen};
 use crate::command::yrcx::fieldbus::{Serve, Served};
 use crate::controller::yrcx::simulator::Start;
@@ -86,9 +86,9 @@ impl Serve for ServeArgs {
 impl ServeArgs {
     /// Puts the link to the pseudo-terminal where it is wanted.
     #[cfg(unix)]
-    fn link(&self, hub: &Hub<Controller>) -> Result<Option<Link>, Failure> {
+    fn link(&self, hub: &Hub<Controller>) -> Result<Option<TerminalLink>, Failure> {
         let (Some(path), Some(terminal)) = (&self.slcan_link, hub.places().get(1)) else { return Ok(None) };
-        Link::make(path, terminal).map(Some)
+        TerminalLink::make(path, terminal).map(Some)
     }
 
     #[cfg(not(unix))]

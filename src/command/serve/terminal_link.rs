@@ -7,12 +7,12 @@ use crate::failure::Failure;
 
 /// A symbolic link to the pseudo-terminal, as long as it is served.
 #[derive(Debug)]
-pub struct Link {
+pub struct TerminalLink {
     name: PathBuf,
     leads_to: PathBuf,
 }
 
-impl Link {
+impl TerminalLink {
     /// Makes it. One that leads nowhere, of a simulator that was killed, is replaced; anything else is left alone.
     pub fn make(name: &Path, leads_to: &str) -> Result<Self, Failure> {
         let failed = |error: io::Error| {
@@ -31,13 +31,13 @@ impl Link {
         Ok(Self { name, leads_to })
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn name(&self) -> &Path {
         &self.name
     }
 }
 
-impl Drop for Link {
+impl Drop for TerminalLink {
     fn drop(&mut self) {
         // Somebody else's is left alone; what cannot be removed is replaced the next time.
         if std::fs::read_link(&self.name).is_ok_and(|leads_to| leads_to == self.leads_to) {
@@ -64,9 +64,9 @@ mod tests {
         let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
         std::fs::write(&port, "").unwrap();
         let leads_to = port.to_str().unwrap();
-        let link = Link::make(&name, leads_to).unwrap();
+        let link = TerminalLink::make(&name, leads_to).unwrap();
         assert_eq!(std::fs::read_link(&name).unwrap(), port);
-        let second = Link::make(&name, leads_to).unwrap_err();
+        let second = TerminalLink::make(&name, leads_to).unwrap_err();
         assert!(second.hint.unwrap().contains("--link"), "one that leads somewhere is somebody's");
         drop(link);
         assert!(!name.is_symlink());
@@ -77,12 +77,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (name, port) = (folder.path().join("toyo"), folder.path().join("pts"));
         symlink(folder.path().join("gone"), &name).unwrap();
-        let link = Link::make(&name, port.to_str().unwrap()).unwrap();
+        let link = TerminalLink::make(&name, port.to_str().unwrap()).unwrap();
         assert_eq!(std::fs::read_link(&name).unwrap(), port);
         std::fs::remove_file(&name).unwrap();
         std::fs::write(&name, "mine").unwrap();
         drop(link);
         assert_eq!(std::fs::read_to_string(&name).unwrap(), "mine");
-        assert!(Link::make(&name, port.to_str().unwrap()).is_err());
+        assert!(TerminalLink::make(&name, port.to_str().unwrap()).is_err());
     }
 }

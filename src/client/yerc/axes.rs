@@ -1,11 +1,12 @@
 //! Which axes a control group has. Controllers may answer a word for every axis there could be; then the axis
-//! configuration (0x74), asked once on a link, tells which of them exist.
+//! configuration (0x74), asked once on a connection, tells which of them exist.
 
-use super::link::Link;
-use crate::command::frame::dry_run::Reason;
-use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
-use crate::controller::yerc::query::{Coordinates, Query as _, ReadAxes};
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
+use armctl_controller::yerc::query::{Coordinates, Query as _, ReadAxes};
+
+use super::Client;
+use crate::Reason;
 
 /// The axes that exist, a bit each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,7 +42,7 @@ impl Fitted {
     }
 }
 
-impl Link {
+impl Client {
     /// The values of the axes that the group has, of as many as were answered.
     pub async fn fit(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, Fitted) {
         if axes.as_slice().len() < MAX_AXES {
@@ -52,7 +53,7 @@ impl Link {
         (fitted.of(axes), fitted)
     }
 
-    /// Notes in a dry run that [`Link::fit`] may ask for the axes.
+    /// Notes in a dry run that [`Client::fit`] may ask for the axes.
     pub fn plan_fit(&mut self, group: Group, coordinates: Coordinates) {
         let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
         let Ok(question) = ReadAxes::new(self.model, group, coordinates) else { return };
@@ -82,8 +83,9 @@ impl Link {
 
 #[cfg(test)]
 mod tests {
+    use armctl_controller::yerc::payload::Text;
+
     use super::*;
-    use crate::controller::yerc::payload::Text;
 
     #[test]
     fn axes_without_a_name_do_not_exist() {

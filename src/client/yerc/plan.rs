@@ -1,20 +1,24 @@
-//! What a dry run of a command notes instead of sending it.
+//! What a dry run notes instead of sending it.
 
+use armctl_controller::text::hex;
+use armctl_controller::yerc::files::{ack_frame, data_frame};
+use armctl_controller::yerc::query::Query;
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::wire::{LAST_BLOCK, MAX_DATA};
 use serde_json::json;
 
-use super::{Link, Transport};
-use crate::command::frame::dry_run::{Reason, unknown};
-use crate::controller::text::hex;
-use crate::controller::yerc::files::{ack_frame, data_frame};
-use crate::controller::yerc::query::Query;
-use crate::controller::yerc::request::Request;
-use crate::controller::yerc::wire::{LAST_BLOCK, MAX_DATA};
-use crate::failure::Failure;
+use super::{Client, Error, Transport};
+use crate::{NotAuthorized, Plan, Reason};
 
-impl Link {
+impl Client {
     /// Whether nothing is sent, only noted.
     pub fn is_dry(&self) -> bool {
         matches!(self.transport, Transport::Notes(_))
+    }
+
+    /// What was noted in a dry run so far.
+    pub fn take_plan(&mut self) -> Plan {
+        self.transport.notes().map(std::mem::take).unwrap_or_default()
     }
 
     /// Says what the next request is for, where a dry run notes it.
@@ -24,21 +28,29 @@ impl Link {
     }
 
     /// In a dry run, notes all the questions, whose answers are not known then.
-    pub fn dry_run<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
+    pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Error> {
         if !self.is_dry() || queries.is_empty() {
             return Ok(());
         }
-        for query in queries {
-            let request = query.request();
-            self.authorize(&request)?;
-            self.note(&request, Reason::default());
-        }
-        Err(unknown())
+        queries.iter().try_for_each(|query| self.plan_next(&query.request()))?;
+        Err(Error::NotKnown)
+    }
+
+    /// Notes in a dry run a request that is sent whatever the answers before it are.
+    pub fn plan_next(&mut self, request: &Request) -> Result<(), NotAuthorized> {
+        self.authorize(request)?;
+        self.note(request, Reason::default());
+        Ok(())
     }
 
     /// Notes in a dry run what is sent after an answer, and what it is about.
     pub fn plan(&mut self, request: &Request, about: &str) {
         self.note(request, Reason::about(about));
+    }
+
+    /// Notes in a dry run a request that an answer before it decides whether it is sent.
+    pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
+        self.note(request, reason);
     }
 
     /// Notes in a dry run a request whose bytes, or whose sending, an answer before it decides. `other` is the same
@@ -50,24 +62,14 @@ impl Link {
 
     /// Says in a dry run what follows that cannot be shown.
     pub fn then(&mut self, what: &str) {
-        if let Transport::Notes(plan) = &mut self.transport {
+        if let Some(plan) = self.transport.notes() {
             plan.then(what);
         }
     }
 
-    /// Notes in a dry run a request that an answer before it decides whether it is sent.
-    pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
-        self.note(request, reason);
-    }
-
-    /// Notes in a dry run a request that follows whatever the answers before it are.
-    pub fn plan_next(&mut self, request: &Request) {
-        self.note(request, Reason::default());
-    }
-
-    /// Notes in a dry run what [`Link::download`] would send: the request, and the ACK of the first block, which stands
+    /// Notes in a dry run what [`Client::download`] would send: the request, and the ACK of the first block, which stands
     /// for those of all. Nobody knows how many there are, and the first may be the last or have the number 0.
-    pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), Failure> {
+    pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         let id = self.note(request, reason);
         let answered = "which blocks come";
@@ -78,42 +80,15 @@ impl Link {
         Ok(())
     }
 
-    /// Notes in a dry run what [`Link::upload`] would send.
-    pub fn plan_upload(
+    /// Notes in a dry run what [`Client::upload`] would send: all blocks, which are known beforehand.
+    pub fn plan_upload<E: From<NotAuthorized>>(
         &mut self,
         request: &Request,
         reason: Reason<'_>,
-        mut give: impl FnMut() -> Result<Vec<u8>, Failure>,
-    ) -> Result<(), Failure> {
+        mut give: impl FnMut() -> Result<Vec<u8>, E>,
+    ) -> Result<(), E> {
         self.authorize(request)?;
         let id = self.note(request, reason);
-        self.note_blocks(id, reason.depends_on, &mut give)
-    }
-
-    pub(super) fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
-        let id = self.ids.next_id();
-        let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
-        }
-        id
-    }
-
-    /// Notes a frame that is either of two: where they differ nothing is known.
-    fn note_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
-        if let Transport::Notes(plan) = &mut self.transport {
-            plan.note(json!({ "hex": masked(frame, other) }), reason);
-        }
-    }
-
-    /// The data blocks of an upload, which are known beforehand.
-    fn note_blocks(
-        &mut self,
-        id: u8,
-        depends_on: Option<&str>,
-        give: &mut dyn FnMut() -> Result<Vec<u8>, Failure>,
-    ) -> Result<(), Failure> {
-        let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
         let mut content = Vec::new();
         loop {
             let piece = give()?;
@@ -122,6 +97,29 @@ impl Link {
             }
             content.extend(piece);
         }
+        self.note_blocks(id, reason.depends_on, &content);
+        Ok(())
+    }
+
+    fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
+        let id = self.ids.next_id();
+        let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
+        if let Some(plan) = self.transport.notes() {
+            plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
+        }
+        id
+    }
+
+    /// Notes a frame that is either of two: where they differ nothing is known.
+    fn note_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
+        if let Some(plan) = self.transport.notes() {
+            plan.note(json!({ "hex": masked(frame, other) }), reason);
+        }
+    }
+
+    /// The data blocks of an upload.
+    fn note_blocks(&mut self, id: u8, depends_on: Option<&str>, content: &[u8]) {
+        let Some(plan) = self.transport.notes() else { return };
         let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
         for (number, block) in (1u32..).zip(&blocks) {
             let is_last = number as usize == blocks.len();
@@ -130,7 +128,6 @@ impl Link {
             let frame = data_frame(id, number | mark, block);
             plan.note(json!({ "hex": hex(&frame) }), Reason { about: Some(&about), depends_on });
         }
-        Ok(())
     }
 }
 

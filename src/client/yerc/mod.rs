@@ -1,0 +1,493 @@
+//! The client of a Yaskawa FS100 or DX200: the one driver that moves datagrams between sessions and a transport.
+
+mod axes;
+mod each;
+mod error;
+mod plan;
+mod simulated;
+#[cfg(test)]
+mod tests;
+mod transport;
+
+use std::convert::Infallible;
+use std::io;
+use std::sync::Arc;
+use std::time::Duration;
+
+use armctl_controller::yerc::Model;
+use armctl_controller::yerc::files::FileName;
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::query::{Coordinates, Hold, Query};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::session::{
+    Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
+};
+use armctl_controller::yerc::table::service;
+use armctl_controller::yerc::wire::Division;
+use armctl_controller::{Risk, Session, Step};
+use armctl_transport::session::client::{Attached, SessionBusy};
+use armctl_transport::tap::Direction;
+use tokio::time::Instant;
+
+pub use self::axes::Fitted;
+pub use self::each::{Denied, Outcome, Round};
+pub use self::error::{Asked, Cause, Error, Refusal, TransferError};
+pub use self::simulated::Simulated;
+use self::simulated::channel;
+use self::transport::Transport;
+pub use self::transport::{Endpoint, PORTS};
+use crate::{Grant, NotAuthorized, Plan, Watcher};
+
+/// A connection to one controller.
+///
+/// It asks one thing at a time. A call that is dropped before it has ended leaves the client usable: what comes late is
+/// told from what is asked next.
+#[derive(Debug)]
+pub struct Client {
+    transport: Transport,
+    policy: Policy,
+    ids: Ids,
+    granted: Grant,
+    /// Whether a request left that moves the robot.
+    has_moved: bool,
+    /// Model of the controller: number ranges and layouts follow from it.
+    pub model: Model,
+    started: Instant,
+    buffer: Box<[u8; BUFFER]>,
+    watcher: Box<dyn Watcher<Event>>,
+    totals: Totals,
+    /// The last download, in case its final ACK got lost.
+    finished: Option<Download>,
+    /// What the next request is for, in a dry run.
+    purpose: Option<&'static str>,
+    /// Which axes groups have, as far as it was asked.
+    fitted: Vec<(Group, Coordinates, Fitted)>,
+}
+
+/// How a client asks.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The controller's model; that of a simulator is its own.
+    pub model: Model,
+    /// The most that may leave.
+    pub granted: Grant,
+    /// Patience: for an exchange as a whole, for a transfer without progress.
+    pub timeout: Duration,
+    /// How often a request that changes nothing is sent again after silence.
+    pub retries: u32,
+}
+
+impl Options {
+    /// To read from a controller of this model, with the usual patience: 3 s, and 3 repeats.
+    pub fn new(model: Model) -> Self {
+        let Policy { deadline: timeout, retries, .. } = Policy::default();
+        Self { model, granted: Grant::default(), timeout, retries }
+    }
+
+    /// The same, and what is not riskier than this may leave.
+    #[must_use]
+    pub fn granting(self, risk: Risk) -> Self {
+        Self { granted: Grant::of(risk), ..self }
+    }
+}
+
+/// What a client notices beside frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Event {
+    /// An exchange or a transfer has ended, and more was on the line than what was asked and its answer.
+    Disturbed(Counters),
+}
+
+/// What a client saw.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Totals {
+    /// Frames sent.
+    pub sent: u64,
+    /// Frames received.
+    pub received: u64,
+    /// Time spent in exchanges and transfers.
+    pub waited: Duration,
+    /// Exchanges and transfers that ended.
+    pub exchanges: u32,
+}
+
+/// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
+const STOP_WITHIN: Duration = Duration::from_secs(3);
+const REPEAT_STOP: Duration = Duration::from_millis(100);
+const STOPS: u32 = 8;
+
+/// Room for more than a frame, so that an oversized datagram shows.
+const BUFFER: usize = 2048;
+
+/// Largest file that [`Client::read_file`] takes.
+const MAX_FILE: u64 = 1 << 30;
+
+/// What a session wants from the one who reads or writes the file.
+enum Want<'a, S> {
+    /// A piece that came.
+    Take(&'a [u8]),
+    /// The session wants to be fed.
+    Feed(&'a mut S),
+}
+
+impl Client {
+    /// Connects to a controller. Nothing is sent: datagrams go out to nobody, too, so that only an answer shows that it is
+    /// there.
+    ///
+    /// # Errors
+    /// [`Error::HostNotFound`].
+    pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
+        let model = endpoint.model().unwrap_or(options.model);
+        Ok(Self::over(endpoint.open().await?, Options { model, ..options }))
+    }
+
+    /// Talks through a session that holds the line, and shares it with others.
+    pub fn through(session: Box<Attached>, options: Options) -> Self {
+        Self::over(Transport::Session(session), options)
+    }
+
+    /// Sends nothing, but notes what would be sent ([`Client::take_plan`]). Orders count as done; what asks ends in
+    /// [`Error::NotKnown`].
+    pub fn dry_run(options: Options) -> Self {
+        Self::over(Transport::Notes(Plan::default()), options)
+    }
+
+    fn over(transport: Transport, options: Options) -> Self {
+        let Options { model, granted, timeout, retries } = options;
+        Self {
+            transport,
+            policy: Policy { deadline: timeout, attempt: Policy::default().attempt.min(timeout), retries },
+            ids: Ids::default(),
+            granted,
+            has_moved: false,
+            model,
+            started: Instant::now(),
+            buffer: Box::new([0; BUFFER]),
+            watcher: Box::new(()),
+            totals: Totals::default(),
+            finished: None,
+            purpose: None,
+            fitted: Vec::new(),
+        }
+    }
+
+    /// Has this one told what happens from now on.
+    pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
+        self.watcher = Box::new(watcher);
+    }
+
+    /// Asks one question or gives one order; a refusal is an error.
+    pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Error> {
+        Ok(self.try_ask(query).await??)
+    }
+
+    /// Asks one question or gives one order; a refusal is an answer. A dry run notes it: orders count as done then, and
+    /// questions end in [`Error::NotKnown`].
+    pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Error> {
+        let request = query.request();
+        if self.is_dry() && request.risk() > Risk::Read {
+            self.plan_next(&request)?;
+            // What is accepted bears no data.
+            return query.decode(&[]).map(Ok).map_err(|_| Error::NotKnown);
+        }
+        let Reply { status, data, .. } = self.raw(&request).await?;
+        if !status.is_ok() {
+            return Ok(Err(Refusal { status, to: Asked::from(&request) }));
+        }
+        Ok(Ok(query.decode(&data)?))
+    }
+
+    /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
+    pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
+        self.admit(request).await?;
+        self.transact(request, request.risk() == Risk::Read).await
+    }
+
+    /// Stops the robot: HOLD on, whatever was granted. It is the one order that is repeated after silence, whatever the
+    /// options say of timeout and retries: HOLD twice is HOLD once, and a lost one lets the robot move on.
+    pub async fn stop(&mut self) -> Result<(), Error> {
+        let request = Hold(true).request();
+        if self.is_dry() {
+            return Ok(self.plan_next(&request)?);
+        }
+        let usual = self.policy;
+        let deadline = usual.deadline.max(STOP_WITHIN);
+        self.policy = Policy { deadline, attempt: REPEAT_STOP, retries: STOPS };
+        let reply = self.transact(&request, true).await;
+        self.policy = usual;
+        match reply?.status {
+            status if status.is_ok() => Ok(()),
+            status => Err(Refusal { status, to: Asked::from(&request) }.into()),
+        }
+    }
+
+    /// Whether a request left that moves the robot.
+    pub fn has_moved(&self) -> bool {
+        self.has_moved
+    }
+
+    /// A file as a whole, in the controller's encoding; at most a gigabyte.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] if there is none, [`Error::Incomplete`] if it came in part: nothing is kept of it then.
+    pub async fn read_file(&mut self, file: &FileName) -> Result<Vec<u8>, Error> {
+        let mut content = Vec::new();
+        let take = |piece: &[u8]| {
+            content.extend_from_slice(piece);
+            Ok::<(), Infallible>(())
+        };
+        match self.download(&file.save(), MAX_FILE, None, take).await.map_err(|error| error.cause)? {
+            DownloadEnd::Complete { .. } => Ok(content),
+            DownloadEnd::Nothing(status) | DownloadEnd::Refused { status, bytes: 0 } => {
+                Err(Refusal::of_file(service::SAVE, status).into())
+            }
+            end => Err(Error::Incomplete(end)),
+        }
+    }
+
+    /// Fetches a file or list. Every block goes to `take`, in order; at most `limit` bytes. `first_wait` is how long
+    /// the first answer may take where that is long.
+    pub async fn download<E>(
+        &mut self,
+        request: &Request,
+        limit: u64,
+        first_wait: Option<Duration>,
+        mut take: impl FnMut(&[u8]) -> Result<(), E>,
+    ) -> Result<DownloadEnd, TransferError<E>> {
+        if self.is_dry() {
+            self.plan_download(request, crate::Reason::default())?;
+            return Err(Error::NotKnown.into());
+        }
+        self.admit(request).await?;
+        let mut session = Download::new(&request.into(), limit, self.policy, &self.ids);
+        if let Some(wait) = first_wait {
+            session = session.with_first_wait(wait);
+        }
+        let mut bytes = 0;
+        let driven = self.drive(Division::File, &mut session, |want| match want {
+            Want::Take(piece) => {
+                bytes += piece.len() as u64;
+                take(piece)
+            }
+            Want::Feed(_) => Ok(()),
+        });
+        let end = driven.await.map_err(|cause| TransferError { bytes, cause })?;
+        self.exchanged(session.counters());
+        self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
+        match end {
+            // Only the batch backup changes something, and it is the one with a long first wait.
+            DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
+                let waited = first_wait.unwrap_or(self.policy.deadline);
+                Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
+            }
+            DownloadEnd::NoAnswer { bytes, counters } => {
+                Err(TransferError { bytes, cause: Cause::Client(self.silence(counters)) })
+            }
+            end => Ok(end),
+        }
+    }
+
+    /// Sends a file. `give` returns the next piece, empty at the end.
+    pub async fn upload<E>(
+        &mut self,
+        request: &Request,
+        mut give: impl FnMut() -> Result<Vec<u8>, E>,
+    ) -> Result<UploadEnd, TransferError<E>> {
+        if self.is_dry() {
+            self.plan_upload(request, crate::Reason::default(), || {
+                give().map_err(|error| TransferError { bytes: 0, cause: Cause::Caller(error) })
+            })?;
+            return Err(Error::NotKnown.into());
+        }
+        self.admit(request).await?;
+        // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
+        self.transport.renew(channel(Division::File));
+        self.finished = None;
+        let mut session = Upload::new(&request.into(), self.policy, &self.ids);
+        let driven = self.drive(Division::File, &mut session, |want| {
+            if let Want::Feed(session) = want {
+                let piece = give()?;
+                session.feed(&piece, piece.is_empty());
+            }
+            Ok(())
+        });
+        let end = driven.await.map_err(|cause| TransferError { bytes: session.sent(), cause })?;
+        self.exchanged(session.counters());
+        match end {
+            UploadEnd::NoAnswer(counters) => Err(self.silence(counters).into()),
+            end => Ok(end),
+        }
+    }
+
+    /// Ends the connection, and says what it was like.
+    pub async fn close(mut self) -> Result<Totals, Error> {
+        self.linger().await?;
+        if let Transport::Session(session) = self.transport {
+            session.leave().await;
+        }
+        Ok(self.totals)
+    }
+
+    /// On a line that loses frames, waits a moment for the last block to come again, which means that its ACK got lost:
+    /// without it the controller holds the transfer open.
+    async fn linger(&mut self) -> Result<(), Error> {
+        let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
+            return Ok(());
+        };
+        self.take_turn(Division::File).await?;
+        let channel = channel(Division::File);
+        let until = Instant::now() + self.policy.attempt;
+        while Instant::now() < until
+            && let Some(len) = self.receive(channel, until).await?
+        {
+            if let Some(ack) = last.linger(&self.buffer[..len]) {
+                self.send(channel, &ack).await?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The last check before anything leaves; a dry run notes it instead, and has no answer.
+    async fn admit(&mut self, request: &Request) -> Result<(), Error> {
+        self.authorize(request)?;
+        if self.is_dry() {
+            self.plan_next(request)?;
+            return Err(Error::NotKnown);
+        }
+        if request.risk() == Risk::Motion {
+            if let Some(session) = self.transport.session() {
+                session.claim_motion().await.map_err(Error::Session)?;
+            }
+            self.has_moved = true;
+        }
+        Ok(())
+    }
+
+    fn authorize(&self, request: &Request) -> Result<(), NotAuthorized> {
+        self.granted.check(request.risk(), &format!("request {:#04x}", request.command))
+    }
+
+    /// One request, one answer.
+    async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Reply, Error> {
+        let mut session = Exchange::new(&request.into(), is_repeatable, self.policy, &self.ids);
+        let before = self.totals.sent;
+        let driven = self.drive(request.division(), &mut session, |_| Ok::<(), Infallible>(())).await;
+        let ended = driven.map_err(|cause| self.cut_short(cause.into(), request, self.totals.sent > before))?;
+        self.exchanged(session.counters());
+        match ended {
+            Ended::Answered(reply) => Ok(reply),
+            Ended::NoAnswer(counters) => Err(self.silence(counters)),
+            Ended::OutcomeUnknown(counters) => {
+                Err(Error::OutcomeUnknown { request: request.clone(), waited: self.policy.deadline, counters })
+            }
+        }
+    }
+
+    /// Moves datagrams and time until the session has ended. Who shares the link has it for so long.
+    async fn drive<S: Session, E>(
+        &mut self,
+        division: Division,
+        session: &mut S,
+        serve: impl FnMut(Want<'_, S>) -> Result<(), E>,
+    ) -> Result<S::Outcome, Cause<E>> {
+        self.take_turn(division).await?;
+        let driven = self.drive_alone(division, session, serve).await;
+        if let Some(session) = self.transport.session() {
+            session.over();
+        }
+        driven
+    }
+
+    async fn take_turn(&mut self, division: Division) -> Result<(), Error> {
+        let Some(session) = self.transport.session() else { return Ok(()) };
+        let until = Instant::now() + self.policy.deadline;
+        session.take_for(transport::number(channel(division)), until).await.map_err(Error::Session)
+    }
+
+    async fn drive_alone<S: Session, E>(
+        &mut self,
+        division: Division,
+        session: &mut S,
+        mut serve: impl FnMut(Want<'_, S>) -> Result<(), E>,
+    ) -> Result<S::Outcome, Cause<E>> {
+        let channel = channel(division);
+        let began = self.started.elapsed();
+        let mut now = began;
+        loop {
+            // The clock is read where time may have passed: after a wait, and after a visit to the disk.
+            match session.poll(now) {
+                Step::Send(bytes) => self.send(channel, &bytes).await?,
+                Step::Data(piece) => {
+                    serve(Want::Take(&piece)).map_err(Cause::Caller)?;
+                    now = self.started.elapsed();
+                }
+                Step::Feed => {
+                    serve(Want::Feed(session)).map_err(Cause::Caller)?;
+                    now = self.started.elapsed();
+                }
+                Step::Wait(until) => {
+                    let received = self.receive(channel, self.started + until).await?;
+                    // A frame that arrived in the last moment counts.
+                    now = self.started.elapsed();
+                    let Some(len) = received else { continue };
+                    let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
+                    match again {
+                        Some(ack) => self.send(channel, &ack).await?,
+                        None => session.handle(now, &self.buffer[..len]),
+                    }
+                }
+                Step::Done(outcome) => {
+                    self.totals.waited += now.saturating_sub(began);
+                    return Ok(outcome);
+                }
+            }
+        }
+    }
+
+    async fn send(&mut self, channel: usize, bytes: &[u8]) -> Result<(), Error> {
+        self.totals.sent += 1;
+        self.transport.send(channel, bytes).await.map_err(|error| self.broken(channel, error))?;
+        self.watcher.frame(Direction::Sent, self.transport.ends(channel), bytes);
+        Ok(())
+    }
+
+    /// Waits for a datagram and puts it into the buffer; `None` if none came until then.
+    async fn receive(&mut self, channel: usize, until: Instant) -> Result<Option<usize>, Error> {
+        let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
+        let Some(len) = received.map_err(|error| self.broken(channel, error))? else { return Ok(None) };
+        self.totals.received += 1;
+        self.watcher.frame(Direction::Received, self.transport.ends(channel), &self.buffer[..len]);
+        Ok(Some(len))
+    }
+
+    /// Counts an exchange or transfer that has ended, and tells what else was on the line.
+    fn exchanged(&mut self, counters: Counters) {
+        self.totals.exchanges += 1;
+        if counters != Counters::default() {
+            self.watcher.event(Event::Disturbed(counters));
+        }
+    }
+
+    /// Nobody answered a question that does no harm.
+    fn silence(&self, counters: Counters) -> Error {
+        let waited = self.policy.deadline;
+        if counters.is_garbage() { Error::Garbage { waited, counters } } else { Error::NoAnswer { waited, counters } }
+    }
+
+    /// A session that ends in the middle takes the answer with it.
+    fn cut_short(&self, cause: Error, request: &Request, has_left: bool) -> Error {
+        if self.transport.ended().is_none() || !has_left || request.risk() == Risk::Read {
+            return cause;
+        }
+        Error::CutShort { request: request.clone(), cause: Box::new(cause) }
+    }
+
+    /// The socket has bad news.
+    fn broken(&self, channel: usize, error: io::Error) -> Error {
+        match self.transport.ended() {
+            Some(why) => Error::Session(SessionBusy::Ended(why.to_owned())),
+            None => Error::Io { port: self.transport.port(channel), error: Arc::new(error) },
+        }
+    }
+}

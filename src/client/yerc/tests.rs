@@ -1,0 +1,133 @@
+//! The client as a library, on simulators in virtual time.
+
+use std::fmt;
+
+use armctl_controller::yerc::query::{ReadStatus, ResetAlarm, SelectJob, Selection, Servo};
+use armctl_controller::yerc::simulator::Start;
+
+use super::*;
+
+const MODEL: Model = Model::Dx200;
+
+async fn simulated(risk: Risk) -> Client {
+    connected(risk, None).await
+}
+
+/// To a simulator, behind a line with these faults.
+async fn connected(risk: Risk, faults: Option<&str>) -> Client {
+    let faults = faults.map(|text| text.parse().unwrap());
+    let endpoint = Endpoint::Simulator { start: Box::new(Start::for_model(MODEL)), faults };
+    Client::connect(endpoint, Options::new(MODEL).granting(risk)).await.unwrap()
+}
+
+#[test]
+fn clients_can_be_sent_to_other_threads() {
+    fn send(_: impl Send) {}
+    let mut client = Client::dry_run(Options::new(MODEL));
+    send(client.ask(&ReadStatus));
+    send(client.read_file(&FileName::new("A.JBI").unwrap()));
+    send(client);
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+    let mut client = simulated(Risk::Read).await;
+    let denied = client.ask(&Servo(true)).await.unwrap_err();
+    assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Motion), "{denied}");
+    assert_eq!(client.totals.sent, 0);
+    assert!(!client.has_moved());
+    client.stop().await.unwrap();
+    assert!(client.ask(&ReadStatus).await.unwrap().held());
+    assert!(client.ask(&Servo(true)).await.is_err(), "a stop grants nothing");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_refusal_is_an_answer_or_an_error() {
+    let mut client = simulated(Risk::Write).await;
+    let select = SelectJob::new(MODEL, b"NOSUCH", Selection::Execute { line: 0 }).unwrap();
+    let refusal = client.try_ask(&select).await.unwrap().unwrap_err();
+    assert_eq!(refusal.to, Asked::Robot { command: 0x87, instance: 1 });
+    let error = client.ask(&select).await.unwrap_err();
+    assert!(matches!(error, Error::Refused(again) if again == refusal));
+    let missing = client.read_file(&FileName::new("NOSUCH.JBI").unwrap()).await.unwrap_err();
+    assert!(matches!(missing, Error::Refused(Refusal { to: Asked::File(service::SAVE), .. })), "{missing}");
+    let exists = client.read_file(&FileName::new("TESTJOB.JBI").unwrap()).await.unwrap();
+    assert!(exists.starts_with(b"/JOB"));
+    assert_eq!(client.close().await.unwrap().exchanges, 4);
+}
+
+#[tokio::test(start_paused = true)]
+async fn silence_after_a_change_is_not_silence_after_a_question() {
+    let mut client = connected(Risk::Motion, Some("drop=100%")).await;
+    let silent = client.ask(&ReadStatus).await.unwrap_err();
+    assert!(matches!(&silent, Error::NoAnswer { counters, .. } if counters.repeats == 3), "{silent}");
+    let before = client.totals.sent;
+    let unknown = client.ask(&ResetAlarm).await.unwrap_err();
+    assert!(matches!(&unknown, Error::OutcomeUnknown { request, .. } if request.command == 0x82), "{unknown}");
+    assert_eq!(client.totals.sent, before + 1, "what changes something leaves once");
+    assert!(client.stop().await.is_err());
+    assert!(client.totals.sent > before + 5, "a stop is repeated");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_dry_run_notes_orders_and_knows_no_answers() {
+    let mut client = Client::dry_run(Options::new(MODEL).granting(Risk::Motion));
+    client.is_for("power for the move").ask(&Servo(true)).await.unwrap();
+    assert!(matches!(client.ask(&ReadStatus).await, Err(Error::NotKnown)));
+    let plan = client.take_plan();
+    let abouts: Vec<_> = plan.frames.iter().map(|frame| frame["about"].as_str()).collect();
+    assert_eq!(abouts, [Some("power for the move"), None]);
+    let mut reader = Client::dry_run(Options::new(MODEL));
+    assert!(matches!(reader.ask(&Servo(true)).await, Err(Error::NotAuthorized(_))));
+    assert_eq!(reader.take_plan(), Plan::default());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_caller_that_fails_ends_a_transfer() {
+    let mut client = simulated(Risk::Destroy).await;
+    let file = FileName::new("TESTJOB.JBI").unwrap();
+    let full = |_: &[u8]| Err("disk full");
+    let broken = client.download(&file.save(), MAX_FILE, None, full).await.unwrap_err();
+    assert!(matches!(broken, TransferError { bytes, cause: Cause::Caller("disk full") } if bytes > 0));
+    let mut pieces = vec![Err("gone"), Ok(vec![b' '; 1000])];
+    let broken = client
+        .upload(&FileName::new("NEW.JBI").unwrap().load(), || pieces.pop().unwrap_or(Ok(Vec::new())))
+        .await
+        .unwrap_err();
+    assert!(matches!(broken, TransferError { bytes, cause: Cause::Caller("gone") } if bytes > 0));
+}
+
+/// Counts what it is told.
+#[derive(Debug, Default)]
+struct Counter(Arc<std::sync::Mutex<(Vec<Direction>, Vec<Event>)>>);
+
+impl Watcher<Event> for Counter {
+    fn frame(&mut self, direction: Direction, _: crate::Ends, bytes: &[u8]) {
+        assert!(bytes.starts_with(b"YERC"));
+        self.0.lock().unwrap().0.push(direction);
+    }
+
+    fn event(&mut self, event: Event) {
+        self.0.lock().unwrap().1.push(event);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
+    let mut client = connected(Risk::Read, Some("drop=100%")).await;
+    let told = Arc::default();
+    client.watch(Counter(Arc::clone(&told)));
+    assert!(client.ask(&ReadStatus).await.is_err());
+    let told = told.lock().unwrap();
+    assert_eq!(told.0, [Direction::Sent; 4]);
+    let repeated = Counters { repeats: 3, ..Counters::default() };
+    assert_eq!(told.1, [Event::Disturbed(repeated)]);
+}
+
+/// Errors are matched on, sent around, and told.
+#[test]
+fn errors_are_errors() {
+    fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}
+    is_error::<Error>();
+    is_error::<Refusal>();
+}

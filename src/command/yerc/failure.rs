@@ -1,0 +1,138 @@
+//! Errors of the client as failures of a command: what happened to which robot, and what to do about it.
+
+use std::io;
+
+use crate::client::yerc::{Error, Refusal};
+use crate::command::frame::attach::session_busy;
+use crate::command::frame::dry_run::unknown;
+use crate::controller::Risk;
+use crate::controller::yerc::request::Request;
+use crate::controller::yerc::status;
+use crate::failure::{Failure, Kind, plain};
+
+/// An error of the client of the robot that is called `label`.
+pub fn failure(label: &str, error: Error) -> Failure {
+    let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
+    match error {
+        Error::Refused(refusal) => refusal.into(),
+        Error::NoAnswer { .. } => about(Kind::NoAnswer, error.to_string()).hint(
+            "check address, cable and firewall; on the controller: the Ethernet server function, RS022, RS029 and \
+             #82015 CMD REMOTE SEL; `armctl help yerc` lists the settings",
+        ),
+        Error::Garbage { .. } => about(Kind::Malformed, error.to_string())
+            .hint("is this the high-speed Ethernet server of a controller? -vvv shows the bytes"),
+        Error::Unexpected(_) => about(Kind::Malformed, error.to_string())
+            .hint("check the model (?model=fs100 or dx200); -vvv shows the bytes"),
+        Error::OutcomeUnknown { request, waited, counters } => {
+            let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
+            let what = format!("sent once, no answer within {waited:?}{seen}: it may or may not have been done");
+            about(Kind::OutcomeUnknown, what).hint(format!("ask before you repeat it: {}", telltale(&request)))
+        }
+        Error::CutShort { request, cause } => {
+            let cause = failure(label, *cause).message;
+            let message = format!("{cause}; it was sent, and may or may not have been done");
+            Failure::new(Kind::OutcomeUnknown, message)
+                .hint(format!("ask before you repeat it: {}", telltale(&request)))
+        }
+        Error::NotAuthorized(error) => error.into(),
+        Error::Session(busy) => session_busy(label, &busy),
+        Error::HostNotFound { .. } => {
+            about(Kind::NoAnswer, error.to_string()).hint("check the name, or use the address of the controller")
+        }
+        Error::Io { port, error } => broken(label, port, &error),
+        Error::NotKnown => unknown(),
+        _ => about(Kind::Malformed, error.to_string()).hint("-vvv shows the bytes"),
+    }
+}
+
+/// The socket has bad news.
+fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
+    use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable};
+
+    let port = port.map_or_else(|| "of the session".to_owned(), |port| port.to_string());
+    let about = |what: String| Failure::new(Kind::NoAnswer, format!("{label}: {what}"));
+    match error.kind() {
+        ConnectionRefused => about(format!("nothing listens on UDP port {port}")).hint(
+            "the host is there, the server is not: check the port, and the Ethernet server function of the controller",
+        ),
+        HostUnreachable | NetworkUnreachable => about(format!("the host cannot be reached: {}", plain(error)))
+            .hint("check the address and this machine's own network settings"),
+        _ => about(format!("UDP port {port}: {}", plain(error))).hint("check this machine's network"),
+    }
+}
+
+/// What tells whether a request that changes something was carried out.
+fn telltale(request: &Request) -> &'static str {
+    match request.command {
+        0 => "`yerc file list` tells what is there",
+        0x78 | 0x300 => "`yerc io get` tells",
+        0x79 | 0x301 => "`yerc register get` tells",
+        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "`yerc var get` tells",
+        0x82 => "`yerc alarm list` and `yerc status` tell",
+        0x83 | 0x84 => "`yerc status` tells",
+        0x85 => "the pendant shows it; a message may safely be sent again",
+        0x86 => "`yerc status` and `yerc job show` tell whether it runs",
+        0x87 => "`yerc job show` tells",
+        0x8A | 0x8B => "keep clear; `yerc status` and `yerc position` tell whether it moves, and where it is",
+        _ => "`yerc status` tells how the controller stands",
+    }
+}
+
+/// The refusal of something so risky. A motion that is refused because the robot moves may be moving it: the
+/// network can double an order, and then the second copy meets the motion of the first.
+pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
+    let failure = Failure::from(refusal);
+    match &failure.hint {
+        Some(hint) if risk == Risk::Motion && refusal.status.added == MOVING => {
+            let hint = format!(
+                "{hint}\nIf it stood still before, this order itself may be what moves it: then the network doubled \
+                 the order, and only the second copy was refused"
+            );
+            failure.hint(hint)
+        }
+        _ => failure,
+    }
+}
+
+/// Added status: the manipulator moves (DX 5).
+const MOVING: u32 = 0x2010;
+
+impl From<Refusal> for Failure {
+    fn from(Refusal { status, to }: Refusal) -> Self {
+        let explanation = status::explain(status);
+        Failure::new(Kind::Refused, format!("the controller refused {to}: {}. {}", explanation.name, explanation.cause))
+            .hint(explanation.remedy.into_owned())
+            .code(explanation.code_text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::client::yerc::Asked;
+    use crate::controller::yerc::wire::Status;
+
+    #[test]
+    fn a_motion_that_is_refused_for_motion_may_be_that_motion() {
+        let to = Asked::Robot { command: 0x8B, instance: 1 };
+        let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
+        assert!(hint(0x2010, Risk::Motion).contains("doubled the order"));
+        assert!(!hint(0x2060, Risk::Motion).contains("doubled"));
+        assert!(!hint(0x2010, Risk::Write).contains("doubled"));
+    }
+
+    #[test]
+    fn a_refusal_names_the_request() {
+        let message = |to| Failure::from(Refusal { status: Status::refused(0xA001), to }).message;
+        let robot = message(Asked::from(&Request {
+            command: 0x7A,
+            instance: 300,
+            attribute: 1,
+            service: 0x0E,
+            data: Vec::new(),
+        }));
+        assert!(robot.starts_with("the controller refused 0x7A (instance 300): "), "{robot}");
+        let file = message(Asked::from(&Request::file(0x16, *b"A.JBI")));
+        assert!(file.starts_with("the controller refused file service 0x16: "), "{file}");
+    }
+}

@@ -1,0 +1,193 @@
+//! Stations of a line, as they answer questions that own nobody.
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::{check, connect};
+use crate::command::face::layers::Layers;
+use crate::command::yrcx::fieldbus::{self, At};
+use crate::command::yrcx::link_error::not_open;
+use crate::controller::text::hex;
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
+use crate::failure::Failure;
+use crate::output::view::Cell;
+use crate::settings::target::Bus;
+use crate::settings::target::profibus::{Profibus, SCHEME};
+use crate::transport::image::LinkError;
+use crate::transport::image::tap::Tap;
+use crate::transport::profibus::driver::survey;
+use crate::transport::profibus::error::ProfibusError;
+use crate::transport::profibus::link::record;
+use crate::transport::profibus::request::Requester;
+use crate::transport::profibus::survey::{Found, Survey, Unknown};
+use crate::transport::profibus::wire::{Configuration, Flag, MAX_STATION, Station as Kind};
+
+/// A line that is asked when something is asked.
+#[derive(Debug)]
+pub struct Board {
+    profibus: Profibus,
+    label: String,
+    tap: Tap,
+}
+
+/// Repetitions of questions to stations that may not be there.
+const RETRIES: u8 = 1;
+
+impl Board {
+    /// The line of a URL.
+    pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
+        Ok(Self { profibus: connect::options(at)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+    }
+
+    /// A line without a robot.
+    pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
+        let profibus: &Profibus =
+            bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is no URL of PROFIBUS")))?;
+        Ok(Self { profibus: profibus.clone(), label: line.to_owned(), tap })
+    }
+
+    /// What its URL says.
+    pub const fn settings(&self) -> &Profibus {
+        &self.profibus
+    }
+
+    /// Who is on the line.
+    pub async fn scan(&self) -> Result<Vec<Station>, Failure> {
+        let all = (0..=MAX_STATION).filter(|station| *station != self.profibus.master).collect();
+        let found = self.ask(all, RETRIES).await?;
+        Ok(found.iter().map(Station::from).collect())
+    }
+
+    /// The station of the URL; `None` if it does not answer.
+    pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
+        let retries = self.profibus.retries.unwrap_or(3);
+        let found = self.ask(vec![self.profibus.station], retries).await?;
+        Ok(found.first().map(|found| (Station::from(found), self.image(found))))
+    }
+
+    /// What the controller shows, where it exchanges data with somebody.
+    fn image(&self, found: &Found) -> Option<Image> {
+        let mut bytes = found.inputs.as_ref().ok().cloned()?;
+        if self.profibus.is_big_endian {
+            for pair in bytes.chunks_exact_mut(2).take(COMMAND_WORDS) {
+                pair.swap(0, 1);
+            }
+        }
+        Image::from_link(&bytes)
+    }
+
+    async fn ask(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<Found>, Failure> {
+        let asked = self.survey(stations, retries).await;
+        asked.map_err(|error| not_open(&self.label, &SCHEME, &error))
+    }
+
+    async fn survey(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<Found>, LinkError> {
+        let settings = connect::settings(&self.profibus, std::time::Duration::ZERO)?;
+        let timing = settings.timing()?;
+        let requester = Requester::new(settings.master, settings.rate, timing.slot, retries);
+        let mut opener = connect::opener(&self.profibus)?;
+        let tap = record(self.tap.clone());
+        let asked = tokio::task::spawn_blocking(move || {
+            let mut port = opener()?;
+            let mut asking = Survey::new(std::time::Duration::ZERO, stations, requester, timing);
+            survey(&mut asking, port.as_mut(), tap)
+        });
+        match asked.await {
+            Ok(found) => Ok(found?),
+            Err(error) => Err(ProfibusError::Gone { text: error.to_string() }.into()),
+        }
+    }
+}
+
+impl fieldbus::Board for Board {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        check::look(self, layers).boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        std::future::ready(()).boxed_local()
+    }
+}
+
+/// A station, as it says itself.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Station {
+    /// Its address.
+    pub station: u8,
+    /// `slave`, or what kind of master.
+    pub kind: &'static str,
+    /// Which kind of slave it is, such as 0x1234; null where it does not say.
+    pub ident: Option<String>,
+    /// The master that it belongs to; null where it has none.
+    pub master: Option<u8>,
+    /// How it is doing, in words; why not, where it does not say.
+    pub diagnosis: String,
+    /// The identifier bytes that it wants; null where it does not say.
+    pub configuration: Option<String>,
+    /// Bytes from it that these add up to.
+    pub in_size: Option<usize>,
+    /// Bytes to it that these add up to.
+    pub out_size: Option<usize>,
+    /// Whether it exchanges data with its master.
+    pub exchanging: bool,
+}
+
+impl From<&Found> for Station {
+    fn from(found: &Found) -> Self {
+        let diagnosis = found.diagnosis.as_ref().ok();
+        let configuration = found.configuration.as_ref().ok();
+        let sizes = configuration.and_then(|bytes| Configuration::parse(bytes).ok());
+        Self {
+            station: found.station,
+            kind: match found.kind {
+                Kind::Slave => "slave",
+                Kind::MasterNotReady => "master, not ready",
+                Kind::MasterReady => "master, ready",
+                Kind::MasterInRing => "master, in the ring",
+            },
+            ident: diagnosis.map(|diagnosis| format!("{:#06x}", diagnosis.ident)),
+            master: diagnosis.and_then(|diagnosis| diagnosis.master),
+            diagnosis: match &found.diagnosis {
+                Ok(diagnosis) => diagnosis.to_string(),
+                Err(why) => unknown(why),
+            },
+            configuration: configuration.map(|bytes| hex(bytes)),
+            in_size: sizes.as_ref().map(Configuration::input),
+            out_size: sizes.as_ref().map(Configuration::output),
+            exchanging: diagnosis.is_some_and(|diagnosis| diagnosis.master.is_some() && !diagnosis.has(Flag::NotReady)),
+        }
+    }
+}
+
+impl Station {
+    /// Whether its images have the size of the controller's.
+    pub fn fits(&self) -> bool {
+        self.in_size == Some(Image::BYTES) && self.out_size == Some(Image::BYTES)
+    }
+
+    /// As fields of a view.
+    pub fn fields(&self) -> Vec<(&'static str, Cell)> {
+        let bytes = |size: Option<usize>| Cell::maybe(size.map(|size| format!("{size} bytes")));
+        vec![
+            ("station", self.station.into()),
+            ("kind", self.kind.into()),
+            ("ident", Cell::maybe(self.ident.clone())),
+            ("master", Cell::maybe(self.master)),
+            ("diagnosis", self.diagnosis.as_str().into()),
+            ("configuration", Cell::maybe(self.configuration.clone())),
+            ("from the controller", bytes(self.in_size)),
+            ("to the controller", bytes(self.out_size)),
+        ]
+    }
+}
+
+fn unknown(why: &Unknown) -> String {
+    match why {
+        Unknown::NotAsked => "not asked".to_owned(),
+        Unknown::NoAnswer => "it does not answer".to_owned(),
+        Unknown::Refused(status) => format!("refused: {}", status.text()),
+        Unknown::Malformed(why) => format!("cannot be read: {why}"),
+    }
+}

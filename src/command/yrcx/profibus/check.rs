@@ -1,0 +1,82 @@
+//! The layers of a line for `armctl robots check`: from the adapter to what the controller shows. Nobody is owned.
+
+use super::board::Board;
+use crate::command::face::layers::Layers;
+use crate::controller::yrcx::image::Image;
+use crate::transport::profibus::port::latency_timer;
+
+/// In the order in which they are looked at.
+pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration", "owner", "inputs"];
+
+/// Looks at them; what the controller shows, where it exchanges data with a master that is not on this line.
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+    let settings = board.settings().clone();
+    let answered = match board.station().await {
+        // The adapter, or the line that has another master.
+        Err(failure) => {
+            layers.fail("name", &failure);
+            return None;
+        }
+        Ok(answered) => answered,
+    };
+    match latency_timer(&settings.port) {
+        None => layers.ok("name", format!("{} opens, and no other master speaks", settings.port)),
+        Some(time) => layers.warn(
+            "name",
+            format!("{} opens, but its driver holds characters back for {time} ms", settings.port),
+            "write 1 to latency_timer of the port in /sys/bus/usb-serial/devices, or set slot=50ms in the URL",
+        ),
+    }
+    let Some((station, image)) = answered else {
+        layers.wrong(
+            "station",
+            format!("station {} does not answer", settings.station),
+            "check station and baud of the URL, A and B, the terminators, and that the controller is on; `yrcx profibus \
+             scan` lists who answers",
+        );
+        return None;
+    };
+    if station.kind == "slave" {
+        layers.ok("station", format!("station {} answers: {}", station.station, station.diagnosis));
+    } else {
+        layers.wrong("station", station.kind, "check station of the URL: `yrcx profibus scan` lists the slaves");
+        return None;
+    }
+    let wanted = settings.ident.map(|ident| format!("{ident:#06x}"));
+    match &station.ident {
+        None => layers.wrong("ident", station.diagnosis.clone(), "check that this is a slave of PROFIBUS DP"),
+        Some(ident) if wanted.as_ref().is_some_and(|wanted| wanted != ident) => {
+            layers.wrong("ident", ident.clone(), format!("set ident={ident} in the URL, if this is the controller"));
+        }
+        Some(ident) => layers.ok("ident", ident.clone()),
+    }
+    match (&station.configuration, settings.configuration.is_some() || settings.gsd.is_some()) {
+        (Some(bytes), _) if station.fits() => layers.ok("configuration", format!("{bytes}, 48 bytes each way")),
+        (_, true) => layers.ok("configuration", "it is that of the URL"),
+        (Some(bytes), false) => {
+            let sizes =
+                [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));
+            let found = format!("{bytes}: {} bytes from it and {} to it, not 48", sizes[0], sizes[1]);
+            layers.wrong("configuration", found, "check station of the URL, and the unit of the controller");
+        }
+        (None, false) => {
+            layers.wrong("configuration", "it does not say which it wants", "set cfg= or gsd= in the URL");
+        }
+    }
+    let found = station.master.map(|master| format!("master {master} commands it"));
+    layers.judge(
+        "owner",
+        found.is_none(),
+        ("no master commands it", found.as_deref().unwrap_or_default()),
+        "commands want that master away first",
+    );
+    match image {
+        Some(_) => layers.ok("inputs", "they can be read"),
+        None => layers.warn(
+            "inputs",
+            "a slave without a master shows nothing",
+            "`armctl session open` commands it; then `yrcx status` shows its signals",
+        ),
+    }
+    image
+}

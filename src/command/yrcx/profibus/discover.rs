@@ -1,0 +1,55 @@
+//! Which stations answer on a line.
+
+use std::time::Duration;
+
+use clap::Args;
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::board::{Board, Station};
+use crate::command::yrcx::fieldbus::{self, Found, Scope, bus_of, fields};
+use crate::failure::Failure;
+use crate::settings::target::profibus::SCHEME;
+use crate::transport::image::tap::Tap;
+
+/// Which line to ask.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct Search {
+    /// Ask the stations of PROFIBUS behind this adapter, as in /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
+    #[arg(long, value_name = "PORT[?baud=RATE]")]
+    profibus: Option<String>,
+}
+
+impl fieldbus::Search for Search {
+    fn scope(&self) -> Scope {
+        if self.profibus.is_some() { Scope::Devices } else { Scope::Nothing }
+    }
+
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+        async move {
+            let Some(line) = &self.profibus else { return Ok(Vec::new()) };
+            let url = |station: u8| {
+                let joint = if line.contains('?') { '&' } else { '?' };
+                format!("{}://{line}{joint}station={station}", SCHEME.name)
+            };
+            let bus = bus_of(&url(0))?;
+            let stations = Board::of_line(&bus, line, tap)?.scan().await?;
+            stations.into_iter().map(|station| found(&station, line, url(station.station))).collect()
+        }
+        .boxed_local()
+    }
+}
+
+fn found(station: &Station, line: &str, target: String) -> Result<Found, Failure> {
+    let ident = station.ident.as_deref().unwrap_or("-");
+    let device = format!("{}, ident {ident}, {}", station.kind, station.diagnosis);
+    Ok(Found {
+        address: format!("station {} on {line}", station.station),
+        target,
+        // No number tells the maker; the size of the images is all there is.
+        is_yrcx: station.kind == "slave" && station.fits(),
+        device,
+        identity: fields(station)?,
+    })
+}

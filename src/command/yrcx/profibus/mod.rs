@@ -1,0 +1,36 @@
+//! Controllers on PROFIBUS DP, and `yrcx profibus`: the line and its stations. For diagnosis: no slave is owned.
+
+mod board;
+pub mod bus;
+mod check;
+mod connect;
+mod decode;
+mod discover;
+mod probe;
+mod scan;
+mod serve;
+pub mod simulated;
+
+use self::board::Board;
+use super::link::Link;
+use crate::command::commands;
+use crate::failure::Failure;
+use crate::settings::target::profibus::SCHEME;
+
+/// The board of a link that is for it alone.
+fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
+    link.board(SCHEME.bus)
+}
+
+/// Why `--unit` means nothing here.
+const NO_UNIT: &str = "the station is that of the whole controller";
+
+commands! {
+    /// What a line and its stations can be asked.
+    pub enum Profibus {
+        /// List the stations of the line, without owning any
+        Scan(scan::Scan),
+        /// Show diagnosis, ident number and configuration of the station, without owning it
+        Probe(probe::Probe),
+    }
+}

@@ -1,0 +1,94 @@
+//! A simulated controller as a slave behind a pseudo-terminal, for others.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::simulated::{self, Options, Server, mischief};
+use crate::command::serve::terminal_link::TerminalLink;
+use crate::command::yrcx::fieldbus::{self, Served};
+use crate::controller::yrcx::simulator::Start;
+use crate::failure::Failure;
+use crate::transport::fault::LineFaultSpec;
+use crate::transport::profibus::rates::{RATES, Rate};
+use crate::transport::profibus::slave::SlaveFault;
+
+/// What the slave is, and what it does wrong.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct ServeArgs {
+    /// PROFIBUS: address of the station
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u8).range(0..=125))]
+    station: u8,
+    /// PROFIBUS: ident number of the station
+    #[arg(long, value_name = "0xNNNN", default_value = "0x1234", value_parser = ident)]
+    ident: u16,
+    /// PROFIBUS: bit rate, which characters take their time by: 9.6k, 19.2k, 45.45k, 93.75k, 187.5k, 500k, 1.5M
+    #[arg(long, value_name = "RATE", default_value = "500k", value_parser = rate)]
+    baud: Rate,
+    /// PROFIBUS: name the pseudo-terminal by a symbolic link, which is removed at the end
+    #[arg(long, value_name = "PATH")]
+    link: Option<PathBuf>,
+    /// PROFIBUS: faults of characters, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,echo,seed=7
+    #[arg(long, value_name = "FAULTS")]
+    line_fault: Option<LineFaultSpec>,
+    /// PROFIBUS: what the slave does wrong: mute, lose, bad-fcs, locked, other-ident, other-size, no-configuration,
+    /// no-parameters, not-ready, wrong-size, inactive, master, diagnosis, token
+    #[arg(long, value_name = "WHAT", value_parser = mischief)]
+    slave_fault: Option<SlaveFault>,
+}
+
+fn ident(text: &str) -> Result<u16, String> {
+    let digits = text.strip_prefix("0x").unwrap_or(text);
+    u16::from_str_radix(digits, 16).map_err(|_| format!("'{text}' is no ident number such as 0x1234"))
+}
+
+fn rate(text: &str) -> Result<Rate, String> {
+    Rate::from_name(text).ok_or_else(|| format!("there are {}", RATES.map(|rate| rate.name).join(", ")))
+}
+
+impl fieldbus::Serve for ServeArgs {
+    fn serve(&self, _simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+        let options = Options {
+            station: self.station,
+            ident: self.ident,
+            rate: self.baud,
+            faults: self.line_fault.clone(),
+            mischief: self.slave_fault,
+        };
+        let server = simulated::serve(start, options)?;
+        // From here on there may be a link to remove.
+        crate::command::frame::interrupt::catch_interrupts();
+        let link = self.link.as_ref().map(|link| TerminalLink::make(link, server.port())).transpose()?;
+        let name = link.as_ref().map(|link| link.name().display().to_string());
+        Ok(Served {
+            target: server.url(name.as_deref()),
+            address: None,
+            console: Box::new(move |line| {
+                // The name goes when the server does.
+                let _ = &link;
+                console(&server, line)
+            }),
+        })
+    }
+}
+
+fn console(server: &Server, line: &str) -> Result<String, String> {
+    server.with(|slave, now| match line.trim() {
+        "restart" => {
+            slave.restart(now);
+            Ok("the slave was off, and is on again".to_owned())
+        }
+        "mischief off" => {
+            slave.misbehave(None);
+            Ok("the slave does as it should".to_owned())
+        }
+        line => match line.strip_prefix("mischief ").map(str::trim) {
+            None => slave.peer_mut().0.console(now, line),
+            Some(name) => {
+                slave.misbehave(Some(mischief(name)?));
+                Ok(format!("mischief: {name}"))
+            }
+        },
+    })
+}

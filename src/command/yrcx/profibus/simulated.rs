@@ -1,0 +1,181 @@
+//! The simulated controller as a slave of PROFIBUS, behind a pseudo-terminal.
+
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use tokio::runtime::Builder;
+use tokio::sync::oneshot;
+
+use crate::command::yrcx::simulated::{Simulated, start};
+use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::simulator::{Simulator, Start};
+use crate::failure::{Failure, plain};
+use crate::settings::target::Sim;
+use crate::settings::target::profibus::SCHEME;
+use crate::transport::fault::LineFaultSpec;
+use crate::transport::profibus::rates::{RATES, Rate};
+use crate::transport::profibus::slave::{Setup, Slave, SlaveFault};
+use crate::transport::sim::Peer;
+use crate::transport::stream_server::StreamServer;
+
+/// What a simulator is unless it is told otherwise. The ident number is a stand-in: the maker's is not public.
+const STATION: u8 = 5;
+const IDENT: u16 = 0x1234;
+/// One identifier: 24 words each way.
+const CONFIGURATION: [u8; 3] = [0xC0, 0xD7, 0xD7];
+
+/// How a slave is served.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Its address.
+    pub station: u8,
+    /// Its ident number.
+    pub ident: u16,
+    /// Speed of the line.
+    pub rate: Rate,
+    /// Faults of characters on their way.
+    pub faults: Option<LineFaultSpec>,
+    /// What the slave does wrong.
+    pub mischief: Option<SlaveFault>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let rate = Rate::from_name("500k").unwrap_or(RATES[0]);
+        Self { station: STATION, ident: IDENT, rate, faults: None, mischief: None }
+    }
+}
+
+/// A simulator as the URL wants it.
+pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
+    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
+    let faults = sim.fault.as_deref().map(str::parse).transpose();
+    let faults = faults.map_err(|error| wrong(format!("fault: {error}")))?;
+    let mischief = sim.mischief.as_deref().map(mischief).transpose();
+    let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
+    serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
+}
+
+/// What a slave does wrong, by its name.
+pub fn mischief(text: &str) -> Result<SlaveFault, String> {
+    let found = SlaveFault::ALL.iter().find(|(name, _)| *name == text);
+    found.map(|(_, fault)| *fault).ok_or_else(|| {
+        let names = SlaveFault::ALL.map(|(name, _)| name).join(", ");
+        format!("there are {names}")
+    })
+}
+
+/// A slave that is served as long as this lives.
+#[derive(Debug)]
+pub struct Server {
+    slave: Shared,
+    port: String,
+    options: Options,
+    clock: tokio::time::Instant,
+    quit: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Serves a controller as a slave behind a pseudo-terminal.
+pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
+    let failed = |error: io::Error| Failure::local(format!("cannot make a pseudo-terminal: {}", plain(&error)));
+    let setup = Setup {
+        station: options.station,
+        ident: options.ident,
+        configuration: CONFIGURATION.to_vec(),
+        input: Image::BYTES,
+        output: Image::BYTES,
+        parameters: vec![Vec::new(), vec![0; 3]],
+        rate: options.rate,
+    };
+    let mut slave = Slave::new(setup, Simulated(Simulator::new(start)));
+    slave.misbehave(options.mischief);
+    let slave = Shared(Arc::new(Mutex::new(slave)));
+    let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;
+    let (mut server, port) = {
+        let _guard = runtime.enter();
+        StreamServer::pseudo_terminal(Some(options.rate.pace()), options.faults.clone()).map_err(failed)?
+    };
+    let (quit, mut quits) = oneshot::channel();
+    let mut peer = slave.clone();
+    let clock = tokio::time::Instant::now();
+    let serve = move || {
+        runtime.block_on(async {
+            loop {
+                tokio::select! {
+                    turned = server.turn(&mut peer) => if turned.is_err() { return },
+                    _ = &mut quits => return,
+                }
+            }
+        });
+        // A read of the terminal may still wait.
+        runtime.shutdown_background();
+    };
+    let thread = std::thread::Builder::new().name("profibus-slave".to_owned()).spawn(serve).map_err(failed)?;
+    Ok(Server { slave, port, options, clock, quit: Some(quit), thread: Some(thread) })
+}
+
+impl Server {
+    /// Its path.
+    pub fn port(&self) -> &str {
+        &self.port
+    }
+
+    /// The URL to reach it by, through another name of its port where there is one. Two processes share a processor, and a
+    /// terminal has no clock: waits are longer than on a line.
+    pub fn url(&self, name: Option<&str>) -> String {
+        let (scheme, port) = (SCHEME.name, name.unwrap_or(&self.port));
+        let (station, baud) = (self.options.station, self.options.rate.name);
+        let slot = SLOT.max(self.options.rate.bits(self.options.rate.slot)).as_millis();
+        format!("{scheme}://{port}?station={station}&baud={baud}&slot={slot}ms")
+    }
+
+    /// Does something with the slave.
+    pub fn with<T>(&self, act: impl FnOnce(&mut Slave<Simulated>, Duration) -> T) -> T {
+        act(&mut self.slave.lock(), self.clock.elapsed())
+    }
+}
+
+/// Slot time on a machine that is busy with other things.
+const SLOT: Duration = Duration::from_millis(60);
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        drop(self.quit.take());
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so already.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A slave that a thread serves while others look at it.
+#[derive(Debug, Clone)]
+struct Shared(Arc<Mutex<Slave<Simulated>>>);
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Slave<Simulated>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Peer for Shared {
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
+        self.lock().receive(now, channel, bytes);
+    }
+
+    fn damaged(&mut self, now: Duration, channel: usize) {
+        // A character with the wrong parity reads as NUL, as from a driver.
+        self.lock().receive(now, channel, &[0]);
+    }
+
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
+        self.lock().transmit(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.lock().wake()
+    }
+}

@@ -1,0 +1,270 @@
+//! A master on a thread of its own: exchanges go on whatever the rest of the program does.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use tokio::sync::watch;
+
+use super::error::ProfibusError;
+use super::master::{Master, State, View};
+use super::port::Port;
+use super::settings::Settings;
+use super::survey::{Found, Survey};
+use super::wire::{Piece, Stream};
+
+/// How long a port is waited for at once, so that a wish to end is heard.
+const SLICE: Duration = Duration::from_millis(10);
+/// Pause before a port that is gone is opened again.
+const AGAIN: Duration = Duration::from_secs(1);
+
+/// Opens the port, the first time and after it was gone.
+pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Port>, ProfibusError> + Send>;
+/// Is told every telegram.
+pub type Tap = Box<dyn Fn(&[u8]) + Send>;
+
+/// A link that is held. Dropping it sets the slave free.
+#[derive(Debug)]
+pub struct Connection {
+    shared: Arc<Shared>,
+    views: watch::Receiver<View>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    master: Mutex<Master>,
+    view: watch::Sender<View>,
+    start: Instant,
+    is_over: AtomicBool,
+}
+
+impl Connection {
+    /// Opens the port and a link.
+    ///
+    /// # Errors
+    /// When either does not come about: nothing is tried twice. Later losses are not errors but states of the view.
+    pub async fn open(settings: Settings, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
+        let master = Master::new(Duration::ZERO, settings)?;
+        let port = opener()?;
+        let (view, views) = watch::channel(master.view());
+        let shared = Arc::new(Shared {
+            master: Mutex::new(master),
+            view,
+            start: Instant::now(),
+            is_over: AtomicBool::new(false),
+        });
+        let on_thread = Arc::clone(&shared);
+        let thread = thread::Builder::new().name("profibus".to_owned());
+        let thread = thread
+            .spawn(move || Driver { shared: on_thread, port: Some(port), opener, tap: tap.map(Record::new) }.run());
+        let thread =
+            thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: error.to_string() })?;
+        let mut connection = Self { shared, views, thread: Some(thread) };
+        let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
+        match (view.state, view.error) {
+            (State::Closed, error) => Err(error.unwrap_or(ProfibusError::Ended)),
+            _ => Ok(connection),
+        }
+    }
+
+    /// What there is to see now.
+    pub fn view(&self) -> View {
+        self.shared.master().view()
+    }
+
+    /// Waits for something new: an image, or a change of state.
+    pub async fn changed(&mut self) {
+        if self.views.changed().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    }
+
+    /// Sends this image from the next cycle on; see [`Master::set_image`].
+    pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
+        self.shared.master().set_image(generation, image)
+    }
+
+    /// Sets the slave free, and ends.
+    ///
+    /// # Errors
+    /// When the slave did not say that it is free; it is so after its watchdog.
+    pub async fn close(mut self) -> Result<(), ProfibusError> {
+        let now = self.shared.start.elapsed();
+        self.shared.master().close(now);
+        let view = self.until(|view| view.state == State::Closed).await;
+        view.error.map_or(Ok(()), Err)
+    }
+
+    async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
+        loop {
+            let view = self.views.borrow_and_update().clone();
+            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
+                return self.view();
+            }
+        }
+    }
+}
+
+impl Drop for Connection {
+    fn drop(&mut self) {
+        let now = self.shared.start.elapsed();
+        self.shared.master().close(now);
+        self.shared.is_over.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn master(&self) -> MutexGuard<'_, Master> {
+        self.master.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Moves characters between the master and its port.
+struct Driver {
+    shared: Arc<Shared>,
+    port: Option<Box<dyn Port>>,
+    opener: Opener,
+    tap: Option<Record>,
+}
+
+impl Driver {
+    fn run(mut self) {
+        loop {
+            let turned = if let Some(mut port) = self.port.take() {
+                self.turn(port.as_mut()).map(|()| self.port = Some(port))
+            } else {
+                self.reopen();
+                Ok(())
+            };
+            if let Err(error) = turned {
+                let now = self.shared.start.elapsed();
+                let error = ProfibusError::Gone { text: plain(&error) };
+                self.shared.master().port_failed(now, error);
+            }
+            let mut master = self.shared.master();
+            let is_closed = master.view().state == State::Closed;
+            if master.take_changed() {
+                self.shared.view.send_replace(master.view());
+            }
+            if is_closed {
+                return;
+            }
+        }
+    }
+
+    /// Sends what is due, or waits for what comes.
+    fn turn(&mut self, port: &mut dyn Port) -> io::Result<()> {
+        let (bytes, due) = {
+            let mut master = self.shared.master();
+            (master.poll(self.shared.start.elapsed()), master.due())
+        };
+        if let Some(bytes) = bytes {
+            self.record(&bytes, true);
+            return port.send(&bytes);
+        }
+        let wait = due.map_or(SLICE, |due| due.saturating_sub(self.shared.start.elapsed()).min(SLICE));
+        let mut buffer = [0; 512];
+        let len = port.receive(&mut buffer, wait)?;
+        if len > 0 {
+            self.record(&buffer[..len], false);
+            self.shared.master().handle(self.shared.start.elapsed(), &buffer[..len]);
+        }
+        Ok(())
+    }
+
+    /// Opens the port again after a while.
+    fn reopen(&mut self) {
+        let until = Instant::now() + AGAIN;
+        while Instant::now() < until {
+            if self.shared.is_over.load(Ordering::SeqCst) || self.shared.master().view().state != State::Lost {
+                break;
+            }
+            thread::sleep(SLICE);
+        }
+        let now = self.shared.start.elapsed();
+        if self.shared.master().view().state != State::Lost {
+            // To be closed: without a port nobody can be told.
+            self.shared.master().port_failed(now, ProfibusError::Ended);
+            return;
+        }
+        if let Ok(port) = (self.opener)() {
+            self.port = Some(port);
+            self.shared.master().port_is_back(self.shared.start.elapsed());
+        }
+    }
+
+    fn record(&mut self, bytes: &[u8], is_whole: bool) {
+        if let Some(record) = &mut self.tap {
+            record.pass(bytes, is_whole);
+        }
+    }
+}
+
+/// Whole telegrams for a tap.
+pub(super) struct Record {
+    tap: Tap,
+    stream: Stream,
+}
+
+impl Record {
+    pub(super) fn new(tap: Tap) -> Self {
+        Self { tap, stream: Stream::default() }
+    }
+
+    pub(super) fn pass(&mut self, bytes: &[u8], is_whole: bool) {
+        if is_whole {
+            self.stream.clear();
+            return (self.tap)(bytes);
+        }
+        self.stream.push(bytes);
+        while let Some(piece) = self.stream.next_piece() {
+            match piece {
+                Piece::Telegram(_, bytes) => (self.tap)(&bytes),
+                Piece::Noise(byte, _) => (self.tap)(&[byte]),
+            }
+        }
+    }
+}
+
+/// An error of the system without its number.
+pub(super) fn plain(error: &io::Error) -> String {
+    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
+}
+
+/// Asks stations who they are; on a thread that may block.
+///
+/// # Errors
+/// When nobody can be asked.
+pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
+    let start = Instant::now();
+    let mut record = tap.map(Record::new);
+    let gone = |error: io::Error| ProfibusError::Gone { text: plain(&error) };
+    let mut buffer = [0; 512];
+    loop {
+        if let Some(result) = survey.result() {
+            return result.map(<[Found]>::to_vec);
+        }
+        if let Some(bytes) = survey.poll(start.elapsed()) {
+            if let Some(record) = &mut record {
+                record.pass(&bytes, true);
+            }
+            port.send(&bytes).map_err(gone)?;
+            continue;
+        }
+        let wait = survey.due().saturating_sub(start.elapsed()).min(SLICE);
+        let len = port.receive(&mut buffer, wait).map_err(gone)?;
+        if let Some(record) = record.as_mut().filter(|_| len > 0) {
+            record.pass(&buffer[..len], false);
+        }
+        if len > 0 {
+            survey.handle(start.elapsed(), &buffer[..len]);
+        }
+    }
+}

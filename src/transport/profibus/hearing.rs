@@ -1,0 +1,108 @@
+//! A listener on a thread of its own.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use tokio::sync::watch;
+use tokio::time::timeout;
+
+use super::driver::{Opener, Record, Tap, plain};
+use super::error::ProfibusError;
+use super::listener::{Heard, Listener};
+
+/// How long a port is waited for at once, so that the wish to end is heard.
+const SLICE: Duration = Duration::from_millis(10);
+
+/// Hears one station until it is dropped.
+#[derive(Debug)]
+pub struct Hearing {
+    news: watch::Receiver<Result<Heard, ProfibusError>>,
+    last: Heard,
+    station: u8,
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Hearing {
+    /// Opens the port.
+    ///
+    /// # Errors
+    /// When it does not open.
+    pub fn start(station: u8, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
+        let mut port = opener()?;
+        let (tell, news) = watch::channel(Ok(Heard::default()));
+        let is_over = Arc::new(AtomicBool::new(false));
+        let over = Arc::clone(&is_over);
+        let mut record = tap.map(Record::new);
+        let hear = move || {
+            let mut listener = Listener::new(station);
+            let mut buffer = [0; 512];
+            while !over.load(Ordering::SeqCst) {
+                match port.receive(&mut buffer, SLICE) {
+                    Ok(len) => {
+                        if let Some(record) = record.as_mut().filter(|_| len > 0) {
+                            record.pass(&buffer[..len], false);
+                        }
+                        if len > 0 {
+                            listener.handle(&buffer[..len]);
+                            drop(tell.send_replace(Ok(listener.heard().clone())));
+                        }
+                    }
+                    Err(error) => {
+                        drop(tell.send_replace(Err(ProfibusError::Gone { text: plain(&error) })));
+                        return;
+                    }
+                }
+            }
+        };
+        let thread = thread::Builder::new().name("profibus".to_owned()).spawn(hear);
+        let thread = thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: plain(&error) })?;
+        Ok(Self { news, last: Heard::default(), station, is_over, thread: Some(thread) })
+    }
+
+    /// What was heard so far.
+    pub const fn heard(&self) -> &Heard {
+        &self.last
+    }
+
+    /// Waits until something was heard, but not longer.
+    ///
+    /// # Errors
+    /// When it was not heard, or the port is gone.
+    pub async fn until(
+        &mut self,
+        longest: Duration,
+        mut condition: impl FnMut(&Heard) -> bool,
+    ) -> Result<Heard, ProfibusError> {
+        let wait = async {
+            loop {
+                let heard = self.news.borrow_and_update().clone()?;
+                self.last = heard;
+                if condition(&self.last) || self.news.changed().await.is_err() {
+                    return Ok(self.last.clone());
+                }
+            }
+        };
+        match timeout(longest, wait).await {
+            Ok(heard) => heard,
+            Err(_) => Err(ProfibusError::NotHeard {
+                station: self.station,
+                after: longest,
+                telegrams: self.last.telegrams,
+                noise: self.last.noise,
+            }),
+        }
+    }
+}
+
+impl Drop for Hearing {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so already.
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! The seam for fieldbuses over PROFIBUS: a link that commands, or one that hears what a PLC exchanges.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::driver::{Connection, Opener};
+use super::error::ProfibusError;
+use super::hearing::Hearing;
+use super::master::State;
+use super::settings::Settings;
+use crate::image::tap::{Passed, Tap};
+use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+
+/// Which bytes of an image stand the other way round on the line: those of words that a board swaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Swapped {
+    /// So many bytes from the start, in pairs.
+    pub bytes: usize,
+}
+
+impl Swapped {
+    fn turn(self, image: &mut [u8]) {
+        let (pairs, _) = image.split_at_mut(self.bytes.min(image.len()));
+        for pair in pairs.chunks_exact_mut(2) {
+            pair.swap(0, 1);
+        }
+    }
+
+    fn turned(self, image: &[u8]) -> Vec<u8> {
+        let mut image = image.to_vec();
+        self.turn(&mut image);
+        image
+    }
+}
+
+/// A link to a slave that is ours.
+#[derive(Debug)]
+pub struct Master {
+    connection: Connection,
+    sizes: Sizes,
+    swapped: Swapped,
+    watchdog: Duration,
+    /// The opening that is known of.
+    generation: u32,
+    /// The change that has not left yet.
+    pending: Option<u64>,
+}
+
+impl Master {
+    /// Opens the port and the link. The resting image of the settings is one as the controller has it.
+    ///
+    /// # Errors
+    /// When either does not come about.
+    pub async fn open(
+        mut settings: Settings,
+        swapped: Swapped,
+        opener: Opener,
+        tap: Tap,
+    ) -> Result<Self, ProfibusError> {
+        swapped.turn(&mut settings.resting);
+        let sizes = Sizes { output: settings.output_size, input: settings.input_size };
+        let connection = Connection::open(settings, opener, record(tap)).await?;
+        let view = connection.view();
+        let (generation, watchdog) = (view.generation, view.watchdog);
+        Ok(Self { connection, sizes, swapped, watchdog, generation, pending: None })
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            let view = self.connection.view();
+            let is_open = view.state == State::Open;
+            if known.is_up && !(is_open && view.generation == self.generation) {
+                self.pending = None;
+                let error = view.error.unwrap_or(ProfibusError::Outdated);
+                let outputs = match error {
+                    ProfibusError::Left { .. } => Outputs::Released,
+                    _ => Outputs::ReleasedWithin(self.watchdog),
+                };
+                let cause = LinkError::from(error).cause().clone();
+                return Event::Lost(LinkError::Lost { cause, outputs });
+            }
+            if !known.is_up && is_open {
+                self.generation = view.generation;
+                return Event::Reopened;
+            }
+            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
+                self.pending = None;
+                return Event::Sent;
+            }
+            if let Some(input) = view.input.filter(|input| input.generation == self.generation) {
+                let image = self.swapped.turned(&input.image);
+                if known.is_news(&image) {
+                    return Event::Image(image.into());
+                }
+            }
+            self.connection.changed().await;
+        }
+    }
+}
+
+impl ImageConnection for Master {
+    fn sizes(&self) -> Sizes {
+        self.sizes
+    }
+
+    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
+        // What was to be seen before is replaced, whatever becomes of this.
+        self.pending = None;
+        match self.connection.set_image(self.generation, &self.swapped.turned(image)) {
+            Ok(change) => {
+                self.pending = Some(change);
+                Ok(())
+            }
+            // The loss is told by `next`.
+            Err(ProfibusError::Outdated | ProfibusError::Ended) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        let view = self.connection.view();
+        let counted = view.statistics;
+        let odd = vec![
+            (counted.repeated, "repeated"),
+            (counted.noise, "bytes of noise"),
+            (counted.unexpected, "unexpected"),
+            (counted.skipped, "not sent in time"),
+        ];
+        let intervals = Some((view.cycle, view.cycle));
+        Some(Traffic { sent: counted.sent, received: counted.received, intervals, odd })
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    }
+}
+
+/// What a slave shows another master. Nothing is sent.
+#[derive(Debug)]
+pub struct Listening {
+    hearing: Hearing,
+    swapped: Swapped,
+    size: usize,
+    silence: Duration,
+}
+
+impl Listening {
+    /// Hears an exchange of this slave for the first time, at most so long after the last one.
+    ///
+    /// # Errors
+    /// When none is heard in that time.
+    pub async fn open(
+        station: u8,
+        size: usize,
+        swapped: Swapped,
+        opener: Opener,
+        tap: Tap,
+        silence: Duration,
+    ) -> Result<Self, ProfibusError> {
+        let mut hearing = Hearing::start(station, opener, record(tap))?;
+        let heard = hearing.until(silence, |heard| heard.input.is_some()).await?;
+        let found = heard.input.map_or(0, |input| input.len());
+        if found < size {
+            return Err(ProfibusError::Length { station, found, expected: size });
+        }
+        Ok(Self { hearing, swapped, size, silence })
+    }
+
+    async fn wait(&mut self, known: Known<'_>) -> Event {
+        loop {
+            let before = self.hearing.heard().exchanges;
+            if let Some(input) = self.hearing.heard().input.clone().filter(|_| known.is_up) {
+                let image: Arc<[u8]> = self.swapped.turned(&input).into();
+                if known.is_news(&image) {
+                    return Event::Image(image);
+                }
+            }
+            match self.hearing.until(self.silence, |heard| heard.exchanges != before).await {
+                Ok(_) if !known.is_up => return Event::Reopened,
+                Err(error) if known.is_up => {
+                    let cause = LinkError::from(error).cause().clone();
+                    return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
+                }
+                // Without a port there is no more to come.
+                Err(ProfibusError::Gone { .. }) => std::future::pending().await,
+                Ok(_) | Err(_) => {}
+            }
+        }
+    }
+}
+
+impl ImageConnection for Listening {
+    fn sizes(&self) -> Sizes {
+        Sizes { output: 0, input: self.size }
+    }
+
+    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
+        Err(LinkError::Settings(Cause::new("a link that only listens shows nothing")))
+    }
+
+    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(known).boxed_local()
+    }
+
+    fn traffic(&self) -> Option<Traffic> {
+        None
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        std::future::ready(Ok(())).boxed_local()
+    }
+}
+
+/// Telegrams for records.
+pub fn record(tap: Tap) -> Option<super::driver::Tap> {
+    let record = move |bytes: &[u8]| tap.pass(|| Passed::Frame(bytes.to_vec()));
+    Some(Box::new(record) as super::driver::Tap)
+}
+
+impl From<ProfibusError> for LinkError {
+    fn from(error: ProfibusError) -> Self {
+        let cause = Cause::new(&error);
+        match error {
+            ProfibusError::Settings(_) => Self::Settings(cause),
+            ProfibusError::Port { .. } => Self::Local(cause.advice(
+                "check the name of the port (`armctl robots discover` lists those of this machine), what the adapter can do, and \
+                 that no session and no other program has it open",
+            )),
+            ProfibusError::Gone { .. } => Self::Local(cause.advice("check the plug and the supply of the adapter")),
+            ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
+                "this program must be the only master of the line: disconnect the other one, or add role=listen to the URL to \
+                 see the images beside it",
+            )),
+            ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
+                "another master may be on the line: baud of the URL must be that of the bus; check the terminators, and that \
+                 A and B are not crossed",
+            )),
+            ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
+                "check station and baud of the URL, that A and B are not crossed, the terminators at both ends with their \
+                 supply, and that the controller is on; with a slow adapter, set slot=50ms",
+            )),
+            ProfibusError::IsMaster { .. } => Self::Malformed(cause.advice("check station of the URL: `yrcx profibus scan`")),
+            ProfibusError::Refused { .. } => Self::Refused(
+                cause.options(&["station", "cfg", "prm"]).advice(
+                    "the slave does not have what was asked for; where it was Get_Cfg, set cfg= or gsd= in the URL",
+                ),
+            ),
+            ProfibusError::Malformed { .. } => Self::Malformed(cause.advice("check that a PROFIBUS slave has this address")),
+            ProfibusError::Ident { found, .. } => Self::Refused(
+                cause.advice(format!("set ident={found:#06x} in the URL, or leave it away, if this is the controller")),
+            ),
+            ProfibusError::Size { .. } | ProfibusError::Length { .. } => Self::Size(
+                cause
+                    .options(&["station", "cfg"])
+                    .advice("the image has 48 bytes each way: check station and cfg of the URL, and the unit of the controller"),
+            ),
+            ProfibusError::ParameterFault { .. } => Self::Refused(
+                cause.options(&["prm", "gsd"]).advice("set prm= in the URL to the bytes in the GSD file of the unit, or gsd= to the file"),
+            ),
+            ProfibusError::ConfigurationFault { .. } => Self::Refused(
+                cause.options(&["cfg", "gsd"]).advice("leave cfg away to take what the slave wants, or set gsd= to the file of the unit"),
+            ),
+            ProfibusError::Locked { .. } => Self::Owned(cause),
+            ProfibusError::NotReady { .. } | ProfibusError::Left { .. } => Self::Silent(
+                cause.advice("look at the unit's lamps and at the controller's display; `yrcx profibus probe` shows the diagnosis"),
+            ),
+            ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
+                "a controller shows its images to its master only: open a session, which commands it (`armctl session open`), or \
+                 listen where a PLC exchanges data with it, with station and baud of the URL as they are there",
+            )),
+            ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
+        }
+    }
+}

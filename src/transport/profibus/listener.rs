@@ -1,0 +1,123 @@
+//! Hears what a PLC and its slave exchange, and says nothing: the way to see images beside a master.
+
+use std::sync::Arc;
+
+use super::wire::{Control, Frame, Piece, Service, Status, Stream, Telegram};
+
+/// What was heard so far.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Heard {
+    /// What the slave showed last.
+    pub input: Option<Arc<[u8]>>,
+    /// What it was shown last.
+    pub output: Option<Arc<[u8]>>,
+    /// The master that shows it.
+    pub master: Option<u8>,
+    /// Telegrams of any kind.
+    pub telegrams: u64,
+    /// Exchanges of the slave.
+    pub exchanges: u64,
+    /// Bytes that were no telegram.
+    pub noise: u64,
+}
+
+/// Hears one station.
+#[derive(Debug)]
+pub struct Listener {
+    station: u8,
+    stream: Stream,
+    /// Who asked the station for an exchange, and what the station was shown with it.
+    asked: Option<(u8, Vec<u8>)>,
+    heard: Heard,
+}
+
+impl Listener {
+    /// Hears the slave with this address.
+    pub fn new(station: u8) -> Self {
+        Self { station, stream: Stream::default(), asked: None, heard: Heard::default() }
+    }
+
+    /// What was heard so far.
+    pub const fn heard(&self) -> &Heard {
+        &self.heard
+    }
+
+    /// Takes what was heard; whether there is a new exchange.
+    pub fn handle(&mut self, bytes: &[u8]) -> bool {
+        let before = self.heard.exchanges;
+        self.stream.push(bytes);
+        while let Some(piece) = self.stream.next_piece() {
+            match piece {
+                Piece::Noise(..) => self.heard.noise += 1,
+                Piece::Telegram(telegram, _) => {
+                    self.heard.telegrams += 1;
+                    self.take(telegram);
+                }
+            }
+        }
+        self.heard.exchanges != before
+    }
+
+    fn take(&mut self, telegram: Telegram) {
+        let Telegram::Frame(frame) = telegram else { return };
+        match frame {
+            Frame { to, from, control: Control::Request(service, _), to_sap: None, from_sap: None, data }
+                if to == self.station && matches!(service, Service::SendRequestHigh | Service::SendRequestLow) =>
+            {
+                self.asked = Some((from, data));
+            }
+            // An answer to what was asked just now; only then was it an exchange, and only then was the image taken.
+            Frame {
+                to,
+                from,
+                control: Control::Answer(_, Status::Data | Status::DataHigh),
+                to_sap: None,
+                from_sap: None,
+                data,
+            } if from == self.station => {
+                let Some((master, output)) = self.asked.take_if(|asked| asked.0 == to) else { return };
+                self.heard.master = Some(master);
+                self.heard.output = Some(output.into());
+                self.heard.input = Some(data.into());
+                self.heard.exchanges += 1;
+            }
+            _ => self.asked = None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::wire::testing::hex;
+    use super::*;
+
+    #[test]
+    fn both_images_are_heard_in_the_middle_of_everything_else() {
+        let line = hex(concat!(
+            "DC 02 02 FF 10 05 02 49 50 16",
+            "68 06 06 68 05 02 7D 01 02 03 8A 16",
+            "68 05 05 68 02 05 08 AA BB 74 16",
+            "68 05 05 68 07 02 7D 01 02 89 16",
+            "68 05 05 68 02 07 08 01 02 14 16",
+        ));
+        let mut listener = Listener::new(5);
+        // However the pieces come.
+        let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
+        let heard = listener.heard();
+        assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
+        assert_eq!(
+            (heard.master, heard.output.as_deref(), heard.input.as_deref()),
+            (Some(2), Some(&[1, 2, 3][..]), Some(&[0xAA, 0xBB][..]),)
+        );
+    }
+
+    #[test]
+    fn an_answer_to_something_else_is_no_image() {
+        let mut listener = Listener::new(5);
+        // Its request was not heard, or it was answered from another place.
+        assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
+        assert!(!listener.handle(&hex("68 05 05 68 05 02 7D 01 02 87 16 10 05 02 49 50 16")));
+        assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
+        assert_eq!(listener.heard().input, None);
+    }
+}

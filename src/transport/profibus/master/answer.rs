@@ -1,0 +1,31 @@
+//! What answers say.
+
+use super::super::error::ProfibusError;
+use super::super::request::Answer;
+use super::super::wire::{Control, Frame, Status};
+
+/// Data of an answer that has some.
+pub(super) fn data(station: u8, asked: &'static str, answer: Answer) -> Result<(Status, Vec<u8>), ProfibusError> {
+    let why = match answer {
+        Answer::Short => "no more than an acknowledgement came".to_owned(),
+        Answer::Frame(Frame { control: Control::Answer(_, status), data, .. }) => match status {
+            Status::Data | Status::DataHigh | Status::DataNoResource | Status::DataHighNoResource => {
+                return Ok((status, data));
+            }
+            status => return Err(ProfibusError::Refused { station, asked, status }),
+        },
+        Answer::Frame(_) => "a request came".to_owned(),
+    };
+    Err(ProfibusError::Malformed { station, asked, why })
+}
+
+/// Whether all is well.
+pub(super) fn acknowledged(station: u8, asked: &'static str, answer: &Answer) -> Result<(), ProfibusError> {
+    match answer {
+        Answer::Frame(Frame { control: Control::Answer(_, status), .. }) => match status {
+            Status::Ok | Status::NoData | Status::Data | Status::DataHigh => Ok(()),
+            status => Err(ProfibusError::Refused { station, asked, status: *status }),
+        },
+        Answer::Short | Answer::Frame(_) => Ok(()),
+    }
+}

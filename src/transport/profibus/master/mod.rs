@@ -1,0 +1,611 @@
+//! The master of one slave, without a port and without a clock: diagnosis, parameters, configuration, diagnosis, data.
+//!
+//! There is no phase in clear: to a robot that would be an emergency stop. The first image is the resting one, and so is
+//! the first one after each loss.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use super::Now;
+use super::error::ProfibusError;
+use super::quiet::Quiet;
+use super::request::{Answer, Outcome, Requester};
+use super::settings::{Settings, Timing};
+use super::wire::{
+    Configuration, Control, Diagnosis, Flag, Frame, GlobalControl, Lock, Parameters, Service, Station, Status,
+    Telegram, sap,
+};
+
+mod answer;
+mod view;
+
+use answer::{acknowledged, data};
+pub use view::{Input, State, Statistics, View};
+
+/// How long a slave may take to get ready.
+const READY: Duration = Duration::from_secs(5);
+/// Pause between two questions whether it is.
+const PATIENCE: Duration = Duration::from_millis(10);
+/// Pause before a link is opened again.
+const AGAIN: Duration = Duration::from_secs(1);
+/// User parameters that are tried unless others are set: none, and the three bytes of slaves with acyclic services.
+const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
+
+/// The next thing to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    /// Does anybody else speak?
+    Listen,
+    /// Is there a station?
+    Find,
+    /// How is it doing, and whose is it?
+    Diagnose,
+    /// Which configuration does it want?
+    Ask,
+    /// Here are your parameters.
+    Parameters,
+    /// Here is your configuration.
+    Check,
+    /// Is all well, and are you ready?
+    Confirm,
+    /// Data, over and over.
+    Data,
+    /// You are free.
+    Release,
+    /// Nothing more.
+    Over,
+}
+
+/// What belongs to a cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Job {
+    Exchange,
+    Diagnose,
+    Operate,
+    Token,
+}
+
+/// A master.
+#[derive(Debug)]
+pub struct Master {
+    settings: Settings,
+    timing: Timing,
+    requester: Requester,
+    quiet: Quiet,
+    step: Step,
+    /// Nothing is asked before.
+    not_before: Now,
+    /// When the slave was first asked whether it is ready.
+    asked_since: Option<Now>,
+    ident: u16,
+    /// The configuration that the slave says it wants.
+    wanted: Option<Vec<u8>>,
+    /// Which of the usual parameters are tried.
+    usual: usize,
+    /// Whether the slave may be ours.
+    locked: bool,
+    jobs: VecDeque<Job>,
+    /// Whether the last job was to ask for the diagnosis.
+    is_diagnosing: bool,
+    next_cycle: Now,
+    /// When all slaves were last told to operate.
+    told: Now,
+    image: Vec<u8>,
+    changes: u64,
+    /// The change that has not left yet.
+    pending: Option<u64>,
+    view: View,
+    has_changed: bool,
+}
+
+impl Master {
+    /// A master that begins at `now`.
+    ///
+    /// # Errors
+    /// When no link can be as the settings want it.
+    pub fn new(now: Now, settings: Settings) -> Result<Self, ProfibusError> {
+        let timing = settings.timing()?;
+        let view = View {
+            state: State::Opening,
+            generation: 0,
+            input: None,
+            sent: 0,
+            error: None,
+            diagnosis: None,
+            configuration: None,
+            echoes: false,
+            cycle: timing.cycle,
+            watchdog: timing.watchdog.time(),
+            statistics: Statistics::default(),
+        };
+        Ok(Self {
+            requester: Requester::new(settings.master, settings.rate, timing.slot, settings.retries),
+            quiet: Quiet::until(now + timing.listen),
+            step: Step::Listen,
+            not_before: now,
+            asked_since: None,
+            ident: settings.ident.unwrap_or_default(),
+            wanted: None,
+            usual: 0,
+            locked: false,
+            jobs: VecDeque::new(),
+            is_diagnosing: false,
+            next_cycle: now,
+            told: now,
+            image: settings.resting.clone(),
+            changes: 0,
+            pending: None,
+            settings,
+            timing,
+            view,
+            has_changed: true,
+        })
+    }
+
+    /// What there is to see.
+    pub fn view(&self) -> View {
+        let counted = self.requester.counted();
+        let statistics = Statistics {
+            repeated: counted.repeated,
+            noise: counted.noise,
+            unexpected: counted.unexpected,
+            ..self.view.statistics
+        };
+        View { statistics, echoes: self.requester.echoes(), ..self.view.clone() }
+    }
+
+    /// Whether the view has changed since the last call, counters aside.
+    pub fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.has_changed)
+    }
+
+    /// Has this image sent from the next cycle on, in this generation. The number is that of the change: it has left once
+    /// [`View::sent`] has reached it.
+    ///
+    /// # Errors
+    /// [`ProfibusError::Outdated`] if the link was lost meanwhile, [`ProfibusError::Settings`] for a wrong size.
+    pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
+        if image.len() != self.settings.output_size {
+            let (len, size) = (image.len(), self.settings.output_size);
+            return Err(ProfibusError::Settings(format!("an image of {len} bytes where {size} belong")));
+        }
+        match self.view.state {
+            State::Open if generation == self.view.generation => {}
+            State::Closing | State::Closed => return Err(ProfibusError::Ended),
+            _ => return Err(ProfibusError::Outdated),
+        }
+        self.image = image.to_vec();
+        self.changes += 1;
+        self.pending = Some(self.changes);
+        Ok(self.changes)
+    }
+
+    /// Sets the slave free, and ends.
+    pub fn close(&mut self, now: Now) {
+        match self.view.state {
+            State::Closing | State::Closed => {}
+            _ if self.locked => {
+                self.set_state(State::Closing);
+                self.view.error = None;
+                self.jobs.clear();
+                self.requester.forget(self.settings.station);
+                self.requester.wait(now + self.timing.slot);
+                self.go(now, Step::Release);
+            }
+            _ => self.end(),
+        }
+    }
+
+    /// The port does not work, and nothing can be sent. [`Master::port_is_back`] goes on.
+    pub fn port_failed(&mut self, now: Now, error: ProfibusError) {
+        match self.view.state {
+            State::Closed => {}
+            State::Open | State::Lost => {
+                self.failed(now, error);
+                self.listen_until(Now::MAX);
+            }
+            State::Opening | State::Closing => {
+                self.view.error = Some(error);
+                self.end();
+            }
+        }
+    }
+
+    /// Listens again, and goes on.
+    pub fn port_is_back(&mut self, now: Now) {
+        if self.view.state == State::Lost {
+            self.listen_until(now + self.timing.listen);
+        }
+    }
+
+    /// When [`Master::poll`] has something to do; `None` when all is over, or while there is no port.
+    pub fn due(&self) -> Option<Now> {
+        match self.step {
+            Step::Over => None,
+            Step::Listen => self.quiet.due(),
+            _ if self.requester.is_busy() => Some(self.requester.due()),
+            Step::Data if self.jobs.is_empty() => Some(self.next_cycle.max(self.requester.due())),
+            _ => Some(self.not_before.max(self.requester.due())),
+        }
+    }
+
+    /// What is to be sent now.
+    pub fn poll(&mut self, now: Now) -> Option<Vec<u8>> {
+        match self.requester.poll(now) {
+            Some(Ok(bytes)) => return Some(bytes),
+            Some(Err(outcome)) => self.outcome(now, outcome),
+            None => {}
+        }
+        if self.step == Step::Listen {
+            match self.quiet.poll(now)? {
+                Ok(()) => self.go(now, Step::Find),
+                Err(error) => self.failed(now, error),
+            }
+        }
+        if self.requester.is_busy() || self.due().is_none_or(|due| now < due) {
+            return None;
+        }
+        let station = self.settings.station;
+        let request = |this: &Self, sap: u8, data: Vec<u8>| {
+            this.requester.request(Service::SendRequestHigh, station, Some(sap), data)
+        };
+        let frame = match self.step {
+            Step::Find => self.requester.request(Service::FdlStatus, station, None, Vec::new()),
+            Step::Diagnose | Step::Confirm => request(self, sap::SLAVE_DIAG, Vec::new()),
+            Step::Ask => request(self, sap::GET_CFG, Vec::new()),
+            Step::Parameters => {
+                self.locked = true;
+                request(self, sap::SET_PRM, self.parameters().emit())
+            }
+            Step::Check => {
+                let configuration = self.view.configuration.clone().unwrap_or_default();
+                request(self, sap::CHK_CFG, configuration)
+            }
+            Step::Data => return self.work(now),
+            Step::Release => request(self, sap::SET_PRM, Parameters::unlock(self.ident).emit()),
+            Step::Listen | Step::Over => return None,
+        };
+        Some(self.requester.ask(now, frame))
+    }
+
+    /// Takes what has arrived.
+    pub fn handle(&mut self, now: Now, bytes: &[u8]) {
+        match self.step {
+            Step::Over => {}
+            Step::Listen => {
+                if let Err(error) = self.quiet.handle(bytes) {
+                    self.failed(now, error);
+                }
+            }
+            _ => {
+                let mut bytes = bytes;
+                while let Some(outcome) = self.requester.handle(now, std::mem::take(&mut bytes)) {
+                    self.outcome(now, outcome);
+                }
+            }
+        }
+    }
+
+    /// The next job of a cycle.
+    fn work(&mut self, now: Now) -> Option<Vec<u8>> {
+        if self.jobs.is_empty() {
+            self.jobs.push_back(Job::Exchange);
+            // A machine that was busy does not make up for it: no bursts.
+            let late = now.saturating_sub(self.next_cycle);
+            self.next_cycle += self.timing.cycle;
+            if late > self.timing.cycle {
+                let missed = late.as_nanos() / self.timing.cycle.as_nanos().max(1);
+                self.view.statistics.skipped += u64::try_from(missed).unwrap_or(u64::MAX);
+                self.next_cycle = now + self.timing.cycle;
+            }
+            if now.saturating_sub(self.told) >= self.timing.watchdog.time() / 3 {
+                self.jobs.push_back(Job::Operate);
+            }
+            self.jobs.push_back(Job::Token);
+        }
+        match self.jobs.pop_front()? {
+            Job::Exchange => {
+                let data = self.image.clone();
+                let frame = self.requester.request(Service::SendRequestHigh, self.settings.station, None, data);
+                self.view.statistics.sent += 1;
+                self.is_diagnosing = false;
+                if let Some(change) = self.pending.take() {
+                    self.view.sent = change;
+                    self.has_changed = true;
+                }
+                Some(self.requester.ask(now, frame))
+            }
+            Job::Diagnose => {
+                self.is_diagnosing = true;
+                let station = self.settings.station;
+                let service = Service::SendRequestHigh;
+                let frame = self.requester.request(service, station, Some(sap::SLAVE_DIAG), Vec::new());
+                Some(self.requester.ask(now, frame))
+            }
+            Job::Operate => {
+                self.told = now;
+                let data = GlobalControl::OPERATE.emit().to_vec();
+                let broadcast = super::wire::BROADCAST;
+                let frame = self.requester.request(Service::SendHigh, broadcast, Some(sap::GLOBAL_CONTROL), data);
+                Some(self.requester.tell(now, &Telegram::Frame(frame)))
+            }
+            // To oneself: the ring has one master.
+            Job::Token => {
+                let here = self.settings.master;
+                Some(self.requester.tell(now, &Telegram::Token { to: here, from: here }))
+            }
+        }
+    }
+
+    fn parameters(&self) -> Parameters {
+        Parameters {
+            lock: Lock::Lock,
+            sync: false,
+            freeze: false,
+            watchdog: Some(self.timing.watchdog),
+            min_tsdr: 11,
+            ident: self.ident,
+            groups: 0,
+            user: self.user_parameters(),
+        }
+    }
+
+    fn user_parameters(&self) -> Vec<u8> {
+        self.settings.parameters.clone().unwrap_or_else(|| USUAL_PARAMETERS[self.usual].to_vec())
+    }
+
+    fn outcome(&mut self, now: Now, outcome: Outcome) {
+        match outcome {
+            Outcome::Foreign(master, heard) => self.failed(now, ProfibusError::OtherMaster { master, heard }),
+            Outcome::NoAnswer { attempts, heard } => {
+                let (station, asked, slot) = (self.settings.station, self.asked(), self.timing.slot);
+                self.failed(now, ProfibusError::NoAnswer { station, asked, attempts, slot, heard });
+            }
+            Outcome::Answer(answer) => {
+                if let Err(error) = self.answered(now, answer) {
+                    self.failed(now, error);
+                }
+            }
+        }
+    }
+
+    /// What the last request was.
+    fn asked(&self) -> &'static str {
+        match self.step {
+            Step::Find => "the question for its state",
+            Step::Diagnose | Step::Confirm => sap::name(Some(sap::SLAVE_DIAG)),
+            Step::Ask => sap::name(Some(sap::GET_CFG)),
+            Step::Parameters => sap::name(Some(sap::SET_PRM)),
+            Step::Check => sap::name(Some(sap::CHK_CFG)),
+            Step::Release => "the release (Set_Prm)",
+            Step::Data if self.is_diagnosing => sap::name(Some(sap::SLAVE_DIAG)),
+            Step::Data | Step::Listen | Step::Over => sap::name(None),
+        }
+    }
+
+    fn answered(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
+        let station = self.settings.station;
+        let asked = self.asked();
+        match self.step {
+            Step::Find => {
+                let Answer::Frame(Frame { control: Control::Answer(kind, _), .. }) = answer else { return Ok(()) };
+                if kind != Station::Slave {
+                    return Err(ProfibusError::IsMaster { station });
+                }
+                self.go(now, Step::Diagnose);
+            }
+            Step::Diagnose => {
+                let diagnosis = self.diagnosis(answer)?;
+                self.compare(&diagnosis)?;
+                self.go(now, Step::Ask);
+            }
+            Step::Ask => self.configure(now, answer)?,
+            Step::Parameters => {
+                acknowledged(station, asked, &answer)?;
+                self.go(now, Step::Check);
+            }
+            Step::Check => {
+                // A slave that takes no parameters may already refuse the configuration; the diagnosis tells why.
+                if !matches!(&answer, Answer::Frame(Frame { control: Control::Answer(_, Status::NoService), .. })) {
+                    acknowledged(station, asked, &answer)?;
+                }
+                self.asked_since = Some(now);
+                self.go(now, Step::Confirm);
+            }
+            Step::Confirm => self.confirm(now, answer)?,
+            Step::Release => {
+                self.locked = false;
+                self.end();
+            }
+            Step::Data => self.exchanged(now, answer)?,
+            Step::Listen | Step::Over => {}
+        }
+        Ok(())
+    }
+
+    /// The diagnosis in an answer, which is kept.
+    fn diagnosis(&mut self, answer: Answer) -> Result<Diagnosis, ProfibusError> {
+        let station = self.settings.station;
+        let asked = sap::name(Some(sap::SLAVE_DIAG));
+        let data = data(station, asked, answer)?.1;
+        let diagnosis = Diagnosis::parse(&data).map_err(|error| ProfibusError::Malformed {
+            station,
+            asked,
+            why: error.to_string(),
+        })?;
+        if self.view.diagnosis.as_ref() != Some(&diagnosis) {
+            self.view.diagnosis = Some(diagnosis.clone());
+            self.has_changed = true;
+        }
+        Ok(diagnosis)
+    }
+
+    /// Whether it is the slave that is meant, and free.
+    fn compare(&mut self, diagnosis: &Diagnosis) -> Result<(), ProfibusError> {
+        let station = self.settings.station;
+        if let Some(expected) = self.settings.ident.filter(|expected| *expected != diagnosis.ident) {
+            return Err(ProfibusError::Ident { station, found: diagnosis.ident, expected });
+        }
+        self.ident = diagnosis.ident;
+        let master = diagnosis.master.filter(|master| *master != self.settings.master);
+        if master.is_some() || diagnosis.has(Flag::Locked) {
+            return Err(ProfibusError::Locked { station, master });
+        }
+        Ok(())
+    }
+
+    /// Takes the configuration that the slave wants, unless the settings have one.
+    fn configure(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
+        let station = self.settings.station;
+        let asked = sap::name(Some(sap::GET_CFG));
+        let wanted = data(station, asked, answer);
+        self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
+        self.view.configuration = match (&self.settings.configuration, wanted) {
+            // A slave may have its default configuration until it is given another.
+            (Some(set), _) => Some(set.clone()),
+            (None, wanted) => {
+                let bytes = wanted?.1;
+                let configuration = Configuration::parse(&bytes).map_err(|error| ProfibusError::Malformed {
+                    station,
+                    asked,
+                    why: error.to_string(),
+                })?;
+                self.settings.fits(&configuration)?;
+                Some(bytes)
+            }
+        };
+        self.go(now, Step::Parameters);
+        Ok(())
+    }
+
+    /// Data may flow, or what else is to be tried.
+    fn confirm(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
+        let diagnosis = self.diagnosis(answer)?;
+        let station = self.settings.station;
+        if diagnosis.has(Flag::ParameterFault) {
+            if self.settings.parameters.is_none() && self.usual + 1 < USUAL_PARAMETERS.len() {
+                self.usual += 1;
+                self.go(now, Step::Parameters);
+                return Ok(());
+            }
+            let sent = self.user_parameters();
+            self.usual = 0;
+            return Err(ProfibusError::ParameterFault { station, sent });
+        }
+        if diagnosis.has(Flag::ConfigurationFault) {
+            let sent = self.view.configuration.clone().unwrap_or_default();
+            return Err(ProfibusError::ConfigurationFault { station, sent, wanted: self.wanted.clone() });
+        }
+        let is_ready = !diagnosis.has(Flag::NotReady) && !diagnosis.has(Flag::Static);
+        if !is_ready || diagnosis.has(Flag::ParametersWanted) {
+            let after = now.saturating_sub(self.asked_since.unwrap_or(now));
+            if after >= READY {
+                return Err(ProfibusError::NotReady { station, after, diagnosis: Box::new(diagnosis) });
+            }
+            self.not_before = now + PATIENCE;
+            return Ok(());
+        }
+        self.compare(&diagnosis)?;
+        self.image.clone_from(&self.settings.resting);
+        self.view.generation += 1;
+        self.next_cycle = now;
+        self.jobs = VecDeque::from([Job::Operate]);
+        self.go(now, Step::Data);
+        Ok(())
+    }
+
+    fn exchanged(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
+        let station = self.settings.station;
+        if self.is_diagnosing {
+            let diagnosis = self.diagnosis(answer)?;
+            let is_ours = diagnosis.master == Some(self.settings.master);
+            if !is_ours || [Flag::NotReady, Flag::ParametersWanted].into_iter().any(|flag| diagnosis.has(flag)) {
+                return Err(ProfibusError::Left { station, why: diagnosis.to_string() });
+            }
+            return Ok(());
+        }
+        let (status, image) = match answer {
+            Answer::Short => (Status::Ok, Vec::new()),
+            frame @ Answer::Frame(_) => match data(station, sap::name(None), frame) {
+                Err(ProfibusError::Refused { status: Status::NoService, .. }) => {
+                    let why = Status::NoService.text().to_owned();
+                    return Err(ProfibusError::Left { station, why });
+                }
+                read => read?,
+            },
+        };
+        if matches!(status, Status::DataNoResource | Status::DataHighNoResource) {
+            return Err(ProfibusError::Refused { station, asked: sap::name(None), status });
+        }
+        if image.len() != self.settings.input_size {
+            let (found, expected) = (image.len(), self.settings.input_size);
+            return Err(ProfibusError::Length { station, found, expected });
+        }
+        if status == Status::DataHigh {
+            self.jobs.push_front(Job::Diagnose);
+        }
+        self.view.statistics.received += 1;
+        let generation = self.view.generation;
+        self.view.input = Some(Input { image: image.into(), at: now, generation });
+        self.has_changed = true;
+        if self.view.state != State::Open {
+            self.view.error = None;
+            self.set_state(State::Open);
+        }
+        Ok(())
+    }
+
+    /// Something went wrong: the end of an opening, or the loss of an open link.
+    fn failed(&mut self, now: Now, error: ProfibusError) {
+        self.requester.forget(self.settings.station);
+        self.requester.wait(now + self.settings.rate.bits(super::rates::SYNC));
+        self.jobs.clear();
+        self.pending = None;
+        self.asked_since = None;
+        let was_closing = self.view.state == State::Closing;
+        let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
+        // Who has just left may come back at once; who leaves again and again is given time.
+        let has_left = self.view.state == State::Open
+            && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
+        // The reason of a loss is worth more than why it lasts.
+        let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.error.is_some();
+        if !is_known || must_be_quiet {
+            self.view.error = Some(error);
+        }
+        if self.view.state == State::Opening || was_closing {
+            // A slave that may be ours is set free, unless that is what failed, or others speak.
+            if self.locked && !was_closing && !must_be_quiet {
+                self.set_state(State::Closing);
+                return self.go(now, Step::Release);
+            }
+            return self.end();
+        }
+        self.set_state(State::Lost);
+        self.image.clone_from(&self.settings.resting);
+        if must_be_quiet {
+            return self.listen_until(now + self.timing.listen.max(AGAIN));
+        }
+        self.step = Step::Find;
+        self.not_before = if has_left { now } else { now + AGAIN };
+    }
+
+    fn go(&mut self, now: Now, step: Step) {
+        self.step = step;
+        self.not_before = now;
+    }
+
+    fn listen_until(&mut self, until: Now) {
+        self.quiet = Quiet::until(until);
+        self.step = Step::Listen;
+    }
+
+    fn set_state(&mut self, state: State) {
+        self.view.state = state;
+        self.has_changed = true;
+    }
+
+    fn end(&mut self) {
+        self.step = Step::Over;
+        self.set_state(State::Closed);
+    }
+}

@@ -1,0 +1,143 @@
+//! Where characters go: a serial port, or a slave in this process behind a line of its own.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use armctl_files as files;
+use serialport::{DataBits, Parity, SerialPort, StopBits};
+
+use super::error::ProfibusError;
+use super::rates::Rate;
+use super::settings::Settings;
+use crate::fault::LineFaultSpec;
+use crate::line::Wire;
+use crate::serial::{self, Line, OpenError};
+use crate::sim::Peer;
+use crate::vanished;
+
+/// How far the speed of a port may be off, in thousandths, as the bus allows.
+const MOST_OFF: u32 = 3;
+/// A latency timer above this costs a slot time now and then.
+const LATENCY: u32 = 1;
+
+/// Most characters of the file that says it.
+const LONGEST_TIME: u64 = 64;
+
+/// Sends and receives characters on a thread that waits for them.
+pub trait Port: fmt::Debug + Send {
+    /// Sends characters; they may still be on their way when this returns.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// Waits for characters, but not for longer; 0 after silence.
+    ///
+    /// # Errors
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+}
+
+/// A serial port: 8 data bits, even parity, 1 stop bit.
+#[derive(Debug)]
+pub struct Serial {
+    port: Box<dyn SerialPort>,
+}
+
+impl Serial {
+    /// Opens it.
+    ///
+    /// # Errors
+    /// [`ProfibusError::Port`].
+    pub fn open(path: &str, rate: Rate) -> Result<Self, ProfibusError> {
+        let line = Line {
+            path: path.to_owned(),
+            baud: rate.baud,
+            data_bits: DataBits::Eight,
+            parity: Parity::Even,
+            stop_bits: StopBits::One,
+        };
+        let port = serial::open(&line, MOST_OFF).map_err(|error| {
+            let text = match error {
+                OpenError::Unsupported(what) => format!("the adapter cannot do {} with even parity: {what}", rate.name),
+                other => other.to_string(),
+            };
+            ProfibusError::Port { port: path.to_owned(), text }
+        })?;
+        Ok(Self { port })
+    }
+}
+
+impl Port for Serial {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        io::Write::write_all(&mut self.port, bytes).map_err(vanished)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        // A wait of no time at all would be one without end to some drivers.
+        self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
+        match io::Read::read(&mut self.port, buffer) {
+            Ok(0) => Err(vanished("its end was reached")),
+            Ok(len) => Ok(len),
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted
+                ) =>
+            {
+                Ok(0)
+            }
+            Err(error) => Err(vanished(error)),
+        }
+    }
+}
+
+/// How long the driver of an adapter holds characters back, in milliseconds, if that is long and can be changed.
+pub fn latency_timer(path: &str) -> Option<u32> {
+    let path = std::fs::canonicalize(path).ok()?;
+    let name = path.file_name()?;
+    let file = Path::new("/sys/class/tty").join(name).join("device/latency_timer");
+    let text = files::text(&file, LONGEST_TIME).ok()?;
+    text.trim().parse().ok().filter(|time| *time > LATENCY)
+}
+
+/// A peer in this process, at the end of a line that takes its time.
+#[derive(Debug)]
+pub struct InProcess<P> {
+    peer: P,
+    wire: Wire,
+    start: Instant,
+}
+
+impl<P: Peer> InProcess<P> {
+    /// A peer on a line of this speed.
+    pub fn new(peer: P, settings: &Settings, faults: Option<LineFaultSpec>) -> Self {
+        Self { peer, wire: Wire::new(Some(settings.rate.pace()), faults), start: Instant::now() }
+    }
+}
+
+impl<P: Peer + Send> Port for InProcess<P> {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let now = self.start.elapsed();
+        self.wire.run(now, &mut self.peer);
+        self.wire.send(now, bytes);
+        Ok(())
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        let until = self.start.elapsed() + wait;
+        loop {
+            let now = self.start.elapsed();
+            self.wire.run(now, &mut self.peer);
+            let taken = self.wire.take(now, buffer);
+            if taken > 0 || now >= until {
+                return Ok(taken);
+            }
+            let due = self.wire.due(&self.peer).map_or(until, |due| due.min(until));
+            thread::sleep(due.saturating_sub(now));
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! What a link is to be.
+
+use std::time::Duration;
+
+use super::error::ProfibusError;
+use super::rates::Rate;
+use super::wire::{Configuration, MAX_DATA, MAX_STATION, Parameters, Watchdog};
+
+/// The address that this program has unless it is told otherwise; PLCs usually have 2, too, but no PLC is on this line.
+pub const MASTER: u8 = 2;
+/// Shortest watchdog that is meant by default.
+const WATCHDOG: Duration = Duration::from_millis(500);
+/// Repetitions of a request: converters on USB lose some.
+const RETRIES: u8 = 3;
+/// Least cycles that the watchdog waits.
+const CYCLES: u32 = 5;
+/// Longest cycle and slot time.
+const LONGEST: Duration = Duration::from_secs(10);
+
+/// The slave, the line, and what is known of both. What is `None` is found out, or has a usual value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Settings {
+    /// Address of the slave.
+    pub station: u8,
+    /// Our own.
+    pub master: u8,
+    /// Speed of the line.
+    pub rate: Rate,
+    /// How long to wait for the beginning of an answer.
+    pub slot: Option<Duration>,
+    /// How often a request is repeated.
+    pub retries: u8,
+    /// Time between two exchanges.
+    pub cycle: Option<Duration>,
+    /// How long the slave waits for us.
+    pub watchdog: Option<Duration>,
+    /// The kind of slave that is expected.
+    pub ident: Option<u16>,
+    /// Identifier bytes.
+    pub configuration: Option<Vec<u8>>,
+    /// User parameters.
+    pub parameters: Option<Vec<u8>>,
+    /// Bytes of the image to the slave.
+    pub output_size: usize,
+    /// Bytes of the image from the slave.
+    pub input_size: usize,
+    /// The image that a connection begins with, after every loss again.
+    pub resting: Vec<u8>,
+}
+
+/// The times that settings lead to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Timing {
+    /// How long to wait for the beginning of an answer.
+    pub slot: Duration,
+    /// Time between two exchanges.
+    pub cycle: Duration,
+    /// How long the slave waits.
+    pub watchdog: Watchdog,
+    /// How long to listen before the first word.
+    pub listen: Duration,
+}
+
+impl Settings {
+    /// A slave at this address and speed, with images that rest at this.
+    pub fn new(station: u8, rate: Rate, resting: Vec<u8>) -> Self {
+        Self {
+            station,
+            master: MASTER,
+            rate,
+            slot: None,
+            retries: RETRIES,
+            cycle: None,
+            watchdog: None,
+            ident: None,
+            configuration: None,
+            parameters: None,
+            output_size: resting.len(),
+            input_size: resting.len(),
+            resting,
+        }
+    }
+
+    /// Whether a link can be so, and its times.
+    ///
+    /// # Errors
+    /// [`ProfibusError::Settings`] names what cannot be.
+    pub fn timing(&self) -> Result<Timing, ProfibusError> {
+        let wrong = |text: String| Err(ProfibusError::Settings(text));
+        if self.station > MAX_STATION || self.master > MAX_STATION {
+            return wrong(format!("stations have addresses from 0 to {MAX_STATION}"));
+        }
+        if self.station == self.master {
+            return wrong(format!("station and master cannot both be {}", self.station));
+        }
+        if self.output_size.max(self.input_size) > MAX_DATA || self.resting.len() != self.output_size {
+            return wrong(format!("an image has {MAX_DATA} bytes at most, and rests at one of its own size"));
+        }
+        if self.parameters.as_ref().is_some_and(|user| user.len() > Parameters::MAX_USER) {
+            return wrong(format!("there are {} bytes of user parameters at most", Parameters::MAX_USER));
+        }
+        if let Some(bytes) = &self.configuration {
+            let configuration = Configuration::parse(bytes)
+                .map_err(|error| ProfibusError::Settings(format!("the configuration cannot be read: {error}")))?;
+            self.fits(&configuration)?;
+        }
+        let slot = self.slot.unwrap_or_else(|| self.usual_slot());
+        if slot < self.rate.bits(self.rate.slot) || slot > LONGEST {
+            let least = self.rate.bits(self.rate.slot);
+            return wrong(format!(
+                "the slot time at {} must be {least:?} to {LONGEST:?}, not {slot:?}",
+                self.rate.name
+            ));
+        }
+        let usual = Duration::from_millis(self.rate.cycle_ms);
+        let cycle = self.cycle.unwrap_or(usual);
+        if cycle > LONGEST {
+            return wrong(format!("the cycle is {LONGEST:?} at most, not {cycle:?}"));
+        }
+        let exchange = self.rate.exchange(self.output_size, self.input_size);
+        let attempt = exchange + slot;
+        let least = (cycle.max(exchange)) * CYCLES + attempt * (u32::from(self.retries) + 1);
+        let wanted = self.watchdog.unwrap_or_else(|| least.max(WATCHDOG));
+        if wanted < least {
+            let least = least.as_millis();
+            return wrong(format!("with this cycle, slot time and bit rate the watchdog must be {least} ms or more"));
+        }
+        let Some(watchdog) = Watchdog::at_least(wanted) else {
+            return wrong("the watchdog is 650 s at most".to_owned());
+        };
+        // The token is lost for longer where the address is higher (6 + 2 x address slot times).
+        let listen = self.rate.bits(self.rate.slot * (6 + 2 * u32::from(self.master))).max(Duration::from_millis(100));
+        Ok(Timing { slot, cycle, watchdog, listen })
+    }
+
+    /// Whether images have the sizes of a configuration.
+    ///
+    /// # Errors
+    /// When they have others.
+    pub fn fits(&self, configuration: &Configuration) -> Result<(), ProfibusError> {
+        let (input, output) = (configuration.input(), configuration.output());
+        if (input, output) == (self.input_size, self.output_size) {
+            return Ok(());
+        }
+        Err(ProfibusError::Size {
+            station: self.station,
+            configuration: configuration.bytes().to_vec(),
+            input,
+            output,
+            expected_input: self.input_size,
+            expected_output: self.output_size,
+        })
+    }
+
+    fn usual_slot(&self) -> Duration {
+        self.rate.bits(self.rate.slot).max(Duration::from_millis(self.rate.adapter_ms))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rates::RATES;
+    use super::*;
+
+    fn settings(rate: &str) -> Settings {
+        Settings::new(5, Rate::from_name(rate).unwrap(), vec![0; 48])
+    }
+
+    #[test]
+    fn usual_times_fit_each_other_at_every_speed() {
+        for rate in RATES {
+            let settings = Settings { rate, ..settings("500k") };
+            let timing = settings.timing().unwrap();
+            assert!(timing.cycle > rate.exchange(48, 48), "{rate:?}");
+            assert!(timing.watchdog.time() >= timing.cycle * 5, "{rate:?}");
+        }
+        let timing = settings("500k").timing().unwrap();
+        assert_eq!((timing.slot.as_millis(), timing.cycle.as_millis()), (10, 20));
+        assert_eq!((timing.watchdog.time().as_millis(), timing.listen.as_millis()), (500, 100));
+        assert_eq!(settings("9.6k").timing().unwrap().slot.as_millis(), 60);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let usual = settings("500k");
+        let ms = |ms| Some(Duration::from_millis(ms));
+        for (settings, message) in [
+            (Settings { station: 126, ..usual.clone() }, "0 to 125"),
+            (Settings { station: 2, ..usual.clone() }, "both be 2"),
+            (Settings { resting: vec![0; 47], ..usual.clone() }, "of its own size"),
+            (Settings { slot: Some(Duration::from_micros(100)), ..usual.clone() }, "slot time at 500k"),
+            (Settings { watchdog: ms(100), ..usual.clone() }, "or more"),
+            (Settings { watchdog: Some(Duration::from_secs(700)), ..usual.clone() }, "650 s"),
+            (Settings { cycle: Some(Duration::from_secs(11)), ..usual.clone() }, "cycle"),
+            (Settings { configuration: Some(vec![0x1F]), ..usual.clone() }, "16 bytes from station 5"),
+            (Settings { configuration: Some(vec![0xC0]), ..usual.clone() }, "cannot be read"),
+            (Settings { parameters: Some(vec![0; 238]), ..usual }, "237 bytes"),
+        ] {
+            let error = settings.timing().unwrap_err().to_string();
+            assert!(error.contains(message), "{error}");
+        }
+    }
+}

@@ -1,0 +1,381 @@
+//! The other end: a slave without a line and without a clock. It is stricter than slaves are: in frame counts, lengths,
+//! ident number, configuration, parameters, owner and watchdog.
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use super::super::image::ImagePeer;
+use super::super::sim::Peer;
+use super::Now;
+use super::rates::Rate;
+use super::wire::{
+    BROADCAST, Control, Diagnosis, Flag, Frame, FrameCount, GlobalControl, Lock, Parameters, Piece, Service, Station,
+    Status, Stream, Telegram, sap,
+};
+
+mod fault;
+
+pub use fault::SlaveFault;
+
+/// A pause after which no telegram goes on.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Shortest time before an answer, in bits.
+const MIN_TSDR: u32 = 11;
+/// Whose a slave says it is when it is made to say so.
+const OTHER_MASTER: u8 = 9;
+
+/// What a slave is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Setup {
+    /// Its address.
+    pub station: u8,
+    /// Which kind it is.
+    pub ident: u16,
+    /// The identifier bytes that it takes, and no others.
+    pub configuration: Vec<u8>,
+    /// Bytes that it sends.
+    pub input: usize,
+    /// Bytes that it takes.
+    pub output: usize,
+    /// The user parameters that it takes.
+    pub parameters: Vec<Vec<u8>>,
+    /// Speed of its line, for the time before answers.
+    pub rate: Rate,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    WaitParameters,
+    WaitConfiguration,
+    Exchange,
+}
+
+/// A slave in front of something that shows and is shown images.
+#[derive(Debug)]
+pub struct Slave<P> {
+    setup: Setup,
+    peer: P,
+    state: State,
+    owner: Option<u8>,
+    /// How long it waits for its owner.
+    patience: Option<Duration>,
+    /// When its patience is over.
+    expiry: Option<Now>,
+    faults: Vec<Flag>,
+    outputs: Vec<u8>,
+    is_clear: bool,
+    /// Whether the news of the fault is still to be fetched.
+    has_news: bool,
+    /// For each master, the count of its last request and the answer to it.
+    last: BTreeMap<u8, (bool, Option<Telegram>)>,
+    stream: Stream,
+    heard: Now,
+    answers: Vec<(Now, Vec<u8>)>,
+    fault: Option<SlaveFault>,
+    answered: u64,
+    exchanges: u64,
+}
+
+impl<P: ImagePeer> Slave<P> {
+    /// A slave that belongs to nobody.
+    pub fn new(setup: Setup, peer: P) -> Self {
+        let outputs = vec![0; setup.output];
+        Self {
+            setup,
+            peer,
+            state: State::WaitParameters,
+            owner: None,
+            patience: None,
+            expiry: None,
+            faults: Vec::new(),
+            outputs,
+            is_clear: false,
+            has_news: false,
+            last: BTreeMap::new(),
+            stream: Stream::default(),
+            heard: Now::ZERO,
+            answers: Vec::new(),
+            fault: None,
+            answered: 0,
+            exchanges: 0,
+        }
+    }
+
+    /// What is behind it.
+    pub const fn peer(&self) -> &P {
+        &self.peer
+    }
+
+    /// What is behind it.
+    pub const fn peer_mut(&mut self) -> &mut P {
+        &mut self.peer
+    }
+
+    /// Whom it belongs to.
+    pub const fn owner(&self) -> Option<u8> {
+        self.owner
+    }
+
+    /// How many exchanges of data it has done, without repeated ones.
+    pub const fn exchanges(&self) -> u64 {
+        self.exchanges
+    }
+
+    /// Has it do something wrong, or nothing any more.
+    pub const fn misbehave(&mut self, fault: Option<SlaveFault>) {
+        self.fault = fault;
+    }
+
+    /// It was off, and is on again.
+    pub fn restart(&mut self, now: Now) {
+        self.leave(now);
+        self.last.clear();
+        self.stream.clear();
+        self.answers.clear();
+        self.faults.clear();
+    }
+
+    /// Back to where it waits for parameters.
+    fn leave(&mut self, now: Now) {
+        if self.state == State::Exchange {
+            self.peer.input(now, None);
+        }
+        self.state = State::WaitParameters;
+        self.owner = None;
+        self.expiry = None;
+        self.patience = None;
+        self.outputs.fill(0);
+        self.is_clear = false;
+    }
+
+    fn watch(&mut self, now: Now) {
+        if self.expiry.is_some_and(|expiry| now >= expiry) {
+            self.leave(now);
+        }
+    }
+
+    fn hear(&mut self, now: Now, frame: &Frame) {
+        let Control::Request(service, count) = frame.control else { return };
+        let is_for_all = frame.to == BROADCAST;
+        if !(is_for_all || frame.to == self.setup.station) {
+            return;
+        }
+        if !service.is_answered() {
+            if service == Service::SendHigh && frame.to_sap == Some(sap::GLOBAL_CONTROL) && is_for_all {
+                self.control(now, frame);
+            }
+            return;
+        }
+        if is_for_all {
+            return;
+        }
+        let answer = match (service, count) {
+            (Service::FdlStatus, FrameCount::None) => Some(self.frame(frame, Status::Ok, Vec::new())),
+            (Service::SendRequestHigh | Service::SendRequestLow, FrameCount::First | FrameCount::Counted(_)) => {
+                let bit = count.bit();
+                let repeated = self.last.get(&frame.from).filter(|last| count != FrameCount::First && last.0 == bit);
+                if let Some((_, answer)) = repeated {
+                    answer.clone()
+                } else {
+                    let answer = self.serve(now, frame);
+                    self.last.insert(frame.from, (bit, answer.clone()));
+                    answer
+                }
+            }
+            // Not counted as it must be, or a service that slaves do not have.
+            _ => Some(self.frame(frame, Status::NoService, Vec::new())),
+        };
+        if self.owner == Some(frame.from) {
+            self.expiry = self.patience.map(|patience| now + patience);
+        }
+        if let Some(answer) = answer {
+            self.answer(now, &answer);
+        }
+    }
+
+    fn serve(&mut self, now: Now, frame: &Frame) -> Option<Telegram> {
+        let is_owner = self.owner == Some(frame.from);
+        let refused = Some(self.frame(frame, Status::NoService, Vec::new()));
+        let has_master_sap = frame.from_sap == Some(sap::MASTER);
+        if self.fault == Some(SlaveFault::Inactive) || frame.to_sap.is_some() != has_master_sap {
+            return refused;
+        }
+        let is_exchanging = self.state == State::Exchange;
+        let data = match frame.to_sap {
+            Some(sap::SLAVE_DIAG) if frame.data.is_empty() => self.diagnosis().emit(),
+            Some(sap::GET_CFG) if frame.data.is_empty() => match self.fault {
+                Some(SlaveFault::OtherSize) => vec![0xC0, 0xC7, 0xC7],
+                _ => self.setup.configuration.clone(),
+            },
+            Some(sap::READ_INPUTS) if is_exchanging && frame.data.is_empty() => self.peer.output(now)?,
+            Some(sap::READ_OUTPUTS) if is_exchanging && frame.data.is_empty() => self.outputs.clone(),
+            Some(sap::SET_PRM) => {
+                if self.owner.is_some() && !is_owner {
+                    return refused;
+                }
+                self.set_parameters(now, frame);
+                return Some(Telegram::ShortAcknowledge);
+            }
+            Some(sap::CHK_CFG) if is_owner => {
+                self.check_configuration(now, &frame.data);
+                return Some(Telegram::ShortAcknowledge);
+            }
+            None if is_exchanging && is_owner => return self.exchange(now, frame).or(refused),
+            _ => return refused,
+        };
+        Some(self.frame(frame, Status::Data, data))
+    }
+
+    fn diagnosis(&mut self) -> Diagnosis {
+        let mut flags = self.faults.clone();
+        if self.state != State::Exchange || self.fault == Some(SlaveFault::NotReady) {
+            flags.push(Flag::NotReady);
+        }
+        if self.state == State::WaitParameters {
+            flags.push(Flag::ParametersWanted);
+        }
+        if self.patience.is_some() {
+            flags.push(Flag::Watchdog);
+        }
+        self.has_news = self.fault == Some(SlaveFault::Diagnosis);
+        let is_locked = self.fault == Some(SlaveFault::Locked);
+        let is_other = self.fault == Some(SlaveFault::OtherIdent);
+        Diagnosis {
+            flags: Diagnosis::flags(&flags),
+            master: if is_locked { Some(OTHER_MASTER) } else { self.owner },
+            ident: if is_other { self.setup.ident ^ 1 } else { self.setup.ident },
+            blocks: Vec::new(),
+        }
+    }
+
+    fn set_parameters(&mut self, now: Now, frame: &Frame) {
+        self.faults.clear();
+        let Ok(parameters) = Parameters::parse(&frame.data) else {
+            self.leave(now);
+            return self.faults.push(Flag::ParameterFault);
+        };
+        match parameters.lock {
+            Lock::Unchanged => {}
+            Lock::Unlock => self.leave(now),
+            Lock::Lock => {
+                self.leave(now);
+                let is_other = self.fault == Some(SlaveFault::OtherIdent);
+                let takes =
+                    self.setup.parameters.contains(&parameters.user) && self.fault != Some(SlaveFault::NoParameters);
+                if parameters.ident != self.setup.ident ^ u16::from(is_other) || !takes {
+                    return self.faults.push(Flag::ParameterFault);
+                }
+                if parameters.sync || parameters.freeze {
+                    return self.faults.extend([Flag::ParameterFault, Flag::NotSupported]);
+                }
+                self.owner = Some(frame.from);
+                self.patience = parameters.watchdog.map(super::wire::Watchdog::time);
+                self.state = State::WaitConfiguration;
+            }
+        }
+    }
+
+    fn check_configuration(&mut self, now: Now, configuration: &[u8]) {
+        if self.state == State::WaitParameters {
+            return;
+        }
+        if configuration != self.setup.configuration || self.fault == Some(SlaveFault::NoConfiguration) {
+            self.leave(now);
+            return self.faults.push(Flag::ConfigurationFault);
+        }
+        self.state = State::Exchange;
+    }
+
+    /// `None` when the slave leaves because of it.
+    fn exchange(&mut self, now: Now, frame: &Frame) -> Option<Telegram> {
+        if frame.data.len() != self.setup.output {
+            self.leave(now);
+            self.faults.push(Flag::ConfigurationFault);
+            return None;
+        }
+        self.exchanges += 1;
+        self.outputs.clone_from(&frame.data);
+        if !self.is_clear {
+            self.peer.input(now, Some(&frame.data));
+        }
+        let mut image = self.peer.output(now)?;
+        image.resize(self.setup.input, 0);
+        if self.fault == Some(SlaveFault::WrongSize) {
+            image.pop();
+        }
+        let has_news = self.has_news || self.fault == Some(SlaveFault::Diagnosis);
+        Some(self.frame(frame, if has_news { Status::DataHigh } else { Status::Data }, image))
+    }
+
+    fn control(&mut self, now: Now, frame: &Frame) {
+        let Ok(control) = GlobalControl::parse(&frame.data) else { return };
+        if self.owner != Some(frame.from) || self.state != State::Exchange || control.groups != 0 {
+            return;
+        }
+        self.is_clear = control.is_clear();
+        if self.is_clear {
+            self.outputs.fill(0);
+            self.peer.input(now, Some(&self.outputs));
+        }
+    }
+
+    fn frame(&self, asked: &Frame, status: Status, data: Vec<u8>) -> Telegram {
+        let kind = if self.fault == Some(SlaveFault::Master) { Station::MasterInRing } else { Station::Slave };
+        Telegram::Frame(Frame {
+            to: asked.from,
+            from: self.setup.station,
+            control: Control::Answer(kind, status),
+            to_sap: asked.from_sap,
+            from_sap: asked.to_sap,
+            data,
+        })
+    }
+
+    fn answer(&mut self, now: Now, answer: &Telegram) {
+        self.answered += 1;
+        let is_fourth = self.answered.is_multiple_of(4);
+        let mut bytes = answer.emit();
+        match self.fault {
+            Some(SlaveFault::Mute) => return,
+            Some(SlaveFault::Lose) if is_fourth => return,
+            Some(SlaveFault::BadFcs) if is_fourth => {
+                let fcs = bytes.len().saturating_sub(2);
+                bytes[fcs] ^= 0x01;
+            }
+            Some(SlaveFault::Token) => {
+                let token = Telegram::Token { to: OTHER_MASTER, from: OTHER_MASTER };
+                bytes.extend(token.emit());
+            }
+            _ => {}
+        }
+        self.answers.push((now + self.setup.rate.bits(MIN_TSDR), bytes));
+    }
+}
+
+impl<P: ImagePeer> Peer for Slave<P> {
+    fn receive(&mut self, now: Now, _channel: usize, bytes: &[u8]) {
+        self.watch(now);
+        if now.saturating_sub(self.heard) > PAUSE {
+            self.stream.clear();
+        }
+        self.heard = now;
+        // Who hears others while it has an answer to send has been spoken over.
+        self.answers.retain(|answer| answer.0 <= now);
+        self.stream.push(bytes);
+        while let Some(piece) = self.stream.next_piece() {
+            if let Piece::Telegram(Telegram::Frame(frame), _) = piece {
+                self.hear(now, &frame);
+            }
+        }
+    }
+
+    fn transmit(&mut self, now: Now) -> Option<(usize, Vec<u8>)> {
+        self.watch(now);
+        let at = self.answers.iter().position(|answer| answer.0 <= now)?;
+        Some((0, self.answers.remove(at).1))
+    }
+
+    fn wake(&self) -> Option<Now> {
+        self.answers.iter().map(|answer| answer.0).chain(self.expiry).chain(self.peer.wake()).min()
+    }
+}

@@ -1,0 +1,211 @@
+//! Asks stations who they are, without owning any: state, diagnosis, configuration. It changes nothing, not even for a
+//! slave that has a master; but it speaks, and so it is for lines that have none.
+
+use super::Now;
+use super::error::ProfibusError;
+use super::quiet::Quiet;
+use super::request::{Answer, Outcome, Requester};
+use super::settings::Timing;
+use super::wire::{Control, Diagnosis, MAX_STATION, Service, Station, Status, sap};
+
+/// What a station said.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Found {
+    /// Its address.
+    pub station: u8,
+    /// What kind it is of.
+    pub kind: Station,
+    /// How a slave is doing, and which kind of slave it is.
+    pub diagnosis: Result<Diagnosis, Unknown>,
+    /// The identifier bytes that it wants.
+    pub configuration: Result<Vec<u8>, Unknown>,
+    /// What it shows, if it exchanges data.
+    pub inputs: Result<Vec<u8>, Unknown>,
+    /// What it is shown, if it exchanges data.
+    pub outputs: Result<Vec<u8>, Unknown>,
+}
+
+/// Why something is not known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unknown {
+    /// It was not asked.
+    NotAsked,
+    /// It did not answer.
+    NoAnswer,
+    /// It says no.
+    Refused(Status),
+    /// It said something that cannot be read.
+    Malformed(String),
+}
+
+/// What is asked of a station, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Question {
+    Kind,
+    Diagnosis,
+    Configuration,
+    Inputs,
+    Outputs,
+}
+
+impl Question {
+    const fn sap(self) -> Option<u8> {
+        match self {
+            Self::Kind => None,
+            Self::Diagnosis => Some(sap::SLAVE_DIAG),
+            Self::Configuration => Some(sap::GET_CFG),
+            Self::Inputs => Some(sap::READ_INPUTS),
+            Self::Outputs => Some(sap::READ_OUTPUTS),
+        }
+    }
+
+    const fn next(self) -> Option<Self> {
+        match self {
+            Self::Kind => Some(Self::Diagnosis),
+            Self::Diagnosis => Some(Self::Configuration),
+            Self::Configuration => Some(Self::Inputs),
+            Self::Inputs => Some(Self::Outputs),
+            Self::Outputs => None,
+        }
+    }
+}
+
+/// Asks one station after the other.
+#[derive(Debug)]
+pub struct Survey {
+    requester: Requester,
+    quiet: Option<Quiet>,
+    /// Those that are still to be asked; the last one is next.
+    stations: Vec<u8>,
+    question: Question,
+    found: Vec<Found>,
+    error: Option<ProfibusError>,
+    timing: Timing,
+}
+
+impl Survey {
+    /// Asks these stations, once it has listened.
+    pub fn new(now: Now, stations: impl IntoIterator<Item = u8>, requester: Requester, timing: Timing) -> Self {
+        let mut stations: Vec<u8> = stations.into_iter().filter(|station| *station <= MAX_STATION).collect();
+        stations.reverse();
+        let quiet = Some(Quiet::until(now + timing.listen));
+        Self { requester, quiet, stations, question: Question::Kind, found: Vec::new(), error: None, timing }
+    }
+
+    /// Who was found, or why nobody could be asked, once it is over.
+    pub fn result(&self) -> Option<Result<&[Found], ProfibusError>> {
+        if let Some(error) = &self.error {
+            return Some(Err(error.clone()));
+        }
+        (self.quiet.is_none() && self.stations.is_empty()).then_some(Ok(&self.found))
+    }
+
+    /// How long a station is waited for that is not there.
+    pub const fn patience(&self) -> std::time::Duration {
+        self.timing.slot
+    }
+
+    /// When [`Survey::poll`] has something to do.
+    pub fn due(&self) -> Now {
+        self.quiet.as_ref().map_or_else(|| self.requester.due(), |quiet| quiet.due().unwrap_or_default())
+    }
+
+    /// What is to be sent now.
+    pub fn poll(&mut self, now: Now) -> Option<Vec<u8>> {
+        if let Some(quiet) = &mut self.quiet {
+            if let Err(error) = quiet.poll(now)? {
+                self.error = Some(error);
+            }
+            self.quiet = None;
+        }
+        if self.error.is_some() {
+            return None;
+        }
+        match self.requester.poll(now) {
+            Some(Ok(bytes)) => return Some(bytes),
+            Some(Err(outcome)) => self.outcome(outcome),
+            None => {}
+        }
+        if self.requester.is_busy() || now < self.requester.due() {
+            return None;
+        }
+        let station = *self.stations.last()?;
+        let sap = self.question.sap();
+        let service = if sap.is_none() { Service::FdlStatus } else { Service::SendRequestHigh };
+        let frame = self.requester.request(service, station, sap, Vec::new());
+        Some(self.requester.ask(now, frame))
+    }
+
+    /// Takes what has arrived.
+    pub fn handle(&mut self, now: Now, bytes: &[u8]) {
+        if let Some(quiet) = &mut self.quiet {
+            if let Err(error) = quiet.handle(bytes) {
+                self.error = Some(error);
+            }
+            return;
+        }
+        let mut bytes = bytes;
+        while let Some(outcome) = self.requester.handle(now, std::mem::take(&mut bytes)) {
+            self.outcome(outcome);
+        }
+    }
+
+    fn outcome(&mut self, outcome: Outcome) {
+        let Some(&station) = self.stations.last() else { return };
+        let said = match outcome {
+            Outcome::Foreign(master, heard) => {
+                self.error = Some(ProfibusError::OtherMaster { master, heard });
+                return;
+            }
+            Outcome::NoAnswer { .. } => Err(Unknown::NoAnswer),
+            Outcome::Answer(Answer::Short) => Err(Unknown::Malformed("no more than an acknowledgement".to_owned())),
+            Outcome::Answer(Answer::Frame(frame)) => {
+                let Control::Answer(kind, status) = frame.control else { return };
+                if self.question == Question::Kind {
+                    let unasked = Unknown::NotAsked;
+                    self.found.push(Found {
+                        station,
+                        kind,
+                        diagnosis: Err(unasked.clone()),
+                        configuration: Err(unasked.clone()),
+                        inputs: Err(unasked.clone()),
+                        outputs: Err(unasked),
+                    });
+                    return if kind == Station::Slave { self.go_on() } else { self.next_station() };
+                }
+                match status {
+                    Status::Data | Status::DataHigh => Ok(frame.data),
+                    status => Err(Unknown::Refused(status)),
+                }
+            }
+        };
+        if self.question == Question::Kind {
+            return self.next_station();
+        }
+        let Some(found) = self.found.last_mut() else { return };
+        match self.question {
+            Question::Kind => {}
+            Question::Diagnosis => {
+                let read =
+                    |data: Vec<u8>| Diagnosis::parse(&data).map_err(|error| Unknown::Malformed(error.to_string()));
+                found.diagnosis = said.and_then(read);
+            }
+            Question::Configuration => found.configuration = said,
+            Question::Inputs => found.inputs = said,
+            Question::Outputs => found.outputs = said,
+        }
+        self.go_on();
+    }
+
+    fn go_on(&mut self) {
+        match self.question.next() {
+            Some(question) => self.question = question,
+            None => self.next_station(),
+        }
+    }
+
+    fn next_station(&mut self) {
+        self.question = Question::Kind;
+        self.stations.pop();
+    }
+}

@@ -1,0 +1,461 @@
+//! Master and slave on a line in virtual time that is as slow and as faulty as asked for.
+
+mod peers;
+mod survey;
+#[cfg(unix)]
+mod terminal;
+
+use std::time::Duration;
+
+use proptest::prelude::*;
+
+use super::Now;
+use super::error::ProfibusError;
+use super::master::{Master, State, View};
+use super::rates::{RATES, Rate};
+use super::settings::Settings;
+use super::slave::{Setup, Slave, SlaveFault};
+use super::wire::testing::hex;
+use super::wire::{Piece, Stream, Telegram};
+use crate::fault::LineFaultSpec;
+use crate::image::ImagePeer;
+use crate::line::Wire;
+use crate::sim::Peer;
+
+const MS: Duration = Duration::from_millis(1);
+const SEC: Duration = Duration::from_secs(1);
+const SIZE: usize = 48;
+
+/// What SI(00) and SI(06) are in.
+fn resting() -> Vec<u8> {
+    let mut image = vec![0; SIZE];
+    image[32] = 0x41;
+    image
+}
+
+fn image(number: u8) -> Vec<u8> {
+    let mut image = resting();
+    image[0] = number;
+    image
+}
+
+/// Shows what it is shown, and keeps every change of it.
+#[derive(Debug, Default)]
+struct Echo {
+    image: Option<Vec<u8>>,
+    history: Vec<Option<Vec<u8>>>,
+}
+
+impl ImagePeer for Echo {
+    fn input(&mut self, _now: Now, image: Option<&[u8]>) {
+        let image = image.map(<[u8]>::to_vec);
+        if self.history.last() != Some(&image) {
+            self.history.push(image.clone());
+        }
+        self.image = image;
+    }
+
+    fn output(&mut self, _now: Now) -> Option<Vec<u8>> {
+        Some(self.image.clone().unwrap_or_else(|| vec![0; SIZE]))
+    }
+
+    fn wake(&self) -> Option<Now> {
+        None
+    }
+}
+
+fn setup(rate: Rate) -> Setup {
+    Setup {
+        station: 5,
+        ident: 0x1234,
+        configuration: vec![0xC0, 0xD7, 0xD7],
+        input: SIZE,
+        output: SIZE,
+        parameters: vec![vec![], vec![0, 0, 0]],
+        rate,
+    }
+}
+
+struct World {
+    now: Now,
+    master: Master,
+    slave: Slave<Echo>,
+    wire: Wire,
+    sent: Vec<(Now, Vec<u8>)>,
+    heard: Vec<u8>,
+}
+
+impl World {
+    fn new(rate: &str, faults: &str) -> Self {
+        Self::with(Settings::new(5, Rate::from_name(rate).unwrap(), resting()), faults)
+    }
+
+    fn with(settings: Settings, faults: &str) -> Self {
+        let rate = settings.rate;
+        let faults = (!faults.is_empty()).then(|| faults.parse::<LineFaultSpec>().unwrap());
+        Self {
+            now: Now::ZERO,
+            master: Master::new(Now::ZERO, settings).unwrap(),
+            slave: Slave::new(setup(rate), Echo::default()),
+            wire: Wire::new(Some(rate.pace()), faults),
+            sent: Vec::new(),
+            heard: Vec::new(),
+        }
+    }
+
+    /// Goes on for so long, or until the view is so.
+    fn run(&mut self, time: Duration, mut until: impl FnMut(&View) -> bool) -> View {
+        let end = self.now + time;
+        loop {
+            while let Some(bytes) = self.master.poll(self.now) {
+                self.wire.send(self.now, &bytes);
+                self.sent.push((self.now, bytes));
+            }
+            let view = self.master.view();
+            if until(&view) || self.now >= end {
+                return view;
+            }
+            let due = self.master.due().into_iter().chain(self.wire.due(&self.slave)).min().unwrap_or(end);
+            self.now = due.max(self.now + Duration::from_nanos(1)).min(end);
+            self.wire.run(self.now, &mut self.slave);
+            let mut buffer = [0; 64];
+            loop {
+                let len = self.wire.take(self.now, &mut buffer);
+                if len == 0 {
+                    break;
+                }
+                self.heard.extend(&buffer[..len]);
+                self.master.handle(self.now, &buffer[..len]);
+            }
+        }
+    }
+
+    fn open(&mut self) -> View {
+        let view = self.run(10 * SEC, |view| view.state != State::Opening);
+        assert_eq!(view.state, State::Open, "{:?}", view.error);
+        view
+    }
+
+    fn fails(&mut self) -> String {
+        let view = self.run(30 * SEC, |view| view.state == State::Closed);
+        assert_eq!(view.state, State::Closed);
+        view.error.expect("an error").to_string()
+    }
+}
+
+#[test]
+fn a_start_is_the_one_that_others_have_seen_working() {
+    let mut world = World::new("500k", "");
+    world.slave.misbehave(None);
+    world.open();
+    // With Get_Cfg in it, so the frame count is one on from there.
+    let expected = [
+        "10 05 02 49 50 16",
+        "68 05 05 68 85 82 6D 3C 3E EE 16",
+        "68 05 05 68 85 82 5D 3B 3E DD 16",
+        "68 0C 0C 68 85 82 7D 3D 3E 88 32 01 0B 12 34 00 0B 16",
+        "68 08 08 68 85 82 5D 3E 3E C0 D7 D7 4E 16",
+        "68 05 05 68 85 82 7D 3C 3E FE 16",
+        "68 07 07 68 FF 82 46 3A 3E 00 00 3F 16",
+        "68 33 33 68 05 02 5D 0000000000000000000000000000000000000000000000000000000000000000 41
+         000000000000000000000000000000 A5 16",
+        "DC 02 02",
+    ];
+    world.run(MS, |_| false);
+    let sent: Vec<Vec<u8>> = world.sent.iter().map(|(_, bytes)| bytes.clone()).collect();
+    assert_eq!(sent, expected.map(hex));
+}
+
+#[test]
+fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
+    let mut world = World::new("500k", "");
+    let view = world.open();
+    assert_eq!(view.input.unwrap().image[..], resting());
+    let change = world.master.set_image(view.generation, &image(7)).unwrap();
+    let view =
+        world.run(SEC, |view| view.sent >= change && view.input.as_ref().is_some_and(|input| input.image[0] == 7));
+    assert_eq!(view.input.unwrap().image[..], image(7));
+    assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(7))]);
+    world.master.close(world.now);
+    let view = world.run(SEC, |view| view.state == State::Closed);
+    assert_eq!((view.error, world.slave.owner()), (None, None));
+    assert_eq!(world.slave.peer().history.last(), Some(&None));
+    assert_eq!(world.sent.last().unwrap().1[7..16], hex("3D 3E 40 00 00 00 12 34 00")[..]);
+}
+
+#[test]
+fn every_fault_of_a_slave_has_a_message_of_its_own() {
+    for (fault, message) in [
+        (SlaveFault::Mute, "did not answer the question for its state (4 attempts, 10 ms each; nothing was heard)"),
+        (SlaveFault::Locked, "station 5 belongs to master 9"),
+        (SlaveFault::OtherIdent, "station 5 has ident number 0x1235, not 0x1234"),
+        (SlaveFault::OtherSize, "the configuration C0C7C7 has 16 bytes from station 5 and 16 to it, not 48 and 48"),
+        (SlaveFault::NoConfiguration, "does not take the configuration C0D7D7; it wants C0D7D7"),
+        (SlaveFault::NoParameters, "does not take the user parameters 000000"),
+        (SlaveFault::NotReady, "is not ready for data after 50"),
+        (SlaveFault::WrongSize, "station 5 sent 47 bytes of data, not 48"),
+        (SlaveFault::Inactive, "station 5 refused Slave_Diag: RS, service not active"),
+        (SlaveFault::Master, "station 5 is a master, not a slave"),
+        (SlaveFault::Token, "another master, station 9, is on the bus (it passed the token)"),
+    ] {
+        let settings = Settings { ident: Some(0x1234), ..Settings::new(5, RATES[5], resting()) };
+        let mut world = World::with(settings, "");
+        world.slave.misbehave(Some(fault));
+        let error = world.fails();
+        assert!(error.contains(message), "{fault:?}: {error}");
+        assert_eq!(world.slave.peer().history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
+        // Nobody stays locked by a link that did not come about.
+        if !matches!(fault, SlaveFault::Token | SlaveFault::Mute) {
+            assert_eq!(world.slave.owner(), None, "{fault:?}");
+        }
+    }
+    assert_eq!(SlaveFault::ALL.len(), 14, "a new fault wants a message here, or a test that it does no harm");
+}
+
+#[test]
+fn faults_that_repetitions_heal_do_no_harm() {
+    for fault in [SlaveFault::Lose, SlaveFault::BadFcs, SlaveFault::Diagnosis] {
+        let mut world = World::new("500k", "");
+        world.slave.misbehave(Some(fault));
+        let view = world.open();
+        let change = world.master.set_image(view.generation, &image(1)).unwrap();
+        let view = world.run(SEC, |view| view.sent >= change);
+        let view = world.run(SEC, |now| now.statistics.sent >= view.statistics.sent + 20);
+        assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.error);
+        assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
+        // A repeated request is answered, and not done again.
+        assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
+        assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(1))], "{fault:?}");
+    }
+}
+
+#[test]
+fn a_slave_that_restarts_is_shown_the_resting_image_and_not_an_old_command() {
+    let mut world = World::new("500k", "");
+    let view = world.open();
+    world.master.set_image(view.generation, &image(9)).unwrap();
+    world.run(100 * MS, |_| false);
+    world.slave.restart(world.now);
+    let lost = world.run(SEC, |view| view.state == State::Lost);
+    assert!(matches!(lost.error, Some(ProfibusError::Left { .. })), "{:?}", lost.error);
+    let outdated = world.master.set_image(view.generation, &image(9));
+    assert_eq!(outdated, Err(ProfibusError::Outdated));
+    let again = world.run(10 * SEC, |view| view.state == State::Open);
+    assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
+    assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(9)), None, Some(resting())]);
+    assert_eq!(world.master.set_image(view.generation, &image(9)), Err(ProfibusError::Outdated));
+}
+
+#[test]
+fn a_slave_lets_go_when_its_master_dies() {
+    let mut world = World::new("500k", "");
+    world.open();
+    let died = world.now;
+    // Time passes for the line and the slave alone.
+    world.wire.run(died + 490 * MS, &mut world.slave);
+    assert_eq!(world.slave.owner(), Some(2));
+    world.wire.run(died + 520 * MS, &mut world.slave);
+    assert_eq!((world.slave.owner(), world.slave.peer().image.as_ref()), (None, None));
+}
+
+#[test]
+fn a_silent_slave_is_lost_and_found_again() {
+    let mut world = World::new("500k", "");
+    let view = world.open();
+    world.slave.misbehave(Some(SlaveFault::Mute));
+    let lost = world.run(SEC, |view| view.state == State::Lost);
+    assert!(lost.error.unwrap().to_string().contains("did not answer Data_Exchange (4 attempts"));
+    world.slave.misbehave(None);
+    let again = world.run(5 * SEC, |view| view.state == State::Open);
+    assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
+    assert_eq!(world.slave.peer().history.last(), Some(&Some(resting())));
+}
+
+#[test]
+fn a_master_says_nothing_where_another_one_speaks() {
+    for (heard, message) in [
+        ("DC 03 04 DC 04 03", "another master, station 4, is on the bus (it passed the token)"),
+        ("10 05 04 49 52 16", "another master, station 4, is on the bus (it sent a request)"),
+        ("10 04 05 00 09 16", "another master, station 4, is on the bus (it was answered by a station)"),
+        ("00 81 FF 03", "there is traffic on the bus that cannot be read at this bit rate (4 bytes)"),
+    ] {
+        let mut world = World::new("500k", "");
+        world.master.handle(MS, &hex(heard));
+        assert_eq!(world.fails(), message);
+        assert!(world.sent.is_empty(), "{heard}");
+    }
+    // Opening a port may make a character.
+    let mut world = World::new("500k", "");
+    world.master.handle(MS, &[0]);
+    world.open();
+}
+
+#[test]
+fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
+    let mut world = World::new("500k", "");
+    let view = world.open();
+    world.run(100 * MS, |_| false);
+    world.master.handle(world.now, &hex("10 07 04 49 54 16"));
+    let lost = world.master.view();
+    assert_eq!(lost.error.unwrap().to_string(), "another master, station 4, is on the bus (it sent a request)");
+    let (said, until) = (world.sent.len(), world.now + 3 * SEC);
+    while world.now < until {
+        world.run(500 * MS, |_| false);
+        world.master.handle(world.now, &hex("10 07 04 49 54 16"));
+    }
+    assert_eq!(world.sent.len(), said);
+    let again = world.run(5 * SEC, |view| view.state == State::Open);
+    assert_eq!(again.generation, view.generation + 1);
+}
+
+#[test]
+fn adapters_that_hand_back_what_is_sent_do_no_harm() {
+    let mut world = World::new("500k", "echo");
+    let view = world.open();
+    assert!(view.echoes);
+    let view = world.run(SEC, |view| view.statistics.sent >= 20);
+    assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
+    // Crossed wires or a dead slave behind such an adapter are not taken for answers.
+    let mut world = World::new("500k", "echo");
+    world.slave.misbehave(Some(SlaveFault::Mute));
+    assert!(world.fails().contains("only the echo of the adapter was heard"));
+}
+
+#[test]
+fn cycles_are_kept_without_drift_and_without_bursts() {
+    let mut world = World::new("500k", "");
+    world.open();
+    let view = world.run(20 * SEC, |_| false);
+    assert!((999..=1001).contains(&view.statistics.sent), "{}", view.statistics.sent);
+    assert_eq!(view.statistics.skipped, 0);
+    // The machine is busy elsewhere for a while: what was missed is not made up for.
+    world.now += 110 * MS;
+    world.wire.run(world.now, &mut world.slave);
+    let after = world.run(100 * MS, |_| false);
+    assert!((4..=6).contains(&after.statistics.skipped), "{}", after.statistics.skipped);
+    assert!(after.statistics.sent - view.statistics.sent <= 6);
+}
+
+#[test]
+fn a_full_line_is_within_a_tenth_of_its_bits() {
+    for name in ["9.6k", "500k"] {
+        let rate = Rate::from_name(name).unwrap();
+        let settings = Settings { cycle: Some(Duration::ZERO), ..Settings::new(5, rate, resting()) };
+        let mut world = World::with(settings, "");
+        let view = world.open();
+        let (start, before) = (world.now, view.statistics.received);
+        let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
+        assert_eq!(view.statistics.received, before + 100, "{:?}", view.error);
+        let cycle = world.now.saturating_sub(start) / 100;
+        // Two telegrams of 57 characters, the pause before a request, and the time before an answer.
+        let bits = rate.pace().time(2 * 57) + rate.bits(33 + 11);
+        assert!(cycle <= bits * 11 / 10, "{name}: {cycle:?} for {bits:?}");
+        assert!(cycle >= bits, "{name}: {cycle:?} is faster than the line");
+    }
+}
+
+/// Gives one command after the other as a controller of images takes them: a number, and 0 between two. What the slave saw
+/// of it.
+fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
+    let settings = Settings { retries: 6, slot: Some(10 * MS), ..Settings::new(5, RATES[5], resting()) };
+    let mut world = World::with(settings, &format!("{faults},seed={seed}"));
+    let mut done = Vec::new();
+    let mut given = 0;
+    while world.now < 25 * SEC && given < 200 {
+        let view = world.run(15 * SEC, |view| view.state == State::Open || view.state == State::Closed);
+        if view.state != State::Open {
+            break;
+        }
+        let generation = view.generation;
+        given += 1;
+        let mut is_done = true;
+        for number in [given, 0] {
+            let Ok(_) = world.master.set_image(generation, &image(number)) else {
+                is_done = false;
+                break;
+            };
+            // What is seen comes from the slave, in this generation.
+            let view = world.run(5 * SEC, |view| {
+                let is_shown =
+                    |input: &super::master::Input| input.generation == generation && input.image[0] == number;
+                view.generation != generation || view.state != State::Open || view.input.as_ref().is_some_and(is_shown)
+            });
+            is_done &= view.state == State::Open && view.generation == generation;
+        }
+        if is_done {
+            done.push(given);
+        }
+    }
+    let history = &world.slave.peer().history;
+    let shown: Vec<u8> = history.iter().map(|shown| shown.as_ref().map_or(0, |shown| shown[0])).collect();
+    let mut before = 0;
+    let mut executed = Vec::new();
+    for number in shown {
+        if number != before && number != 0 {
+            executed.push(number);
+        }
+        before = number;
+    }
+    (done, executed, world.master.view())
+}
+
+#[test]
+fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
+    let mut exchanges = 0;
+    let mut repeated = 0;
+    for seed in 0..26 {
+        let (done, executed, view) = commands(seed, "parity=0.2%,drop=0.1%,dup=0.1%");
+        assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "seed {seed}: {executed:?}");
+        assert!(done.iter().all(|number| executed.contains(number)), "seed {seed}: {done:?} of {executed:?}");
+        exchanges += view.statistics.sent;
+        repeated += view.statistics.repeated;
+    }
+    assert!(exchanges >= 10_000, "{exchanges}");
+    assert!(repeated > exchanges / 20, "{repeated} of {exchanges}: hardly any faults");
+}
+
+#[test]
+fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
+    // Longer than the slot time: answers come when their request has been repeated already.
+    let (done, executed, view) = commands(3, "delay=0..14ms");
+    assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "{executed:?}");
+    assert!(done.iter().all(|number| executed.contains(number)), "{done:?} of {executed:?}");
+    assert!(view.statistics.unexpected > 0, "nothing came late");
+}
+
+#[test]
+fn what_the_master_sends_is_all_telegrams() {
+    let mut world = World::new("500k", "parity=1%,seed=5");
+    world.run(5 * SEC, |_| false);
+    for (_, bytes) in &world.sent {
+        let mut stream = Stream::default();
+        stream.push(bytes);
+        assert!(matches!(stream.next_piece(), Some(Piece::Telegram(..))), "{bytes:02X?}");
+        assert!(stream.is_empty());
+    }
+    let begins =
+        |bytes: &[u8]| matches!(Telegram::parse(bytes), Ok(super::wire::Parsed::Whole(Telegram::Token { .. }, _)));
+    assert!(world.sent.iter().any(|(_, bytes)| begins(bytes)), "no token");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn no_bytes_make_either_end_panic(
+        pieces in proptest::collection::vec(
+            (0_u32..50, proptest::collection::vec(prop_oneof![any::<u8>(), Just(0x68), Just(0x10), Just(5), Just(2)], 0..80)), 0..30,
+        ),
+        has_opened in any::<bool>(),
+    ) {
+        let mut world = World::new("500k", "");
+        if has_opened {
+            world.open();
+        }
+        for (pause, bytes) in pieces {
+            world.run(pause * MS, |_| false);
+            world.master.handle(world.now, &bytes);
+            world.slave.receive(world.now, 0, &bytes);
+        }
+    }
+}

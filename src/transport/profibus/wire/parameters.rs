@@ -1,0 +1,190 @@
+//! What a master sends to have a slave ready: parameters (part 8, section 8.3.4), and control of all slaves (8.3.9).
+
+use std::fmt;
+use std::time::Duration;
+
+use super::{MAX_DATA, WireError};
+
+/// Bytes before the user parameters.
+const FIXED: usize = 7;
+/// What a step of the watchdog takes.
+const STEP: Duration = Duration::from_millis(10);
+
+/// Whether a slave is to belong to the master that asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Lock {
+    /// Only the shortest answer time is set.
+    Unchanged,
+    /// It belongs to the one that asks.
+    Lock,
+    /// It belongs to nobody.
+    Unlock,
+}
+
+/// How long a slave waits for its master: 10 ms times two factors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Watchdog {
+    factors: [u8; 2],
+}
+
+impl Watchdog {
+    /// One that waits at least as long, and hardly longer; `None` beyond 650 s.
+    pub fn at_least(time: Duration) -> Option<Self> {
+        let steps = time.as_nanos().div_ceil(STEP.as_nanos()).max(1);
+        // Small first factors have coarse steps: the first pair is the finest.
+        let second = u8::try_from(steps.div_ceil(255)).ok()?;
+        let first = u8::try_from(steps.div_ceil(u128::from(second))).ok()?;
+        Some(Self { factors: [first, second] })
+    }
+
+    /// From its factors; 0 is none.
+    pub const fn from_factors(factors: [u8; 2]) -> Option<Self> {
+        if factors[0] == 0 || factors[1] == 0 { None } else { Some(Self { factors }) }
+    }
+
+    /// How long it waits, if its steps are the usual ones.
+    pub fn time(self) -> Duration {
+        STEP * u32::from(self.factors[0]) * u32::from(self.factors[1])
+    }
+}
+
+/// What Set_Prm carries.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Parameters {
+    /// Whether the slave is to belong to the master.
+    pub lock: Lock,
+    /// Whether the slave must know how to take its outputs when told to.
+    pub sync: bool,
+    /// Whether the slave must know how to hold its inputs when told to.
+    pub freeze: bool,
+    /// How long the slave waits for its master; for ever without one.
+    pub watchdog: Option<Watchdog>,
+    /// Shortest time before an answer, in bits; 0 leaves it.
+    pub min_tsdr: u8,
+    /// Which kind of slave is expected.
+    pub ident: u16,
+    /// A bit for each group that the slave belongs to.
+    pub groups: u8,
+    /// What the maker of the slave wants to be told.
+    pub user: Vec<u8>,
+}
+
+impl Parameters {
+    /// Most bytes of user parameters.
+    pub const MAX_USER: usize = MAX_DATA - FIXED;
+
+    /// Sets the slave of this ident number free.
+    pub const fn unlock(ident: u16) -> Self {
+        Self {
+            lock: Lock::Unlock,
+            sync: false,
+            freeze: false,
+            watchdog: None,
+            min_tsdr: 0,
+            ident,
+            groups: 0,
+            user: Vec::new(),
+        }
+    }
+
+    /// Reads them.
+    ///
+    /// # Errors
+    /// When they are too short.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        let Some((&[station, first, second, min_tsdr, high, low, groups], user)) = data.split_first_chunk() else {
+            return Err(WireError::short("parameters", 0, FIXED, data.len()));
+        };
+        // Unlock wins over lock.
+        let lock = match station & 0xC0 {
+            0 => Lock::Unchanged,
+            0x80 => Lock::Lock,
+            _ => Lock::Unlock,
+        };
+        let watchdog = if station & 0x08 == 0 {
+            None
+        } else {
+            let zero = WireError::value("watchdog factor", 1, 0);
+            Some(Watchdog::from_factors([first, second]).ok_or(zero)?)
+        };
+        Ok(Self {
+            lock,
+            sync: station & 0x20 != 0,
+            freeze: station & 0x10 != 0,
+            watchdog,
+            min_tsdr,
+            ident: u16::from_be_bytes([high, low]),
+            groups,
+            user: user.to_vec(),
+        })
+    }
+
+    /// Their bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        let lock = match self.lock {
+            Lock::Unchanged => 0,
+            Lock::Lock => 0x80,
+            Lock::Unlock => 0x40,
+        };
+        let flag = |is_set: bool, bit: u8| if is_set { bit } else { 0 };
+        let station = lock | flag(self.sync, 0x20) | flag(self.freeze, 0x10) | flag(self.watchdog.is_some(), 0x08);
+        let [first, second] = self.watchdog.map_or([0, 0], |watchdog| watchdog.factors);
+        let [high, low] = self.ident.to_be_bytes();
+        let mut data = vec![station, first, second, self.min_tsdr, high, low, self.groups];
+        data.extend(&self.user);
+        data
+    }
+}
+
+/// What all slaves of some groups are told at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct GlobalControl {
+    bits: u8,
+    /// A bit for each group; 0 for all slaves.
+    pub groups: u8,
+}
+
+/// What the bits of a control are called.
+const CONTROLS: [(u8, &str); 5] =
+    [(0x02, "clear"), (0x04, "unfreeze"), (0x08, "freeze"), (0x10, "unsync"), (0x20, "sync")];
+
+impl GlobalControl {
+    /// Outputs are meant.
+    pub const OPERATE: Self = Self { bits: 0, groups: 0 };
+    /// Outputs are 0.
+    pub const CLEAR: Self = Self { bits: 0x02, groups: 0 };
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// When it has not two bytes.
+    pub fn parse(data: &[u8]) -> Result<Self, WireError> {
+        match *data {
+            [bits, groups] => Ok(Self { bits, groups }),
+            _ => Err(WireError::short("control command", 0, 2, data.len())),
+        }
+    }
+
+    /// Its bytes.
+    pub const fn emit(self) -> [u8; 2] {
+        [self.bits, self.groups]
+    }
+
+    /// Whether outputs become 0.
+    pub const fn is_clear(self) -> bool {
+        self.bits & 0x02 != 0
+    }
+}
+
+impl fmt::Display for GlobalControl {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names: Vec<&str> = CONTROLS.iter().filter(|row| self.bits & row.0 != 0).map(|row| row.1).collect();
+        let clear = if self.is_clear() { None } else { Some("operate") };
+        let names: Vec<&str> = clear.into_iter().chain(names).collect();
+        write!(f, "{}", names.join(", "))?;
+        if self.groups != 0 {
+            write!(f, " for groups {:#04x}", self.groups)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+//! Telegrams (part 4, section 4.6).
+
+use super::{Control, Problem, WireError};
+
+const SD1: u8 = 0x10;
+const SD2: u8 = 0x68;
+const SD3: u8 = 0xA2;
+const SD4: u8 = 0xDC;
+const SC: u8 = 0xE5;
+const ED: u8 = 0x16;
+/// Set in an address that has a service access point behind it.
+const EXTENDED: u8 = 0x80;
+/// Address, address and function code.
+const HEADER: usize = 3;
+/// Bytes of data in a telegram of fixed length.
+const FIXED: usize = 8;
+/// Largest and smallest length that a telegram of variable length says.
+const LENGTHS: std::ops::RangeInclusive<u8> = 4..=249;
+/// Most bytes that a telegram carries beside service access points, when it has them.
+pub const MAX_DATA: usize = 244;
+
+/// A telegram.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Telegram {
+    /// The right to send goes to a master.
+    Token {
+        /// Who has it next.
+        to: u8,
+        /// Who had it.
+        from: u8,
+    },
+    /// An answer that says no more than that all is well.
+    ShortAcknowledge,
+    /// All others.
+    Frame(Frame),
+}
+
+/// A telegram with a function code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    /// Where it goes: 0 to 125, or 127 for all.
+    pub to: u8,
+    /// Who sends it.
+    pub from: u8,
+    /// What it is for.
+    pub control: Control,
+    /// Service access point there.
+    pub to_sap: Option<u8>,
+    /// Service access point here.
+    pub from_sap: Option<u8>,
+    /// What it carries.
+    pub data: Vec<u8>,
+}
+
+/// What bytes begin with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Parsed {
+    /// A telegram, with its length.
+    Whole(Telegram, usize),
+    /// The beginning of one, which has this many bytes at least.
+    Part(usize),
+}
+
+impl Frame {
+    /// Its bytes; eight bytes of data go in the form of variable length, too.
+    ///
+    /// # Panics
+    /// When there is more data than [`MAX_DATA`]; whoever builds frames bounds it.
+    pub fn emit(&self) -> Vec<u8> {
+        assert!(self.data.len() <= MAX_DATA, "data of telegrams is bounded where they are built");
+        let extended = |address: u8, sap: Option<u8>| address | if sap.is_some() { EXTENDED } else { 0 };
+        let mut body = vec![extended(self.to, self.to_sap), extended(self.from, self.from_sap), self.control.byte()];
+        body.extend(self.to_sap);
+        body.extend(self.from_sap);
+        body.extend(&self.data);
+        let mut bytes = Vec::with_capacity(body.len() + 6);
+        if body.len() == HEADER {
+            bytes.push(SD1);
+        } else {
+            let len = u8::try_from(body.len()).expect("data of telegrams is bounded");
+            bytes.extend([SD2, len, len, SD2]);
+        }
+        bytes.extend(&body);
+        bytes.extend([checksum(&body), ED]);
+        bytes
+    }
+}
+
+impl Telegram {
+    /// Its bytes.
+    pub fn emit(&self) -> Vec<u8> {
+        match self {
+            Self::Token { to, from } => vec![SD4, *to, *from],
+            Self::ShortAcknowledge => vec![SC],
+            Self::Frame(frame) => frame.emit(),
+        }
+    }
+
+    /// The telegram that bytes begin with.
+    ///
+    /// # Errors
+    /// When they do not begin with one.
+    pub fn parse(bytes: &[u8]) -> Result<Parsed, WireError> {
+        let Some(start) = bytes.first() else { return Ok(Parsed::Part(1)) };
+        match *start {
+            SC => Ok(Parsed::Whole(Self::ShortAcknowledge, 1)),
+            SD4 => match bytes {
+                [_, to, from, ..] => {
+                    let token = Self::Token { to: plain_address(*to, 1)?, from: plain_address(*from, 2)? };
+                    Ok(Parsed::Whole(token, 3))
+                }
+                _ => Ok(Parsed::Part(3)),
+            },
+            SD1 => frame(bytes, 1, HEADER),
+            SD3 => frame(bytes, 1, HEADER + FIXED),
+            SD2 => {
+                let Some(&len) = bytes.get(1) else { return Ok(Parsed::Part(4)) };
+                if !LENGTHS.contains(&len) {
+                    return Err(WireError::value("length", 1, len));
+                }
+                for (at, field, expected) in [(2, "repeated length", len), (3, "repeated start", SD2)] {
+                    if let Some(found) = bytes.get(at).filter(|found| **found != expected) {
+                        return Err(differs(field, at, *found, expected));
+                    }
+                }
+                frame(bytes, 4, usize::from(len))
+            }
+            other => Err(WireError::value("start delimiter", 0, other)),
+        }
+    }
+}
+
+/// A telegram with a body of this length at this place.
+fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
+    let whole = at + len + 2;
+    let Some(&[fcs, end]) = bytes.get(at + len..whole) else { return Ok(Parsed::Part(whole)) };
+    let body = &bytes[at..at + len];
+    if end != ED {
+        return Err(differs("end delimiter", at + len + 1, end, ED));
+    }
+    let sum = checksum(body);
+    if fcs != sum {
+        return Err(differs("frame check sequence", at + len, fcs, sum));
+    }
+    let control = Control::parse(body[2], at + 2)?;
+    let mut rest = HEADER;
+    let mut sap = |address: u8, field: &'static str| {
+        if address & EXTENDED == 0 {
+            return Ok(None);
+        }
+        let Some(&sap) = body.get(rest) else { return Err(WireError::short(field, at + rest, 1, 0)) };
+        rest += 1;
+        Ok(Some(sap))
+    };
+    let to_sap = sap(body[0], "service access point there")?;
+    let from_sap = sap(body[1], "service access point here")?;
+    let frame = Frame {
+        to: body[0] & !EXTENDED,
+        from: body[1] & !EXTENDED,
+        control,
+        to_sap,
+        from_sap,
+        data: body[rest..].to_vec(),
+    };
+    Ok(Parsed::Whole(Telegram::Frame(frame), whole))
+}
+
+fn plain_address(address: u8, offset: usize) -> Result<u8, WireError> {
+    if address <= super::MAX_STATION { Ok(address) } else { Err(WireError::value("address", offset, address)) }
+}
+
+const fn differs(field: &'static str, offset: usize, found: u8, expected: u8) -> WireError {
+    WireError { field, offset, problem: Problem::Differs { found, expected } }
+}
+
+fn checksum(body: &[u8]) -> u8 {
+    body.iter().copied().fold(0, u8::wrapping_add)
+}

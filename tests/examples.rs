@@ -1,0 +1,20 @@
+//! The programs of `examples/`: each runs to its end and says what it did.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What an example says. `cargo test` builds it beside the binary.
+#[track_caller]
+fn run(example: &str) -> String {
+    let built = Path::new(env!("CARGO_BIN_EXE_armctl")).with_file_name("examples").join(example);
+    let output = Command::new(&built).output();
+    let output = output.unwrap_or_else(|error| panic!("{}: {error}; cargo build --examples", built.display()));
+    let said = String::from_utf8(output.stdout).expect("UTF-8");
+    assert!(output.status.success(), "{example}: {said}{}", String::from_utf8_lossy(&output.stderr));
+    said
+}
+
+#[test]
+fn yerc_reads_fetches_and_moves() {
+    assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS stands at 5000 pulses\n");
+}
