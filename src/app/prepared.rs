@@ -36,6 +36,7 @@ pub enum Invocation {
 }
 
 /// What is to be done, and for whom.
+#[allow(clippy::large_enum_variant, reason = "there are few in a process")]
 pub enum Task {
     /// For robots of a family, and which robot of the controller.
     Family(u8, Box<dyn AnyCommand>),

@@ -25,7 +25,7 @@ use crate::settings::duration;
 )]
 pub struct Discover {
     #[command(flatten)]
-    searches: Searches,
+    searches: Box<Searches>,
     /// How long to wait for answers
     #[arg(long, value_name = "TIME", default_value = "2500ms", value_parser = wait)]
     wait: Duration,
