@@ -18,11 +18,11 @@ pub const BUSES: [&dyn Fieldbus; 3] = [&eip::EtherNetIp, &devicenet::DeviceNet, 
 #[group(skip)]
 pub struct Searches {
     #[command(flatten)]
-    eip: Box<eip::Search>,
+    eip: eip::Search,
     #[command(flatten)]
     devicenet: devicenet::Search,
     #[command(flatten)]
-    profibus: Box<profibus::Search>,
+    profibus: profibus::Search,
 }
 
 impl Searches {

@@ -22,6 +22,7 @@ use crate::transport::tap::LINKTYPE_PROFIBUS_DL;
 pub struct ProfibusDp;
 
 impl Fieldbus for ProfibusDp {
+    #[expect(clippy::misnamed_getters, reason = "the scheme names the fieldbus, not itself")]
     fn name(&self) -> &'static str {
         SCHEME.bus
     }
