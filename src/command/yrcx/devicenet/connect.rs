@@ -66,7 +66,7 @@ const NOT_SHOWN: &str = "nobody polls the controller, and it shows its signals t
 
 /// The adapter, with this program as its master.
 pub(super) fn adapter(node: &DeviceNet) -> Adapter {
-    let serial = 0x4152_0000 | std::process::id() & 0xFFFF;
+    let serial = 0x4152_0000 | crate::transport::session::process() & 0xFFFF;
     let identity = Identity { mac: node.master, vendor: UNREGISTERED_VENDOR, serial };
     Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
 }
