@@ -63,10 +63,12 @@ transcripts! {
     variables
     yrcx
     yrcx_data
+    yrcx_devicenet
     yrcx_eip
     yrcx_info
     yrcx_jog
     yrcx_motion
+    yrcx_profibus
     yrcx_programs
 }
 
