@@ -566,7 +566,7 @@ mod tests {
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
             ("sim:?axes=5", "axes is a number from 1 to 4"),
-            ("sim:?bus=can", "bus is eip or profibus, not 'can'"),
+            ("sim:?bus=can", "devicenet-compact or profibus, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
             ("serial://", "port is missing"),
