@@ -100,7 +100,7 @@ pub trait Command {
     }
 
     /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
-    /// known ([`dry_run::unknown`]), behind which nothing can be foreseen unless the command does.
+    /// known ([`unknown`](super::dry_run::unknown)), behind which nothing can be foreseen unless the command does.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 

@@ -2,7 +2,7 @@
 
 use super::Mac;
 
-/// Codes of services; an answer has [`ANSWER`] added.
+/// Codes of services; an answer has `ANSWER` added.
 pub mod service {
     /// Restart the node.
     pub const RESET: u8 = 0x05;
