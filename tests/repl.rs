@@ -114,6 +114,8 @@ fn asked_to_end_it_leaves_the_terminal_as_it_was() {
     for signal in ["TERM", "HUP", "QUIT"] {
         let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
+        // Before that the terminal itself echoes.
+        repl.says("yrcx>");
         repl.press("half a line");
         repl.says("half a line");
         repl.signal(signal);

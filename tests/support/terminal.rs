@@ -124,7 +124,14 @@ impl Terminal {
 
     /// Waits for its end, and takes the rest of what it wrote.
     pub fn end(&mut self) -> ExitStatus {
-        let status = self.child.wait().expect("it ends");
+        // Read meanwhile: a terminal that is full holds up what writes to it.
+        self.master.set_timeout(Duration::from_millis(20)).expect("a terminal takes a timeout");
+        let status = loop {
+            while self.take() {}
+            if let Some(status) = self.child.try_wait().expect("it is our child") {
+                break status;
+            }
+        };
         // All that was written is there by now.
         self.master.set_timeout(Duration::ZERO).expect("a terminal takes a timeout");
         while self.take() {}
