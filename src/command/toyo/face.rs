@@ -6,7 +6,7 @@ use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Toyo};
 use super::serve::Serve;
-use super::top::Eye;
+use super::top::Poller;
 use super::{check, connect, overview};
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
@@ -28,7 +28,7 @@ impl Declaration for Toyo {
     type Decode = Decode;
     type Explain = Explain;
     type Serve = Serve;
-    type Eye = Eye;
+    type Poller = Poller;
 
     const NAME: Family = Family::Toyo;
     const TITLE: &'static str = "Toyo";

@@ -6,7 +6,7 @@ use super::explain::Explain;
 use super::file::{Backup, Restore};
 use super::link::{Link, Yerc};
 use super::serve::Serve;
-use super::top::Eye;
+use super::top::Poller;
 use super::{check, connect, overview};
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
@@ -27,7 +27,7 @@ impl Declaration for Yerc {
     type Decode = Decode;
     type Explain = Explain;
     type Serve = Serve;
-    type Eye = Eye;
+    type Poller = Poller;
 
     const NAME: Family = Family::Yerc;
     const TITLE: &'static str = "Yaskawa FS100 / DX200";

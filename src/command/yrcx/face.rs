@@ -8,7 +8,7 @@ use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Yrcx};
 use super::serve::ServeArgs;
-use super::top::Eye;
+use super::top::Poller;
 use super::trace::Recorder;
 use super::unit::Unit;
 use super::{check, hold, overview};
@@ -31,7 +31,7 @@ impl Declaration for Yrcx {
     type Decode = Decode;
     type Explain = Explain;
     type Serve = ServeArgs;
-    type Eye = Eye;
+    type Poller = Poller;
 
     const NAME: Family = Family::Yrcx;
     const TITLE: &'static str = "OMRON / Yamaha YRCX";
