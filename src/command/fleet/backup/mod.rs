@@ -74,10 +74,7 @@ impl Command for Backup {
     type Family = Fleet;
     type Report = BackedUp;
     const ID: &'static str = "backup";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         reading_risk(robot)
