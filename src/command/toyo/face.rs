@@ -5,7 +5,7 @@ use clap::ArgMatches;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -158,7 +158,7 @@ impl Face for Toyo {
                     context.robot.label()
                 ));
             }
-            Ok(Backup::of(making, current_task).run(context.of()?).await?.into())
+            back_up(context.of()?, making.clone(), current_task).await
         }
         .boxed_local()
     }

@@ -8,7 +8,7 @@ use futures_util::future::LocalBoxFuture;
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
-use super::file::{Backup, Restore};
+use super::file::{Restore, back_up};
 use super::serve::Serve;
 use super::top::Eye;
 use super::{check, connect, link, overview};
@@ -142,7 +142,7 @@ impl Face for Yerc {
         context: AnyContext<'a>,
         making: &'a Making,
     ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
-        async move { Ok(Backup::of(making).run(context.of()?).await?.into()) }.boxed_local()
+        async move { back_up(context.of()?, making.clone()).await }.boxed_local()
     }
 
     fn restore<'a>(

@@ -5,7 +5,7 @@ use clap::{Args as _, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -158,7 +158,7 @@ impl Face for Yrcx {
         context: AnyContext<'a>,
         making: &'a Making,
     ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
-        async move { Backup::of(making).run(context.of()?).await }.boxed_local()
+        async move { back_up(context.of()?, making.clone()).await }.boxed_local()
     }
 
     fn restore<'a>(

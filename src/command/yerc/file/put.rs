@@ -69,7 +69,7 @@ impl Command for Put {
                      {own}",
                     content.path().display()
                 ));
-                result.notes.push("name_differs");
+                result.notes.push("name_differs".to_owned());
             }
             results.push(result);
         }

@@ -3,9 +3,6 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::command::decode;
 use crate::command::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
 use crate::controller::text::hex;
