@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::status;
 use super::wire::{Status, WireError};
+use crate::image::view::BusError;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -113,6 +114,11 @@ pub enum EipError {
         /// Why it cannot be.
         String,
     ),
+}
+
+impl BusError for EipError {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
 }
 
 impl EipError {

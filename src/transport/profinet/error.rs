@@ -10,6 +10,7 @@ use thiserror::Error;
 use super::wire::dcp;
 use super::wire::status::Status;
 use super::wire::{Mac, WireError};
+use crate::image::view::BusError;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -196,6 +197,11 @@ pub enum ProfinetError {
         /// Why it cannot be.
         String,
     ),
+}
+
+impl BusError for ProfinetError {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
 }
 
 impl ProfinetError {

@@ -18,7 +18,7 @@ use tokio::sync::watch;
 
 use super::Now;
 use super::controller::numbers::Numbers;
-use super::controller::view::{State, View};
+use super::controller::view::{View, Views};
 use super::controller::{Action, Controller, Here};
 use super::error::ProfinetError;
 use super::interface::Interface;
@@ -123,17 +123,13 @@ impl Network {
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
         let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
-        let (view, views) = watch::channel(core.view());
+        let (view, views) = Views::new(core.view());
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, Slot { core, tap, view });
         inner.ring();
         let mut connection = Connection { owner: Arc::clone(&self.owner), id, views };
-        let view = connection.until(|view| view.state == State::Open).await;
-        match (view.state, view.trouble) {
-            (State::Closed, Some(error)) => Err(error),
-            (State::Closed, None) => Err(ProfinetError::Ended),
-            _ => Ok(connection),
-        }
+        connection.views.opened().await?;
+        Ok(connection)
     }
 }
 
@@ -153,31 +149,18 @@ impl Drop for Owner {
 pub struct Connection {
     owner: Arc<Owner>,
     id: u64,
-    views: watch::Receiver<View>,
+    pub(super) views: Views,
 }
 
 impl Connection {
     /// What there is to see now.
     pub fn view(&self) -> View {
-        self.views.borrow().clone()
-    }
-
-    /// Waits for something new. After the view that says that the connection is closed nothing comes any more.
-    pub async fn changed(&mut self) {
-        // The other end goes with the slot, when all has ended; then nothing changes any more.
-        if self.views.changed().await.is_err() {
-            std::future::pending::<()>().await;
-        }
+        self.views.now()
     }
 
     /// Waits until the view is so, or the connection is closed.
-    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
-        loop {
-            let view = self.views.borrow_and_update().clone();
-            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
-                return self.view();
-            }
-        }
+    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
+        self.views.until(condition).await
     }
 
     /// Sends this image from the next cycle on; see [`Controller::set_image`].
@@ -195,8 +178,7 @@ impl Connection {
         let before = self.view().trouble;
         self.with(Controller::close);
         self.owner.inner.ring();
-        let view = self.until(|view| view.state == State::Closed).await;
-        view.trouble.filter(|error| before.as_ref() != Some(error)).map_or(Ok(()), Err)
+        self.views.closed(before.as_ref()).await
     }
 
     fn with<T>(&self, change: impl FnOnce(&mut Controller, Now) -> T) -> Option<T> {
