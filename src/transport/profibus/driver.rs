@@ -14,6 +14,7 @@ use super::port::Port;
 use super::settings::Settings;
 use super::survey::{Found, Survey};
 use super::wire::{Piece, Stream};
+use crate::plain;
 
 /// How long a port is waited for at once, so that a wish to end is heard.
 const SLICE: Duration = Duration::from_millis(10);
@@ -211,11 +212,6 @@ impl Record {
             }
         }
     }
-}
-
-/// An error of the system without its number.
-pub(super) fn plain(error: &io::Error) -> String {
-    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }
 
 /// Asks stations who they are; on a thread that may block.

@@ -15,12 +15,12 @@ use super::master::{Master, State, View};
 use super::rates::{RATES, Rate};
 use super::settings::Settings;
 use super::slave::{Setup, Slave, SlaveFault};
-use super::wire::testing::hex;
 use super::wire::{Piece, Stream, Telegram};
 use crate::fault::LineFaultSpec;
 use crate::image::ImagePeer;
 use crate::line::Wire;
 use crate::sim::Peer;
+use crate::testing::hex;
 
 const MS: Duration = Duration::from_millis(1);
 const SEC: Duration = Duration::from_secs(1);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use self::alarms::{Alarms, Heard};
-use self::client::{Client, Outcome};
+use self::client::Client;
 use self::cyclic::{Consumer, Producer, Verdict};
 use self::numbers::Numbers;
 use self::view::{Details, Device, Input, State, Statistics, Step, View};
@@ -537,16 +537,5 @@ impl Controller {
     /// The address of the device, if it is known.
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
-    }
-}
-
-/// What came of a call, where it is not the answer that was hoped for.
-fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
-    match outcome {
-        Outcome::Answer(0, blocks) => Ok(blocks),
-        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
-        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
-        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
-        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
     }
 }
