@@ -19,6 +19,7 @@ mod grant;
 mod plan;
 mod watcher;
 pub mod yerc;
+pub mod yrcx;
 
 use armctl_transport::session::client::SessionBusy;
 
