@@ -5,6 +5,7 @@ use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Place;
+use crate::command::face::declared;
 use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
@@ -28,14 +29,12 @@ pub struct Eye {
 /// The soft limits of axes 1 to 4, where the controller tells them.
 type Limits = [Option<(f64, f64)>; 4];
 
-impl Eye {
-    /// Opens it; nothing but reads can leave.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+impl declared::Eye for Eye {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Toyo::connect(robot, access, screen).await?, limits: None })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
         let (first, answered_in) = clocked(self.link.status_of(&[0])).await;
         let first = first?;
         let rest: &[u8] = match (depth, first.has_error()) {
@@ -52,11 +51,12 @@ impl Eye {
         Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Toyo::close(self.link, screen).await
     }
+}
 
+impl Eye {
     async fn whole(&mut self, status: Status, place: Option<Place>) -> Result<Whole, Failure> {
         let limits = match self.limits {
             Some(limits) => limits,

@@ -4,6 +4,7 @@ use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
+use crate::command::face::declared;
 use crate::command::face::sample::{Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::units;
@@ -29,14 +30,12 @@ pub struct Eye {
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
-impl Eye {
-    /// Opens it; nothing but reads can leave.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+impl declared::Eye for Eye {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Yerc::connect(robot, access, screen).await?, texts: true })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
         // A controller without a first robot has no position to show; that is no failure.
@@ -50,11 +49,12 @@ impl Eye {
         Ok(Sample { line: report(status, base.as_ref()), answered_in, alarms, whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Yerc::close(self.link, screen).await
     }
+}
 
+impl Eye {
     async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
         let model = self.link.model;
         let pulses = self.position(Coordinates::Pulse).await?;

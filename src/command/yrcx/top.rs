@@ -12,6 +12,7 @@ use super::info::{AlarmReport, servos};
 use super::link::{Link, Yrcx};
 use super::overview::{not_asked, report};
 use super::position::{Position, Unit};
+use crate::command::face::declared;
 use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
 use crate::command::{Access, Family as _};
@@ -56,9 +57,9 @@ const TURNS: Duration = Duration::from_millis(500);
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
-impl Eye {
+impl declared::Eye for Eye {
     /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
             bus.calm = LOOKS;
@@ -67,8 +68,7 @@ impl Eye {
         Ok(Self { link, told: Told::default(), next: 0, asked: None })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
         let image = self.link.look().await?;
         let not_asked = not_asked(&self.link, &image);
         if not_asked.is_none() {
@@ -83,11 +83,12 @@ impl Eye {
         Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Yrcx::close(self.link, screen).await
     }
+}
 
+impl Eye {
     /// Gives the remote commands that are due.
     async fn ask(&mut self, depth: Depth, image: &Image) -> Result<(), Failure> {
         let questions = self.questions(depth, output::ALARM.is_on(image));
