@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use futures_util::FutureExt as _;
 
-use self::onlooker::{Onlooker, locked};
+use self::onlooker::Onlooker;
 use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
 pub use super::overwrite::Done;
@@ -22,6 +22,7 @@ use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
 use crate::command::frame::attach::{attach, is_held};
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::interrupt::abandoned;
+use crate::command::frame::trace::locked;
 use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::Alarm;
