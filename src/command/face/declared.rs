@@ -8,7 +8,7 @@ use futures_util::future::LocalBoxFuture;
 
 use super::layers::Layer;
 use super::overview::OverviewReport;
-use super::sample::{Depth, Sample};
+use super::sample::{Detail, Sample};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
 use super::{Face, HeldLink, Watch};
@@ -35,7 +35,7 @@ pub trait Declaration: Family {
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Looks for `top`.
-    type Eye: Eye;
+    type Poller: Poller;
 
     /// Which it is.
     const NAME: target::Family;
@@ -82,18 +82,18 @@ pub trait Declaration: Family {
         Risk::Read
     }
     /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure>;
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
     /// Writes a backup back.
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
 }
 
 /// Looks at a robot again and again, for `top`.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
-pub trait Eye: Sized + 'static {
+pub trait Poller: Sized + 'static {
     /// Connects.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
     /// Looks once.
-    async fn look(&mut self, depth: Depth) -> Result<Sample, Failure>;
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
     /// Closes the connection.
     async fn close(self, screen: &Screen) -> Result<(), Failure>;
 }
@@ -186,7 +186,7 @@ impl<F: Declaration> Face for Declared<F> {
         access: Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>> {
-        async move { Ok(Box::new(F::Eye::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
+        async move { Ok(Box::new(F::Poller::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
     }
 
     fn hold<'a>(
@@ -214,11 +214,7 @@ impl<F: Declaration> Face for Declared<F> {
         F::backup_risk(robot)
     }
 
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: &'a Making,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
         async move { F::back_up(context.of()?, making).await }.boxed_local()
     }
 
@@ -231,12 +227,12 @@ impl<F: Declaration> Face for Declared<F> {
     }
 }
 
-impl<E: Eye> Watch for E {
-    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
-        Eye::look(self, depth).boxed_local()
+impl<E: Poller> Watch for E {
+    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
+        Poller::look(self, detail).boxed_local()
     }
 
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        Eye::close(*self, screen).boxed_local()
+        Poller::close(*self, screen).boxed_local()
     }
 }

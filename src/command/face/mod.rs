@@ -12,7 +12,7 @@ use futures_util::future::LocalBoxFuture;
 
 use self::layers::Layer;
 use self::overview::OverviewReport;
-use self::sample::{Depth, Sample};
+use self::sample::{Detail, Sample};
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
@@ -89,8 +89,7 @@ pub trait Face: Sync {
     /// What it takes to read all of a controller.
     fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
-    fn back_up<'a>(&self, context: AnyContext<'a>, making: &'a Making)
-    -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
     /// Writes a backup back.
     fn restore<'a>(
         &self,
@@ -102,7 +101,7 @@ pub trait Face: Sync {
 /// Looks at a robot again and again, for `top`.
 pub trait Watch {
     /// Looks once.
-    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
     /// Closes the connection.
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
 }

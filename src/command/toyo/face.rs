@@ -1,12 +1,12 @@
 //! What the rest of the house may ask of `toyo`.
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Toyo};
 use super::serve::Serve;
-use super::top::Eye;
+use super::top::Poller;
 use super::{check, connect, overview};
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
@@ -28,7 +28,7 @@ impl Declaration for Toyo {
     type Decode = Decode;
     type Explain = Explain;
     type Serve = Serve;
-    type Eye = Eye;
+    type Poller = Poller;
 
     const NAME: Family = Family::Toyo;
     const TITLE: &'static str = "Toyo";
@@ -66,7 +66,7 @@ impl Declaration for Toyo {
         if robot.read_only.value { Risk::Read } else { Risk::Write }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -74,7 +74,7 @@ impl Declaration for Toyo {
                 context.robot.label()
             ));
         }
-        Ok(Backup::of(making, current_task).run(context).await?.into())
+        back_up(context, making, current_task).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {

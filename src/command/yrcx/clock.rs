@@ -210,10 +210,7 @@ impl Command for Set {
     type Family = Yrcx;
     type Report = WasSet;
     const ID: &'static str = "yrcx.clock.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasSet, Failure> {
         let link = context.link;

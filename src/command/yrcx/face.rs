@@ -2,13 +2,13 @@
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Yrcx};
 use super::serve::ServeArgs;
-use super::top::Eye;
+use super::top::Poller;
 use super::trace::Recorder;
 use super::unit::Unit;
 use super::{check, hold, overview};
@@ -31,7 +31,7 @@ impl Declaration for Yrcx {
     type Decode = Decode;
     type Explain = Explain;
     type Serve = ServeArgs;
-    type Eye = Eye;
+    type Poller = Poller;
 
     const NAME: Family = Family::Yrcx;
     const TITLE: &'static str = "OMRON / Yamaha YRCX";
@@ -73,8 +73,8 @@ impl Declaration for Yrcx {
         Ok(HeldLink { held: Held::Images(images), finish })
     }
 
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure> {
-        Backup::of(making).run(context).await
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {

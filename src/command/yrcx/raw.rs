@@ -4,7 +4,6 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::decode::FieldRow;
 use super::refusal::refused;
 use super::{link, overwrite};
 use crate::client::yrcx::Reply;
@@ -14,7 +13,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::typed;
 use crate::controller::yrcx::answer::Answer;
-use crate::controller::yrcx::describe;
+use crate::controller::yrcx::describe::{self, FieldNote};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
 use crate::controller::yrcx::order::Order;
 use crate::failure::Failure;
@@ -90,7 +89,7 @@ pub struct Exchange {
     /// The answer in words.
     title: String,
     /// The answer field by field.
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with the answer.
     problems: Vec<String>,
     elapsed_ms: u64,
@@ -109,7 +108,7 @@ impl Exchange {
             wi: link::hex(order.words()),
             wo: link::hex(&reply.words),
             title: description.title,
-            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            fields: description.fields,
             problems: description.problems,
             elapsed_ms: u64::try_from(reply.elapsed.as_millis()).unwrap_or(u64::MAX),
             refusal,

@@ -34,7 +34,7 @@ use crate::output::view::{Section, View};
 
 pub use absolute::AbsReset;
 pub use drive::{Drive, Drivei};
-pub use inch::{Inch, InchDistance};
+pub use inch::Inch;
 pub use jog::Jog;
 pub use moves::Move;
 pub use origin::Origin;
