@@ -26,5 +26,5 @@ pub mod yrcx;
 pub(crate) use frame::commands;
 pub use frame::{
     Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Driver, Entry,
-    Family, Offline, OfflineCommand, Outcome, Report, SchemaEntry, Subcommands, ValueKind,
+    Family, Offline, OfflineCommand, Outcome, Own, OwnArguments, Report, SchemaEntry, Subcommands, ValueKind,
 };

@@ -57,7 +57,7 @@ fn run(selection: Selection) -> Run {
         trace: None,
         line: None,
         redraw: Redraw::default(),
-        unit: 0,
+        own: crate::command::Own::default(),
     }
 }
 

@@ -3,14 +3,12 @@
 use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
 
 use crate::command::frame::repl::Repl;
-use crate::command::{AnyCommand, CommandSet};
+use crate::command::{AnyCommand, CommandSet, Own};
 
 /// What was typed behind the word of a family.
 pub struct Typed {
-    /// The robot of the controller that commands are for, 1 to 4; 0 where none is named.
-    pub unit: u8,
-    /// The words that say the same before each line of a prompt.
-    pub prefix: Vec<String>,
+    /// What stands between both.
+    pub own: Own,
     /// What is wanted.
     pub wish: Wish,
 }
@@ -58,6 +56,6 @@ pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish
 
 impl From<Wish> for Typed {
     fn from(wish: Wish) -> Self {
-        Self { unit: 0, prefix: Vec::new(), wish }
+        Self { own: Own::default(), wish }
     }
 }
