@@ -1,33 +1,22 @@
 //! `yrcx info inch` (4.7.16).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads the inching amount.
-#[derive(Debug, Args)]
-pub struct Inch {}
-
-impl Single for Inch {
-    type Report = Amount;
-    const ID: &'static str = "yrcx.info.inch";
-
-    fn command(&self) -> Command {
-        Command::InchAmountGet
-    }
-
-    fn report(&self, done: &Done) -> Result<Amount, Failure> {
-        let amount = done.values.int(Key::InchingAmount).unwrap_or_default();
-        Ok(Amount { amount_pulses: amount, amount_mm: f64::from(amount) / 1000.0 })
-    }
+one_row! {
+    /// Reads the inching amount.
+    Inch(self) "yrcx.info.inch" -> Amount {}
+    gives Command::InchAmountGet,
+    done as answer => {
+        let amount = answer.values.int(Key::InchingAmount).unwrap_or_default();
+        Amount { amount_pulses: amount, amount_mm: f64::from(amount) / 1000.0 }
+    };
 }
 
 /// How far inching goes: one number, in the unit of the inching command.

@@ -1,38 +1,27 @@
 //! `yrcx info speed` (4.7.8).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads the speed settings.
-#[derive(Debug, Args)]
-pub struct Speed {}
-
-impl Single for Speed {
-    type Report = Speeds;
-    const ID: &'static str = "yrcx.info.speed";
-
-    fn command(&self) -> Command {
-        Command::SpeedStatus
-    }
-
-    fn report(&self, done: &Done) -> Result<Speeds, Failure> {
+one_row! {
+    /// Reads the speed settings.
+    Speed(self) "yrcx.info.speed" -> Speeds {}
+    gives Command::SpeedStatus,
+    done as answer => {
         // 0 is that of a robot without axes.
-        let speed = |key| done.values.int(key).filter(|percent| *percent != 0);
-        Ok(Speeds {
+        let speed = |key| answer.values.int(key).filter(|percent| *percent != 0);
+        Speeds {
             manual_speed_percent: speed(Key::ManualSpeed),
             auto_speed_percent: speed(Key::AutoSpeed),
             program_speed_percent: speed(Key::ProgramSpeed),
-        })
-    }
+        }
+    };
 }
 
 /// Speed settings, 1 to 100 %; null for a robot without axes.

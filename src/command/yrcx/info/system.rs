@@ -1,34 +1,23 @@
 //! `yrcx info system` (4.7.2).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads the model numbers of a robot and its axes.
-#[derive(Debug, Args)]
-pub struct System {}
-
-impl Single for System {
-    type Report = Models;
-    const ID: &'static str = "yrcx.info.system";
-
-    fn command(&self) -> Command {
-        Command::System
-    }
-
-    fn report(&self, done: &Done) -> Result<Models, Failure> {
+one_row! {
+    /// Reads the model numbers of a robot and its axes.
+    System(self) "yrcx.info.system" -> Models {}
+    gives Command::System,
+    done as answer => {
         // 0 is what is not there.
-        let model = |key| done.values.int(key).filter(|number| *number != 0);
-        Ok(Models { robot_type: model(Key::RobotType), axis_types: Key::AXES.map(model) })
-    }
+        let model = |key| answer.values.int(key).filter(|number| *number != 0);
+        Models { robot_type: model(Key::RobotType), axis_types: Key::AXES.map(model) }
+    };
 }
 
 /// Model numbers; null for what is not there.

@@ -1,38 +1,27 @@
 //! `yrcx info version` (4.7.1).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::{Single, shown};
+use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads the versions.
-#[derive(Debug, Args)]
-pub struct Version {}
-
-impl Single for Version {
-    type Report = Versions;
-    const ID: &'static str = "yrcx.info.version";
-
-    fn command(&self) -> Command {
-        Command::Versions
-    }
-
-    fn report(&self, done: &Done) -> Result<Versions, Failure> {
-        let told = |key| shown(Command::Versions, &done.values, key);
-        Ok(Versions {
+one_row! {
+    /// Reads the versions.
+    Version(self) "yrcx.info.version" -> Versions {}
+    gives Command::Versions,
+    done as answer => {
+        let told = |key| shown(Command::Versions, &answer.values, key);
+        Versions {
             host_version: told(Key::HostVersion),
             host_revision: told(Key::HostRevision),
             fpga_version: told(Key::FpgaVersion),
             driver_versions: DRIVERS.map(told),
-        })
-    }
+        }
+    };
 }
 
 const DRIVERS: [Key; 4] = [Key::DriverVersion1, Key::DriverVersion2, Key::DriverVersion3, Key::DriverVersion4];
