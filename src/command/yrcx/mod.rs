@@ -30,6 +30,7 @@ pub mod discover;
 pub mod eip;
 mod explain;
 pub mod face;
+mod failure;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;

@@ -95,7 +95,7 @@ fn reading_risk(robot: &Robot) -> Risk {
 /// Makes a backup of a robot of any family.
 async fn make(context: Context<'_, Fleet>, making: Making) -> Result<BackedUp, Failure> {
     let (face, context) = opened(context)?;
-    face.back_up(context, &making).await
+    face.back_up(context, making).await
 }
 
 /// The connection of a robot of any family, and what it can be asked.
