@@ -20,7 +20,7 @@ use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::Target;
+use crate::settings::target::Given;
 use crate::settings::{Selection, Sessions, Sources};
 
 /// What a command line asks for.
@@ -151,7 +151,7 @@ pub enum Need {
 
 /// Flags, environment and inventory, read once.
 fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
-    let screen = screen(&globals);
+    let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Filter::new).transpose()?;
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
@@ -169,7 +169,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         robots: globals.robot,
         tags: globals.tag,
         all: globals.all,
-        environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
+        environment: variable("ARMCTL_TARGET", |url| url.parse::<Given>().map_err(|failure| failure.message))?,
         sessions: match (globals.no_session, among) {
             (true, _) => Sessions::None,
             (false, true) => Sessions::OwnSimulators,

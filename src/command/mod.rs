@@ -18,6 +18,7 @@ pub mod face;
 pub mod families;
 pub mod fleet;
 pub mod frame;
+pub mod leaves;
 pub mod serve;
 pub mod toyo;
 pub mod yerc;

@@ -1,5 +1,6 @@
 //! What can stand behind the word of a family: its commands, or `repl`.
 
+use clap::builder::CommandExt;
 use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
 
 use crate::command::frame::repl::Repl;
@@ -34,9 +35,15 @@ enum Verb<C: Subcommand> {
 }
 
 /// The word of a family with all its commands, and what the help says of it.
-pub fn augment<C: Subcommand>(command: Command, about: &'static str) -> Command {
-    Verb::<C>::augment_subcommands(command).about(about).long_about(None)
+pub fn augment<C: CommandSet + Subcommand>(command: Command, about: &'static str) -> Command {
+    Verb::<C>::augment_subcommands(command).about(about).long_about(None).add(Headings(C::headings))
 }
+
+/// Headings of the help over the words of a command, see [`CommandSet::headings`].
+#[derive(Debug, Clone, Copy)]
+pub struct Headings(pub fn() -> Vec<(Option<&'static str>, String)>);
+
+impl CommandExt for Headings {}
 
 /// Whether a word is a command of a family.
 pub fn has_command<C: Subcommand>(word: &str) -> bool {
