@@ -27,6 +27,12 @@
 //! ```rust,ignore
 #![doc = include_str!("../examples/yerc.rs")]
 //! ```
+//!
+//! This is `examples/toyo.rs`:
+//!
+//! ```rust,ignore
+#![doc = include_str!("../examples/toyo.rs")]
+//! ```
 
 pub mod app;
 pub mod cli;

@@ -44,7 +44,7 @@ impl Eye {
             (Depth::Line, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
-        let place = self.link.try_read(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
+        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
         let whole = match depth {
             Depth::Line => None,
             Depth::Whole => Some(self.whole(status, place).await?),
@@ -70,7 +70,7 @@ impl Eye {
 
     /// The first screen of ports of the controller itself.
     async fn bank(&mut self, name: &'static str, ports: Ports) -> Result<Bank, Failure> {
-        let groups = match self.link.try_read(&ports.request(0, 1)).await? {
+        let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => ports_of(&record).iter().map(|port| Eight::falling(port.name.clone(), port.byte())).collect(),
             Err(_) => Vec::new(),
         };
@@ -90,7 +90,7 @@ async fn limits(link: &mut Link) -> Result<Limits, Failure> {
 async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
     let request = Parameter::named(id).and_then(|parameter| Request::read_parameter(parameter, None).ok());
     let request = request.ok_or_else(|| Failure::local(format!("there is no parameter {id}")))?;
-    Ok(link.try_read_content(&request).await?.ok())
+    Ok(link.try_ask(&request).await?.ok())
 }
 
 fn alarms(status: Status) -> Vec<Alarm> {

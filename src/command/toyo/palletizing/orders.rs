@@ -75,7 +75,7 @@ impl Command for Select {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Spln, [Value::Number(self.program)]));
-        link.order(&order).await?;
+        link.ask(&order).await?;
         let found = read_back(link, &order, &Request::bare(table::Command::Rpld)).await?.number("program");
         if let Some(found) = found.filter(|found| *found != self.program) {
             return Err(
