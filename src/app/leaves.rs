@@ -75,6 +75,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx drivei --axis 3 --by 5", Motion),
     ("yrcx profibus scan", Read),
     ("yrcx profibus probe", Read),
+    ("yrcx profibus diag", Read),
     ("yrcx eip identity", Read),
     ("yrcx eip probe", Read),
     ("yrcx eip get 1 1", Read),
