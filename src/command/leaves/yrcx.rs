@@ -33,6 +33,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx profibus scan", Read),
     ("yrcx profibus scan -t 'profibus:///dev/ttyUSB0?station=5'", Read),
     ("yrcx profibus probe", Read),
+    ("yrcx profibus diag", Read),
     ("yrcx profibus probe -t 'profibus:///dev/ttyUSB0?station=5'", Read),
     ("yrcx eip identity", Read),
     ("yrcx eip identity -t 192.168.1.50", Read),
