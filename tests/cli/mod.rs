@@ -32,6 +32,7 @@ transcripts! {
     exit_codes
     explain
     files
+    finding
     fleet_backups
     fleets
     help

@@ -106,7 +106,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx motor off", Write),
     ("yrcx motor pwr", Motion),
     ("yrcx move --point 19", Motion),
-    ("yrcx move --to 300,150,10.5,0 --linear --speed 200mm/s", Motion),
+    ("yrcx move --point 19 --linear --speed 200mm/s", Motion),
     ("yrcx move --to 1=300,3=10.5 --speed 20 --dry-run", Motion),
     ("yrcx movei --point 19", Motion),
     ("yrcx movei --by 3=-2.5 --speed 20", Motion),
