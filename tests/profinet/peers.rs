@@ -262,7 +262,7 @@ fn our_controller() {
     };
     let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
     assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
-    let identity = commission::identity(interface.ip.unwrap().address, &found).unwrap();
+    let identity = commission::identity(&interface, &found).unwrap();
     assert_eq!(identity.im0.unwrap().order_id, "RCX340");
     assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
     commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();

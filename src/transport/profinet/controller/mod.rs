@@ -552,6 +552,11 @@ impl Controller {
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
     }
+
+    /// Its card.
+    pub fn card(&self) -> Option<Mac> {
+        self.device.as_ref().map(|device| device.mac)
+    }
 }
 
 /// What came of a call, where it is not the answer that was hoped for.
