@@ -8,7 +8,7 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::Simulated;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -49,13 +49,13 @@ impl Default for Options {
 }
 
 /// A simulator as the URL wants it.
-pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
+pub fn in_process(sim: &Sim, start: Start) -> Result<Server, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(str::parse).transpose();
     let faults = faults.map_err(|error| wrong(format!("fault: {error}")))?;
     let mischief = sim.mischief.as_deref().map(mischief).transpose();
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
-    serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
+    serve(start, Options { faults, mischief, ..Options::default() })
 }
 
 /// What a slave does wrong, by its name.
