@@ -53,7 +53,11 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
     for (typed, exit, parts) in [
         ("robots check", "0", &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller it is"][..]),
         (&trace, "0", &["host V1.08"]),
-        ("decode", "0", &["Connect answered: done", "ApplicationReady", "WI 0501 # versions", "Release answered: done"]),
+        (
+            "decode",
+            "0",
+            &["Connect answered: done", "ApplicationReady", "WI 0501 # versions", "Release answered: done"],
+        ),
         ("--yes yrcx info servo", "0", &["motor power"]),
         ("yrcx status", "3", &["open a session"]),
         ("--yes session open --background", "0", &["held by process"]),

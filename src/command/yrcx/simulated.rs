@@ -30,6 +30,15 @@ pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     })
 }
 
+/// What goes wrong, by its name.
+pub fn fault_by_name<T: Copy>(known: &[(&'static str, T)], text: &str) -> Result<T, String> {
+    let found = known.iter().find(|(name, _)| *name == text);
+    found.map(|(_, fault)| *fault).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        format!("there are {}", names.join(", "))
+    })
+}
+
 /// A simulated controller.
 #[derive(Debug)]
 pub struct Simulated(pub Simulator);

@@ -4,7 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::Simulated;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -70,11 +70,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What an adapter does wrong, by its name.
 pub fn mischief(text: &str) -> Result<AdapterFault, String> {
-    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&AdapterFault::ALL, text)
 }
 
 /// A simulated controller behind its adapter.

@@ -8,7 +8,7 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-use crate::command::yrcx::simulated::Simulated;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -60,11 +60,7 @@ pub fn in_process(sim: &Sim, start: Start) -> Result<Server, Failure> {
 
 /// What a slave does wrong, by its name.
 pub fn mischief(text: &str) -> Result<SlaveFault, String> {
-    let found = SlaveFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = SlaveFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&SlaveFault::ALL, text)
 }
 
 /// A slave that is served as long as this lives.

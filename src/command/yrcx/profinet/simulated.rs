@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::Simulated;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -79,11 +79,7 @@ pub fn controller(start: Start) -> Controller {
 
 /// What a device does wrong, by its name.
 pub fn fault(text: &str) -> Result<Fault, String> {
-    let found = Fault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = Fault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&Fault::ALL, text)
 }
 
 /// A simulated controller behind its device.
