@@ -82,7 +82,7 @@ pub trait Declaration: Family {
         Risk::Read
     }
     /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure>;
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
     /// Writes a backup back.
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
 }
@@ -214,11 +214,7 @@ impl<F: Declaration> Face for Declared<F> {
         F::backup_risk(robot)
     }
 
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: &'a Making,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
         async move { F::back_up(context.of()?, making).await }.boxed_local()
     }
 

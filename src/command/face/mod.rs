@@ -89,8 +89,7 @@ pub trait Face: Sync {
     /// What it takes to read all of a controller.
     fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
-    fn back_up<'a>(&self, context: AnyContext<'a>, making: &'a Making)
-    -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
     /// Writes a backup back.
     fn restore<'a>(
         &self,

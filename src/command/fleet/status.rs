@@ -73,10 +73,7 @@ impl Command for Overview {
     type Family = Fleet;
     type Report = OverviewReport;
     const ID: &'static str = "status";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Monitor
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
         let found = match context.link {

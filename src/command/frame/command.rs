@@ -58,10 +58,18 @@ pub trait Command {
     type Report: Report + 'static;
     /// `yerc.status`: its name in envelopes and schemas.
     const ID: &'static str;
-
     /// The most that it does.
+    const RISK: Risk = Risk::Read;
+    /// Completes "This will …" in the question before a motion.
+    const INTENT: &'static str = "";
+    /// How a yes is given to what moves, deletes or overwrites.
+    const CONFIRMATION: Confirmation = Confirmation::Question;
+    /// What it wants of the connection.
+    const CONNECT_MODE: ConnectMode = ConnectMode::Control;
+
+    /// [`RISK`](Self::RISK), where that depends on its arguments.
     fn risk(&self) -> Risk {
-        Risk::Read
+        Self::RISK
     }
 
     /// The most that it does to this robot, where that depends on it; not more than [`risk`](Self::risk).
@@ -69,14 +77,14 @@ pub trait Command {
         self.risk()
     }
 
-    /// Completes "This will …" in the question before a motion.
+    /// [`INTENT`](Self::INTENT), where that depends on its arguments.
     fn intent(&self) -> String {
-        String::new()
+        Self::INTENT.to_owned()
     }
 
-    /// How a yes is given to what moves, deletes or overwrites.
+    /// [`CONFIRMATION`](Self::CONFIRMATION), where that depends on its arguments.
     fn confirmation(&self) -> Confirmation {
-        Confirmation::Question
+        Self::CONFIRMATION
     }
 
     /// Whether it stops the robot, which is always allowed.
@@ -94,9 +102,9 @@ pub trait Command {
         false
     }
 
-    /// What it wants of the connection.
+    /// [`CONNECT_MODE`](Self::CONNECT_MODE), where that depends on its arguments.
     fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Control
+        Self::CONNECT_MODE
     }
 
     /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not

@@ -1,6 +1,6 @@
 //! What the rest of the house may ask of `toyo`.
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -66,7 +66,7 @@ impl Declaration for Toyo {
         if robot.read_only.value { Risk::Read } else { Risk::Write }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -74,7 +74,7 @@ impl Declaration for Toyo {
                 context.robot.label()
             ));
         }
-        Ok(Backup::of(making, current_task).run(context).await?.into())
+        back_up(context, making, current_task).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {

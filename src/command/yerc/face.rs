@@ -3,7 +3,7 @@
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
-use super::file::{Backup, Restore};
+use super::file::{Restore, back_up};
 use super::link::{Link, Yerc};
 use super::serve::Serve;
 use super::top::Poller;
@@ -58,8 +58,8 @@ impl Declaration for Yerc {
         Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into())
     }
 
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure> {
-        Ok(Backup::of(making).run(context).await?.into())
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {

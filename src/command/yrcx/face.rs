@@ -2,7 +2,7 @@
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -74,8 +74,8 @@ impl Declaration for Yrcx {
         Ok(HeldLink { held: Held::Images(images), finish })
     }
 
-    async fn back_up(context: Context<'_, Self>, making: &Making) -> Result<BackedUp, Failure> {
-        Backup::of(making).run(context).await
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {

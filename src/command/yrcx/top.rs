@@ -16,7 +16,7 @@ use crate::command::face::declared;
 use crate::command::face::overview::{OverviewReport, PositionMm};
 use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
 use crate::command::{Access, Family as _};
-use crate::controller::yrcx::answer::{Answer, Status};
+use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::{Side, Signal, output};
@@ -128,11 +128,8 @@ impl Poller {
             _ => draft.build()?,
         };
         // A refusal is no answer here: a robot that does not know its origin refuses to tell its position.
-        let values = match self.link.try_run(&order).await?.answer {
-            Answer::Done(values) | Answer::Running(values) => Some(values),
-            Answer::Refused { .. } => None,
-        };
-        let values = values.as_ref();
+        let done = self.link.try_ask(&order).await?.ok();
+        let values = done.as_ref().map(|done| &done.values);
         match command {
             Command::PositionMm => {
                 let position = values.and_then(|values| Position::of(values, Some(Unit::Mm)).position_mm);
