@@ -53,7 +53,7 @@ pub trait Fieldbus: fmt::Debug + Sync {
     fn decoder(&self) -> Box<dyn BusDecoder>;
 
     /// Starts a simulated controller on it, with what the URL of a simulator wants to go wrong.
-    fn simulate(&self, sim: &Sim, start: Start) -> Result<Simulation, Failure>;
+    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure>;
 }
 
 /// What a device says no with, in words.

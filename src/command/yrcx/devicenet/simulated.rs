@@ -4,7 +4,9 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, fault_by_name};
+use super::bus::DeviceNet;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -23,13 +25,14 @@ const COMPACT: &str = "devicenet-compact";
 pub(super) const MAC: u8 = 5;
 
 /// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
-pub fn on_loopback(sim: &Sim, start: Start) -> Result<Hub<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
     let fault = sim.mischief.as_deref().map(fault).transpose().map_err(|why| wrong(format!("mischief: {why}")))?;
     let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    serve(start, setup, &[listen], faults, fault).map_err(|error| Failure::io("the simulator on the loopback", &error))
+    serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault)
+        .map_err(|error| Failure::io("the simulator on the loopback", &error))
 }
 
 /// The URL of a simulated controller behind that adapter.
@@ -54,7 +57,8 @@ pub fn serve(
     fault: Option<DeviceFault>,
 ) -> io::Result<Hub<Controller>> {
     let bitrate = setup.bitrate;
-    let mut device = Device::on_line(setup, Controller(Simulated(Simulator::new(start))));
+    let mut device =
+        Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(DeviceNet.link_alarm()))));
     device.misbehave(fault);
     Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
 }

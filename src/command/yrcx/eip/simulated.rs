@@ -4,7 +4,9 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, fault_by_name};
+use super::bus::EtherNetIp;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -18,13 +20,13 @@ use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::image::ImagePeer;
 
 /// A simulator as an adapter on the loopback, with what the URL wants to go wrong.
-pub fn on_loopback(sim: &Sim, start: Start) -> Result<Server<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
     let mischief = sim.mischief.as_deref().map(mischief).transpose();
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
-    let server = serve(start, listen, faults);
+    let server = serve(start(sim.state.as_deref())?, listen, faults);
     let server = server.map_err(|error| Failure::io("the simulator on the loopback", &error))?;
     server.with(|adapter, _| adapter.misbehave(mischief));
     Ok(server)
@@ -42,7 +44,12 @@ const CONFIGURATION: u32 = 1;
 pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
-    Server::start(setup, Controller(Simulated(Simulator::new(start))), listen, faults.map(Faults::pair))
+    Server::start(
+        setup,
+        Controller(Simulated(Simulator::new(start).with_link_alarm(EtherNetIp.link_alarm()))),
+        listen,
+        faults.map(Faults::pair),
+    )
 }
 
 /// The state of a device that works (volume 2, 2-4.2.2).

@@ -8,7 +8,9 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-use crate::command::yrcx::simulated::{Simulated, fault_by_name};
+use super::bus::ProfibusDp;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -49,13 +51,13 @@ impl Default for Options {
 }
 
 /// A simulator as the URL wants it.
-pub fn in_process(sim: &Sim, start: Start) -> Result<Server, Failure> {
+pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(str::parse).transpose();
     let faults = faults.map_err(|error| wrong(format!("fault: {error}")))?;
     let mischief = sim.mischief.as_deref().map(mischief).transpose();
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
-    serve(start, Options { faults, mischief, ..Options::default() })
+    serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
 }
 
 /// What a slave does wrong, by its name.
@@ -86,7 +88,7 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
         parameters: vec![Vec::new(), vec![0; 3]],
         rate: options.rate,
     };
-    let mut slave = Slave::new(setup, Simulated(Simulator::new(start)));
+    let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(ProfibusDp.link_alarm())));
     slave.misbehave(options.mischief);
     let slave = Shared(Arc::new(Mutex::new(slave)));
     let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;

@@ -9,7 +9,6 @@ use super::{check, connect, decode, simulated};
 use crate::command::yrcx::decode::images::BusDecoder;
 use crate::command::yrcx::fieldbus::{self, At, Explained, Fieldbus, Purpose, Simulation, bus_of};
 use crate::controller::yrcx::alarm::Alarm;
-use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::settings::target::profinet::SCHEME;
@@ -60,8 +59,8 @@ impl Fieldbus for ProfinetIo {
         Box::new(decode::Decoder::default())
     }
 
-    fn simulate(&self, sim: &Sim, start: Start) -> Result<Simulation, Failure> {
-        let network = simulated::in_process(sim, start)?;
+    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
+        let network = simulated::in_process(sim)?;
         let bus = bus_of(&simulated::target(&network.interface().name))?;
         Ok(Simulation { bus, controller: Box::new(network) })
     }

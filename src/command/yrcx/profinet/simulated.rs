@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, fault_by_name};
+use super::bus::ProfinetIo;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -20,7 +22,7 @@ pub(super) const NAME: &str = "yrcx-sim";
 const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// A network in this process with a simulator on it, with what the URL wants to go wrong.
-pub fn in_process(sim: &Sim, start: Start) -> Result<Network, Failure> {
+pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     let hint = "`armctl help simulator` lists faults";
     if sim.fault.is_some() {
         return Err(Failure::usage(
@@ -30,7 +32,7 @@ pub fn in_process(sim: &Sim, start: Start) -> Result<Network, Failure> {
     }
     let fault = sim.mischief.as_deref().map(fault).transpose();
     let fault = fault.map_err(|why| Failure::usage(format!("mischief: {why}")).hint(hint))?;
-    let controller = controller(start);
+    let controller = controller(start(sim.state.as_deref())?);
     Ok(Network::new(|mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
         let mut device = Device::new(setup, controller);
@@ -74,7 +76,7 @@ pub fn setup(name: &str, layout: Layout) -> Setup {
 
 /// A device with a controller behind it.
 pub fn controller(start: Start) -> Controller {
-    Controller(Simulated(Simulator::new(start)))
+    Controller(Simulated(Simulator::new(start).with_link_alarm(ProfinetIo.link_alarm())))
 }
 
 /// What a device does wrong, by its name.

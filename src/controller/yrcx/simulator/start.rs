@@ -22,7 +22,6 @@ use super::world::{Link, Mode, Switches, World};
 use crate::Now;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
 use crate::simulator::timeline::Timeline;
-use crate::yrcx::alarm::Alarm;
 use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
@@ -142,13 +141,6 @@ impl Start {
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
-    }
-
-    /// On a fieldbus whose lost link is this alarm.
-    #[must_use]
-    pub fn on_bus(mut self, link_lost: Alarm) -> Self {
-        self.world.link_lost = link_lost;
-        self
     }
 }
 
@@ -454,8 +446,8 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
             keep: entries.movei_start == MoveiStart::Keep,
         },
         link: Link::Waiting,
+        link_alarm: LINK,
         link_within: entries.link_within_ms.map(Duration::from_millis),
-        link_lost: LINK,
         inputs: resting(),
         motor: entries.servo,
         robots: Vec::new(),

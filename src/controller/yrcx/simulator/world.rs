@@ -6,8 +6,9 @@ use std::time::Duration;
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
-use super::alarms::{AlarmLog, EMERGENCY_STOP, Fault, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT};
-use super::alarms::{AlarmSource, NOT_AUTO};
+use super::alarms::{
+    AlarmLog, AlarmSource, EMERGENCY_STOP, Fault, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT, NOT_AUTO,
+};
 use super::console;
 use super::memory::Memory;
 use super::motion::{End, Motion, Owner};
@@ -82,10 +83,10 @@ pub(super) struct World {
     pub(super) now: Now,
     pub(super) switches: Switches,
     pub(super) link: Link,
+    /// The alarm of a lost link, which each fieldbus has its own of.
+    pub(super) link_alarm: Alarm,
     /// After this time without a master the link is missed.
     pub(super) link_within: Option<Duration>,
-    /// The alarm of a lost link: that of its fieldbus; the next number says that none came in time.
-    pub(super) link_lost: Alarm,
     /// What the master shows.
     pub(super) inputs: Image,
     pub(super) motor: bool,
@@ -142,9 +143,7 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            let Alarm { group, category } = self.link_lost;
-            let alarm = Alarm::new(group, category.saturating_add(1));
-            self.raise(&Fault::new(alarm, AlarmSource::Slot, "no master came in time"), false);
+            self.raise(&Fault::new(self.link_alarm.too_long(), AlarmSource::Slot, "no master came in time"), false);
         }
         while let Some(line) = self.events.take(now) {
             // Lines were tried when the start state was read; one that is refused by now has no effect.
@@ -245,8 +244,13 @@ impl World {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(self.link_lost, AlarmSource::Slot, "the master is gone"), false);
+            self.raise(&self.link_fault(), false);
         }
+    }
+
+    /// What the loss of the link is to what runs.
+    pub(super) fn link_fault(&self) -> Fault {
+        Fault::new(self.link_alarm, AlarmSource::Slot, "the master is gone")
     }
 
     /// Whether motor power may go on.
