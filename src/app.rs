@@ -38,6 +38,10 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let args = with_family(args);
+    if let Some(version) = parser::version(&args) {
+        let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
+        return exit(screen.data(&version).map_err(|failure| tell(&screen, failure.into())));
+    }
     let mut parser = Parser::default();
     let parsed = parser.parse(&args);
     parser.abandon();

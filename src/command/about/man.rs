@@ -44,8 +44,8 @@ pub fn pages(mut root: Command) -> Result<Vec<(String, Vec<u8>)>, Failure> {
 }
 
 fn page(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) -> Result<(), Failure> {
-    // Pages are named with hyphens; the date is left out so that the committed pages depend on the text alone.
-    let titled = command.clone().name(name.to_owned());
+    // Pages are named with hyphens; date and build are left out so that the committed pages depend on the text alone.
+    let titled = command.clone().name(name.to_owned()).long_version(None::<&'static str>);
     let mut text = Vec::new();
     clap_mangen::Man::new(titled)
         .date("")
