@@ -14,6 +14,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::ValueEnum as _;
 use clap::error::ErrorKind;
 
@@ -86,10 +87,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
 /// Runs it on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
     has_room()?;
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .map_err(|error| Failure::io("start", &error))?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().context("start")?;
     let done = runtime.block_on(done);
     // A thread that waits for stdin or a name server must not hold up the end.
     runtime.shutdown_background();

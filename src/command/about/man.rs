@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::{Args, Command};
 
 use crate::command::frame::run::Run;
@@ -32,7 +33,7 @@ impl Man {
 }
 
 fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, page).map_err(|error| Failure::io(path.display(), &error))
+    Ok(std::fs::write(path, page).with_context(|| path.display().to_string())?)
 }
 
 /// File name and text of every man page: `armctl.1`, `armctl-yerc-status.1`, …
@@ -47,10 +48,7 @@ fn page(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) -> Re
     // Pages are named with hyphens; date and build are left out so that the committed pages depend on the text alone.
     let titled = command.clone().name(name.to_owned()).long_version(None::<&'static str>);
     let mut text = Vec::new();
-    clap_mangen::Man::new(titled)
-        .date("")
-        .render(&mut text)
-        .map_err(|error| Failure::io(format!("man page {name}"), &error))?;
+    clap_mangen::Man::new(titled).date("").render(&mut text).with_context(|| format!("man page {name}"))?;
     pages.push((format!("{name}.1"), text));
     for sub in command.get_subcommands().filter(|sub| !sub.is_hide_set()) {
         page(sub, &format!("{name}-{}", sub.get_name()), pages)?;

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::time::Duration;
 
+use anyhow::Context as _;
+
 use crate::controller::toyo::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::files;
@@ -26,7 +28,7 @@ pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpe
 }
 
 fn load(path: &Path) -> Result<Start, Failure> {
-    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")

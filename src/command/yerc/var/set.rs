@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -258,7 +259,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
 const MOST: u64 = 1 << 20;
 
 fn read(path: &Path) -> Result<String, Failure> {
-    files::text(path, MOST).map_err(|error| Failure::io(path.display(), &error))
+    Ok(files::text(path, MOST).with_context(|| path.display().to_string())?)
 }
 
 /// A request of `var set`.
