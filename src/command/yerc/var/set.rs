@@ -14,8 +14,8 @@ use super::super::writes::{Order, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
-use crate::command::ValueKind;
 use crate::command::frame::dry_run::unknown;
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -41,7 +41,7 @@ use crate::output::view::{Cell, Table, View};
 )]
 pub struct Set {
     /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
-    #[arg(required = true, value_name = "REF=VALUE", add = ValueKind::YercVariable)]
+    #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE)]
     assignments: Vec<Assignment>,
     /// Write strings by the 16-byte commands, also on a DX200
     #[arg(long)]
