@@ -1,6 +1,7 @@
 //! Target URLs: where a robot is, and over which transport.
 
 mod address;
+mod bare;
 pub mod bus;
 pub mod devicenet;
 pub mod eip;
@@ -20,6 +21,7 @@ use crate::failure::Failure;
 use self::url::{Query, authority, baud, choice, host_and_port, percent_decoded, port};
 
 pub use address::Address;
+pub use bare::Given;
 pub use bus::{BUSES, Bus};
 
 /// A controller family, named like its subcommand.

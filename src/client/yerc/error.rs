@@ -67,7 +67,7 @@ pub enum Error {
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session that holds the line has ended, or somebody else has the line.
-    #[error("{}", crate::session_busy(.0))]
+    #[error("{0}")]
     Session(SessionBusy),
     /// A name that is that of no host.
     #[error("cannot find host '{host}'")]

@@ -122,7 +122,7 @@ pub enum Error {
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session that holds the link has ended, or somebody else has the link.
-    #[error("{}", crate::session_busy(.0))]
+    #[error("{0}")]
     Session(SessionBusy),
     /// A dry run sends nothing, and so has no answer.
     #[error("a dry run has no answer")]

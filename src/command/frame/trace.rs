@@ -3,6 +3,7 @@
 use std::io;
 use std::net::SocketAddr;
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use anyhow::Context as _;
@@ -121,6 +122,12 @@ impl Trace {
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.broken.take().map_or(Ok(()), Err)
     }
+}
+
+/// What a link shares with the watcher of its client, such as the record. A thread that panicked with it has left it whole:
+/// it is written frame by frame.
+pub fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Sender and receiver.

@@ -1,7 +1,7 @@
 //! The connection to a controller as commands use it: the client, with its errors in words, and its traffic on record.
 
 use std::ops::{Deref, DerefMut};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::connect;
@@ -12,6 +12,7 @@ use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
 use crate::client::yerc::{Cause, Client, Event, TransferError};
 use crate::command::frame::dry_run::Plan;
+use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::query::Query;
@@ -207,9 +208,4 @@ impl Watcher<Event> for Onlooker {
             self.screen.detail(1, &format!("{}: {counters}", self.label));
         }
     }
-}
-
-/// The record. A thread that panicked with it has left it whole: it is written frame by frame.
-fn locked(trace: &Mutex<Trace>) -> MutexGuard<'_, Trace> {
-    trace.lock().unwrap_or_else(PoisonError::into_inner)
 }

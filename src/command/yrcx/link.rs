@@ -10,17 +10,19 @@ use std::time::Duration;
 
 use futures_util::FutureExt as _;
 
-use self::onlooker::{Onlooker, locked};
+use self::onlooker::Onlooker;
 use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
 pub use super::overwrite::Done;
 use super::trace::{Recorder, Trace};
+use super::unit::Unit;
 use crate::client::yrcx;
 pub use crate::client::yrcx::hex;
 use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
 use crate::command::frame::attach::{attach, is_held};
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::interrupt::abandoned;
+use crate::command::frame::trace::locked;
 use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
 use crate::controller::yrcx::alarm::Alarm;
@@ -226,7 +228,7 @@ impl Link {
             label,
             link_alarm,
             is_simulated,
-            unit: access.unit,
+            unit: access.own.get().map_or(0, Unit::number),
             told: None,
         })
     }

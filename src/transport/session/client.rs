@@ -57,13 +57,16 @@ pub enum Found {
 }
 
 /// Why something cannot be done now.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SessionBusy {
     /// The session has ended, and why.
+    #[error("{0}")]
     Ended(String),
     /// Somebody else has the line, and has not given it back in time.
+    #[error("the line is in use by another client")]
     Busy(Option<Peer>),
     /// Somebody else moves the robot.
+    #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
 }
 

@@ -5,8 +5,8 @@ use std::any::Any;
 use serde_json::Value as Json;
 
 use super::Link;
-use super::onlooker::locked;
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::trace::locked;
 use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;

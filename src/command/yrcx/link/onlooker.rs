@@ -1,9 +1,10 @@
 //! Who looks on while the client works: keeps the record of the traffic, and tells what people shall know.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use crate::client::Watcher;
 use crate::client::yrcx::Event;
+use crate::command::frame::trace::locked;
 use crate::command::yrcx::failure::failure;
 use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::trace::Trace;
@@ -62,9 +63,4 @@ impl Watcher<Event> for Onlooker {
             _ => {}
         }
     }
-}
-
-/// The record. A thread that panicked with it has left it whole: it is written image by image.
-pub(super) fn locked(trace: &Mutex<Trace>) -> MutexGuard<'_, Trace> {
-    trace.lock().unwrap_or_else(PoisonError::into_inner)
 }
