@@ -226,7 +226,7 @@ fn a_link_with_the_name_of_a_family_is_its_subcommand() {
         assert_eq!(stdout(&run(&["--sim", "status"])), stdout(&whole), "{family}");
         assert!(stdout(&run(&["-h"])).contains(&format!("Usage: armctl {family} [OPTIONS] ")), "{family}");
         let version = format!("armctl {}\n", env!("CARGO_PKG_VERSION"));
-        assert_eq!(stdout(&run(&["--version"])), version);
+        assert_eq!(stdout(&run(&["-V"])), version);
         assert_eq!(run(&["bogus"]).status.code(), Some(2), "{family}");
     }
 }

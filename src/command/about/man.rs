@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::{Args, Command};
 
 use super::page;
@@ -35,7 +36,7 @@ impl Man {
 }
 
 fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, page).map_err(|error| Failure::io(path.display(), &error))
+    Ok(std::fs::write(path, page).with_context(|| path.display().to_string())?)
 }
 
 /// File name and text of every man page: `armctl.1`, `armctl-yerc-status.1`, …

@@ -7,6 +7,7 @@ mod cells;
 mod check;
 mod chosen;
 pub mod commands;
+mod complete;
 mod connect;
 mod coordinate;
 mod copies;

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use anyhow::Context as _;
+
 pub use crate::client::toyo::Simulated;
 use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
@@ -25,7 +27,7 @@ pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpe
 }
 
 fn load(path: &Path) -> Result<Start, Failure> {
-    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")

@@ -20,6 +20,7 @@ pub mod buses;
 mod check;
 mod clock;
 pub mod commands;
+mod complete;
 mod connect;
 #[cfg(test)]
 mod coverage;

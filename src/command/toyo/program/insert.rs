@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::and_mode;
 use super::get::Step;
 use super::steps;
-use crate::command::ValueKind;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::toyo::cells::{Cells, THERE};
+use crate::command::toyo::complete;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
@@ -34,7 +34,7 @@ pub struct Insert {
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
     /// Its instruction, such as OUT STN=0 PN1=.......1; quote < and >
-    #[arg(num_args = 0.., default_value = "NOP", add = ValueKind::ToyoInstruction)]
+    #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]

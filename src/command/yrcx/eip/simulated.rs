@@ -4,6 +4,8 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
+use anyhow::Context as _;
+
 use super::bus::EtherNetIp;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
@@ -27,7 +29,7 @@ pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim.state.as_deref())?, listen, faults);
-    let server = server.map_err(|error| Failure::io("the simulator on the loopback", &error))?;
+    let server = server.context("the simulator on the loopback")?;
     server.with(|adapter, _| adapter.misbehave(mischief));
     Ok(server)
 }
