@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
 use armctl_transport::image::{Event as LinkEvent, ImageLink, LinkError};
+use armctl_transport::profinet::card::Card;
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::controller::view::State;
 use armctl_transport::profinet::device::server::Server;
@@ -252,25 +253,30 @@ fn our_controller() {
     }
     let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
     assert!(present.contains(&"pc0".to_owned()), "{present:?}");
-    let interface = Interface::find("pc0").unwrap();
+    let mut card = Card::open("pc0", Tap::default()).unwrap();
+    let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
     let found = loop {
-        match commission::by_name(&interface, "yrcx-sim") {
+        match commission::find(&mut card, &station) {
             Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
             found => break found.unwrap(),
         }
     };
-    let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
+    let all = commission::stations(&mut card, Duration::from_secs(2)).unwrap();
     assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
-    let identity = commission::identity(interface.ip.unwrap().address, &found).unwrap();
+    let identity = commission::identity(&mut card, &found).unwrap();
     assert_eq!(identity.im0.unwrap().order_id, "RCX340");
     assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
-    commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();
-    let bad = commission::change(&interface, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
+    commission::change(&mut card, found.mac, "DCP signal", &Block::signal()).unwrap();
+    let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
+    let bad = commission::change(&mut card, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
     assert!(matches!(bad, ProfinetError::Dcp { error: 3, .. }), "{bad}");
-    let nobody =
-        commission::change(&interface, Mac([2, 0, 0, 0, 0, 0x77]), "DCP signal", &Block::signal()).unwrap_err();
-    assert!(matches!(nobody, ProfinetError::NoAnswer { .. }), "{nobody}");
+    let silent = commission::change(&mut card, nobody, "DCP signal", &Block::signal()).unwrap_err();
+    assert!(matches!(silent, ProfinetError::NoAnswer { .. }), "{silent}");
+    // The systems at both ends answer ARP, not our device.
+    let mut holder = |last| commission::holder(&mut card, [192, 168, 79, last].into(), nobody).unwrap();
+    assert_eq!((holder(2), holder(7)), (Some(found.mac), None));
+    assert!(holder(1).is_some_and(|mac| mac != found.mac));
 
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {

@@ -3,7 +3,7 @@
 use super::motion::Moving;
 use super::{
     alarm, backup, clock, data, devicenet, eip, info, io, motion, param, point_calc, port, procedures, profibus,
-    program, raw, select, servo, speed, status, status_reset, teach, torque_limit, var,
+    profinet, program, raw, select, servo, speed, status, status_reset, teach, torque_limit, var,
 };
 use crate::command::{Subcommands, commands};
 
@@ -108,5 +108,7 @@ commands! {
         Devicenet(Subcommands<devicenet::DeviceNet>),
         /// The line and the stations of PROFIBUS, without owning any
         Profibus(Subcommands<profibus::Profibus>),
+        /// The stations of PROFINET: who is there, names, addresses, modules
+        Profinet(Subcommands<profinet::Profinet>),
     }
 }

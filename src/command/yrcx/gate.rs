@@ -169,7 +169,7 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
 }
 
 /// Commands that need no robot, or have their own way to one.
-const AT_DESK: [&str; 1] = ["yrcx.io.map"];
+const AT_DESK: [&str; 2] = ["yrcx.io.map", "yrcx.profinet.gsdml"];
 
 /// A controller that nothing is sent to, and the command of a line.
 fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {

@@ -48,6 +48,7 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
+mod profinet;
 mod program;
 mod raw;
 mod refusal;

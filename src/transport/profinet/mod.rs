@@ -5,6 +5,7 @@
 use std::time::Duration;
 
 #[cfg(target_os = "linux")]
+pub mod card;
 pub mod commission;
 pub mod controller;
 pub mod device;
@@ -15,6 +16,7 @@ pub mod interface;
 pub mod layout;
 #[cfg(target_os = "linux")]
 pub mod link;
+pub mod medium;
 #[cfg(target_os = "linux")]
 pub mod network;
 pub mod settings;

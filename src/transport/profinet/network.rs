@@ -24,6 +24,7 @@ use super::error::ProfinetError;
 use super::interface::Interface;
 use super::settings::Settings;
 use super::wire::alarm::Notification;
+use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
 use crate::image::tap::{Passed, Tap};
 
@@ -86,7 +87,7 @@ impl Network {
     }
 
     fn start(interface: &Interface) -> Result<Self, ProfinetError> {
-        let raw = interface.raw_socket()?;
+        let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
         let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);

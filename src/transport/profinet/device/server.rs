@@ -16,6 +16,7 @@ use super::super::Now;
 use super::super::controller::Action;
 use super::super::error::ProfinetError;
 use super::super::interface::Interface;
+use super::super::wire::frame::ETHER_TYPE;
 use super::super::wire::rpc;
 use super::{Application, Device, Setup};
 
@@ -53,7 +54,7 @@ impl<A: Application + Send + 'static> Server<A> {
     /// # Errors
     /// When the interface cannot be used, or its sockets cannot be had.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
-        let raw = interface.raw_socket()?;
+        let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
         let failed = |error: &std::io::Error| ProfinetError::local("UDP socket for calls", error);

@@ -1,5 +1,6 @@
 //! The controller against the device, in virtual time.
 
+mod commission;
 mod faults;
 mod opening;
 mod tshark;

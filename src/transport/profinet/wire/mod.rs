@@ -10,6 +10,7 @@ use std::str::FromStr;
 use thiserror::Error;
 
 pub mod alarm;
+pub mod arp;
 pub mod block;
 pub mod connect;
 pub mod cyclic;
