@@ -32,7 +32,7 @@ impl OfflineCommand for ReadFile {
 
     fn run(&self, _screen: &Screen) -> Result<Described, Failure> {
         let shown = self.file.display();
-        let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(shown, &error))?;
+        let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {
             Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device's maker")
         })?;
