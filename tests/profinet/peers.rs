@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
 use armctl_transport::image::{Event as LinkEvent, ImageLink, LinkError};
-use armctl_transport::profinet::card::Card;
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::controller::view::State;
 use armctl_transport::profinet::device::server::Server;
@@ -253,30 +252,30 @@ fn our_controller() {
     }
     let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
     assert!(present.contains(&"pc0".to_owned()), "{present:?}");
-    let mut card = Card::open("pc0", Tap::default()).unwrap();
+    let interface = Interface::find("pc0").unwrap();
     let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
     let found = loop {
-        match commission::find(&mut card, &station) {
+        match commission::find(&interface, &station) {
             Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
             found => break found.unwrap(),
         }
     };
-    let all = commission::stations(&mut card, Duration::from_secs(2)).unwrap();
+    let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
     assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
-    let identity = commission::identity(&mut card, &found).unwrap();
+    let identity = commission::identity(&interface, &found).unwrap();
     assert_eq!(identity.im0.unwrap().order_id, "RCX340");
     assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
-    commission::change(&mut card, found.mac, "DCP signal", &Block::signal()).unwrap();
-    let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
-    let bad = commission::change(&mut card, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
+    commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();
+    let bad = commission::change(&interface, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
     assert!(matches!(bad, ProfinetError::Dcp { error: 3, .. }), "{bad}");
-    let silent = commission::change(&mut card, nobody, "DCP signal", &Block::signal()).unwrap_err();
+    let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
+    let silent = commission::change(&interface, nobody, "DCP signal", &Block::signal()).unwrap_err();
     assert!(matches!(silent, ProfinetError::NoAnswer { .. }), "{silent}");
     // The systems at both ends answer ARP, not our device.
-    let mut holder = |last| commission::holder(&mut card, [192, 168, 79, last].into(), nobody).unwrap();
-    assert_eq!((holder(2), holder(7)), (Some(found.mac), None));
-    assert!(holder(1).is_some_and(|mac| mac != found.mac));
+    let holder = |last, except| commission::holder(&interface, [192, 168, 79, last].into(), except).unwrap();
+    assert_eq!((holder(2, nobody), holder(2, found.mac), holder(7, nobody)), (Some(found.mac), None, None));
+    assert_eq!(holder(1, nobody), Some(interface.mac));
 
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {

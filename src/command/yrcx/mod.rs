@@ -48,7 +48,8 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
-mod profinet;
+#[cfg(target_os = "linux")]
+pub mod profinet;
 mod program;
 mod raw;
 mod refusal;

@@ -1,19 +1,22 @@
 //! What can be asked of stations, and set at them, without a connection: who is there, names, addresses, records.
+//!
+//! Each call blocks for as long as it says.
 
-use std::net::Ipv4Addr;
+use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use super::Now;
 use super::controller::client::{Client, Outcome, Step};
+use super::controller::refused;
 use super::error::ProfinetError;
-use super::medium::{Arrived, Medium};
-use super::settings::Station;
+use super::interface::Interface;
+use super::port::{Calls, Frames};
+use super::settings;
 use super::wire::block::BlockType;
-use super::wire::dcp::{self, Block, Dcp, Kind, Service, Station as Said};
+use super::wire::dcp::{Block, Dcp, Kind, Service, Station};
 use super::wire::frame::{Frame, id};
 use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
-use super::wire::status::Status;
 use super::wire::{Mac, Uuid, arp};
 
 /// Over how many steps of 10 ms stations spread their answers when all are asked.
@@ -39,19 +42,20 @@ pub struct Found {
     /// Its card.
     pub mac: Mac,
     /// What it says.
-    pub station: Said,
+    pub station: Station,
 }
 
 /// All stations of a network, by name and card.
 ///
 /// # Errors
 /// When the interface cannot be used.
-pub fn stations(medium: &mut dyn Medium, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
-    let until = medium.now() + wait;
+pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
+    let frames = Frames::open(interface)?;
+    let question = Dcp::identify_all(fastrand::u32(1..), SPREAD);
+    frames.send(&identify(interface.mac, &question))?;
+    let until = frames.now() + wait;
     let mut found: Vec<Found> = Vec::new();
-    let request = Dcp::identify_all(fastrand::u32(1..), SPREAD);
-    identify(medium, &request)?;
-    while let Some(other) = identified(medium, until, &request)? {
+    while let Some(other) = identified(interface, &frames, until, &question)? {
         if found.len() < MOST && found.iter().all(|found| found.mac != other.mac) {
             found.push(other);
         }
@@ -60,25 +64,26 @@ pub fn stations(medium: &mut dyn Medium, wait: Duration) -> Result<Vec<Found>, P
     Ok(found)
 }
 
-/// The station of a name or a card.
+/// A station, by its name or its card.
 ///
 /// # Errors
-/// When the interface cannot be used, nobody is it, or two are.
-pub fn find(medium: &mut dyn Medium, wanted: &Station) -> Result<Found, ProfinetError> {
+/// When the interface cannot be used, it does not answer, or two have its name.
+pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
+    let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
-        let request = looking_for(wanted);
-        let mut until = medium.now() + PATIENCE;
+        let question = looking_for(wanted, fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let mut until = frames.now() + PATIENCE;
         let mut first: Option<Found> = None;
-        identify(medium, &request)?;
-        while let Some(found) = identified(medium, until, &request)? {
+        while let Some(found) = identified(interface, &frames, until, &question)? {
             let is_it = match wanted {
-                Station::Name(name) => found.station.name == *name,
-                Station::Mac(mac) => found.mac == *mac,
+                settings::Station::Name(name) => found.station.name == *name,
+                settings::Station::Mac(mac) => found.mac == *mac,
             };
             match &first {
                 _ if !is_it => {}
                 None => {
-                    until = until.min(medium.now() + TWIN);
+                    until = until.min(frames.now() + TWIN);
                     first = Some(found);
                 }
                 Some(first) if first.mac != found.mac => {
@@ -95,24 +100,23 @@ pub fn find(medium: &mut dyn Medium, wanted: &Station) -> Result<Found, Profinet
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
-/// The question for a station. That of a card is a question to all, as not every station has Get.
-pub fn looking_for(wanted: &Station) -> Dcp {
-    let xid = fastrand::u32(1..);
+/// The question for a station. For one with a card all are asked, as not every station has Get.
+pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {
-        Station::Name(name) => Dcp::identify(xid, name),
-        Station::Mac(_) => Dcp::identify_all(xid, 1),
+        settings::Station::Name(name) => Dcp::identify(xid, name),
+        settings::Station::Mac(_) => Dcp::identify_all(xid, 1),
     }
 }
 
 /// The frame of a question for stations.
-pub fn identify_frame(source: Mac, request: &Dcp) -> Vec<u8> {
-    let payload = request.emit();
+pub fn identify(source: Mac, question: &Dcp) -> Vec<u8> {
+    let payload = question.emit();
     Frame { destination: Mac::DCP_IDENTIFY, source, tag: None, id: id::DCP_IDENTIFY, payload: &payload }.emit()
 }
 
 /// The frame that sets something at a station.
-pub fn change_frame(source: Mac, destination: Mac, request: &Dcp) -> Vec<u8> {
-    let payload = request.emit();
+pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
+    let payload = Dcp::change(xid, vec![block.clone()]).emit();
     Frame { destination, source, tag: None, id: id::DCP_GET_SET, payload: &payload }.emit()
 }
 
@@ -121,14 +125,13 @@ pub fn change_frame(source: Mac, destination: Mac, request: &Dcp) -> Vec<u8> {
 ///
 /// # Errors
 /// When the interface cannot be used, the station does not answer, or refuses.
-pub fn change(medium: &mut dyn Medium, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
-    let here = medium.here().0;
-    let request = Dcp::change(fastrand::u32(1..), vec![block.clone()]);
+pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
+    let frames = Frames::open(interface)?;
+    let request = set(interface.mac, mac, fastrand::u32(1..), block);
     for _ in 0..TRIES {
-        medium.send(&change_frame(here, mac, &request))?;
-        let until = medium.now() + PATIENCE;
-        let answer = hear(medium, until, |frame| {
-            let is_its = frame.source == mac && frame.destination == here && frame.id == id::DCP_GET_SET;
+        frames.send(&request)?;
+        let answer = frames.hear(frames.now() + PATIENCE, |frame| {
+            let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
             // Some stations do not copy the Xid.
             let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| is_its && dcp.service == Service::Set)?;
             match dcp.kind {
@@ -153,17 +156,18 @@ pub fn change(medium: &mut dyn Medium, mac: Mac, what: &'static str, block: &Blo
 /// # Errors
 /// When it does not within some seconds, or the interface cannot be used.
 pub fn settled(
-    medium: &mut dyn Medium,
+    interface: &Interface,
     mac: Mac,
     what: &'static str,
-    is_so: impl Fn(&dcp::Station) -> bool,
+    is_so: impl Fn(&Station) -> bool,
 ) -> Result<Found, ProfinetError> {
-    let end = medium.now() + SETTLE;
-    while medium.now() < end {
-        let request = looking_for(&Station::Mac(mac));
-        let until = medium.now() + LOOK;
-        identify(medium, &request)?;
-        while let Some(found) = identified(medium, until, &request)? {
+    let frames = Frames::open(interface)?;
+    let end = frames.now() + SETTLE;
+    while frames.now() < end {
+        let question = looking_for(&settings::Station::Mac(mac), fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let until = frames.now() + LOOK;
+        while let Some(found) = identified(interface, &frames, until, &question)? {
             if found.mac == mac && is_so(&found.station) {
                 return Ok(found);
             }
@@ -172,27 +176,41 @@ pub fn settled(
     Err(ProfinetError::NoAnswer { what, after: SETTLE })
 }
 
-/// Which other card than this has an address, if one answers.
+/// The card that has an address, if one answers ARP other than this.
 ///
 /// # Errors
 /// When the interface cannot be used.
-pub fn holder(medium: &mut dyn Medium, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
-    let (here, own) = medium.here();
+pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
     // The system does not answer its own question.
-    if own.is_some_and(|own| own.address == address) {
-        return Ok(Some(here));
+    if interface.ip.is_some_and(|own| own.address == address) {
+        return Ok(Some(interface.mac));
     }
+    let frames = Frames::of_arp(interface)?;
     for _ in 0..TRIES {
-        medium.send(&arp::probe(here, address))?;
-        let until = medium.now() + ARP;
-        while let Some(arrived) = medium.next(until)? {
-            let Arrived::Frame(bytes) = arrived else { continue };
+        frames.send(&arp::probe(interface.mac, address))?;
+        let until = frames.now() + ARP;
+        while let Some(bytes) = frames.next(until)? {
             if let Some((mac, _)) = arp::holder(&bytes).filter(|(mac, held)| *held == address && *mac != except) {
                 return Ok(Some(mac));
             }
         }
     }
     Ok(None)
+}
+
+/// The next station that answers a question.
+fn identified(
+    interface: &Interface,
+    frames: &Frames,
+    until: Now,
+    question: &Dcp,
+) -> Result<Option<Found>, ProfinetError> {
+    frames.hear(until, |frame| {
+        let dcp = Dcp::parse(frame.payload).ok()?;
+        let is_answer = dcp.service == Service::Identify && dcp.kind == Kind::Response && dcp.xid == question.xid;
+        let is_one = is_answer && frame.destination == interface.mac && !frame.source.is_group();
+        dcp.station().ok().filter(|_| is_one).map(|station| Found { mac: frame.source, station })
+    })
 }
 
 /// What a device says of itself in its records, each as far as it has it.
@@ -207,14 +225,15 @@ pub struct Identity {
 /// Asks a device for its records without a connection: who it is, and which modules it has.
 ///
 /// # Errors
-/// When it has no address. That a record is refused or not answered stands in its place.
-pub fn identity(medium: &mut dyn Medium, found: &Found) -> Result<Identity, ProfinetError> {
+/// When no socket can be had. That a record is refused or not answered stands in its place.
+pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;
+    let calls = Calls::open(interface, found.mac, SocketAddrV4::new(address, rpc::PORT))?;
     let (vendor, device) = found.station.id.unwrap_or_default();
     let object = rpc::object(found.station.instance.unwrap_or(1), device, vendor);
     let mut client = Client::new(object, Uuid::random());
-    let mut ask = |what, index| read(medium, address, &mut client, what, index);
+    let mut ask = |what, index| read(&calls, &mut client, what, index);
     let malformed = |what| move |error| ProfinetError::Malformed { what, error };
     let (im0, real) = ("Read of I&M0", "Read of the modules");
     Ok(Identity {
@@ -224,83 +243,29 @@ pub fn identity(medium: &mut dyn Medium, found: &Found) -> Result<Identity, Prof
     })
 }
 
-fn read(
-    medium: &mut dyn Medium,
-    target: Ipv4Addr,
-    client: &mut Client,
-    what: &'static str,
-    index: u16,
-) -> Result<Vec<u8>, ProfinetError> {
+fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> Result<Vec<u8>, ProfinetError> {
     let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: ROOM };
     let blocks = asked.emit(BlockType::READ, 0, &[]);
-    match exchange(medium, target, client, &blocks)? {
-        Outcome::Answer(0, blocks) => {
-            let (_, record) =
-                Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
-            Ok(record.to_vec())
-        }
-        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
-        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
-        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
-        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
-    }
+    let blocks = refused(what, exchange(calls, client, &blocks)?)?;
+    let (_, record) = Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
+    Ok(record.to_vec())
 }
 
 /// Calls, and waits for what comes of it.
-fn exchange(
-    medium: &mut dyn Medium,
-    target: Ipv4Addr,
-    client: &mut Client,
-    blocks: &[u8],
-) -> Result<Outcome, ProfinetError> {
-    let first = client.call(medium.now(), operation::READ_IMPLICIT, blocks, TRIES);
-    medium.call(target, &first)?;
+fn exchange(calls: &Calls, client: &mut Client, blocks: &[u8]) -> Result<Outcome, ProfinetError> {
+    calls.send(&client.call(calls.now(), operation::READ_IMPLICIT, blocks, TRIES))?;
     loop {
-        let mut step = client.poll(medium.now());
-        if step.is_none() {
-            let wake = client.wake().unwrap_or_default();
-            if let Some(Arrived::Datagram(from, bytes)) = medium.next(wake)?
-                && *from.ip() == target
-            {
-                let datagram = Datagram::parse(&bytes).ok();
-                step = datagram.and_then(|datagram| client.handle(medium.now(), &datagram));
-            }
+        let mut step = client.poll(calls.now());
+        if step.is_none()
+            && let Some(bytes) = calls.hear(client.wake().unwrap_or_default())?
+        {
+            let datagram = Datagram::parse(&bytes).ok();
+            step = datagram.and_then(|datagram| client.handle(calls.now(), &datagram));
         }
         match step {
             Some(Step::Done(outcome)) => return Ok(outcome),
-            Some(Step::Send(bytes)) => medium.call(target, &bytes)?,
+            Some(Step::Send(bytes)) => calls.send(&bytes)?,
             None => {}
         }
     }
-}
-
-fn identify(medium: &mut dyn Medium, request: &Dcp) -> Result<(), ProfinetError> {
-    let here = medium.here().0;
-    medium.send(&identify_frame(here, request))
-}
-
-/// The next station that answers a question.
-fn identified(medium: &mut dyn Medium, until: Now, request: &Dcp) -> Result<Option<Found>, ProfinetError> {
-    let here = medium.here().0;
-    hear(medium, until, |frame| {
-        let dcp = Dcp::parse(frame.payload).ok()?;
-        let is_answer = dcp.service == Service::Identify && dcp.kind == Kind::Response && dcp.xid == request.xid;
-        let is_one = is_answer && frame.destination == here && !frame.source.is_group();
-        dcp.station().ok().filter(|_| is_one).map(|station| Found { mac: frame.source, station })
-    })
-}
-
-/// Hands on each frame that comes until something is made of one, or time is over.
-fn hear<T>(
-    medium: &mut dyn Medium,
-    until: Now,
-    mut take: impl FnMut(&Frame<'_>) -> Option<T>,
-) -> Result<Option<T>, ProfinetError> {
-    while let Some(arrived) = medium.next(until)? {
-        let Arrived::Frame(bytes) = arrived else { continue };
-        if let Some(made) = Frame::parse(&bytes).ok().and_then(|frame| take(&frame)) {
-            return Ok(Some(made));
-        }
-    }
-    Ok(None)
 }

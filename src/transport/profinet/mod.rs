@@ -5,7 +5,6 @@
 use std::time::Duration;
 
 #[cfg(target_os = "linux")]
-pub mod card;
 pub mod commission;
 pub mod controller;
 pub mod device;
@@ -16,10 +15,13 @@ pub mod interface;
 pub mod layout;
 #[cfg(target_os = "linux")]
 pub mod link;
-pub mod medium;
 #[cfg(target_os = "linux")]
 pub mod network;
+#[cfg(target_os = "linux")]
+mod port;
 pub mod settings;
+#[cfg(target_os = "linux")]
+pub mod simulated;
 #[cfg(test)]
 mod tests;
 pub mod wire;

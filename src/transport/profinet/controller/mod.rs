@@ -552,10 +552,15 @@ impl Controller {
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
     }
+
+    /// Its card.
+    pub fn card(&self) -> Option<Mac> {
+        self.device.as_ref().map(|device| device.mac)
+    }
 }
 
 /// What came of a call, where it is not the answer that was hoped for.
-fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
+pub(super) fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
     match outcome {
         Outcome::Answer(0, blocks) => Ok(blocks),
         Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),

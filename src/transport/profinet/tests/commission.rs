@@ -1,106 +1,86 @@
 //! What stations are asked and told without a connection, in virtual time.
 
 use super::super::commission::{self, Found};
-use super::super::device::{Device, Event, Setup};
+use super::super::device::{Device, Setup};
 use super::super::error::ProfinetError;
-use super::super::medium::{Medium as _, Simulated};
+use super::super::interface::Interface;
 use super::super::settings::Station;
+use super::super::simulated::Network;
 use super::super::wire::Mac;
 use super::super::wire::dcp::Block;
-use super::world::{ADDRESS, HERE, MS, Mirror, THERE, setup, suite};
+use super::world::{Mirror, setup, suite};
+use std::time::Duration;
 
-const OTHER: Mac = Mac([2, 0, 0, 0, 0, 9]);
-
-fn network(setups: impl IntoIterator<Item = Setup>) -> Simulated<Mirror> {
-    Simulated::new(HERE, setups.into_iter().map(|setup| Device::new(setup, Mirror::default())).collect())
+/// This machine on a network with one device.
+fn interface(takes_ip: bool) -> Interface {
+    let network =
+        Network::new(|mac, ip| Device::new(Setup { mac, ip: Some(ip), takes_ip, ..setup() }, Mirror::default()));
+    network.interface()
 }
 
 fn named(name: &str) -> Station {
     Station::Name(name.to_owned())
 }
 
-fn found(network: &mut Simulated<Mirror>) -> Found {
-    commission::find(network, &Station::Mac(THERE)).unwrap()
-}
-
-#[test]
-fn all_stations_answer_once_each() {
-    let other = Setup { mac: OTHER, name: String::new(), ip: None, ..setup() };
-    let mut network = network([setup(), other]);
-    let all = commission::stations(&mut network, 2000 * MS).unwrap();
-    let seen: Vec<_> = all.iter().map(|found| (found.mac, found.station.name.as_str(), found.station.address())).collect();
-    assert_eq!(seen, [(OTHER, "", None), (THERE, "yrcx-sim", Some(ADDRESS))]);
-    assert_eq!(network.now(), 2000 * MS);
+fn only(interface: &Interface) -> Found {
+    let all = commission::stations(interface, Duration::from_secs(2)).unwrap();
+    let [found] = &all[..] else { panic!("{all:?}") };
+    found.clone()
 }
 
 #[test]
 fn a_station_is_found_by_name_and_by_card() {
-    let other = Setup { mac: OTHER, name: "other".to_owned(), ip: None, ..setup() };
-    let mut network = network([setup(), other]);
-    for (wanted, mac) in [(named("yrcx-sim"), THERE), (named("other"), OTHER), (Station::Mac(OTHER), OTHER)] {
-        assert_eq!(commission::find(&mut network, &wanted).unwrap().mac, mac);
+    let interface = interface(true);
+    let found = only(&interface);
+    for wanted in [named("yrcx-sim"), Station::Mac(found.mac)] {
+        assert_eq!(commission::find(&interface, &wanted).unwrap(), found);
     }
-    assert!(network.now() < 1000 * MS, "nobody waits for what has come: {:?}", network.now());
-    let nobody = commission::find(&mut network, &named("nobody")).unwrap_err();
-    assert!(matches!(nobody, ProfinetError::NotFound { .. }), "{nobody}");
-}
-
-#[test]
-fn two_of_one_name_are_none() {
-    let mut network = network([setup(), Setup { mac: OTHER, ip: None, ..setup() }]);
-    let twice = commission::find(&mut network, &named("yrcx-sim")).unwrap_err();
-    assert!(matches!(twice, ProfinetError::Duplicate { cards, .. } if cards == (THERE, OTHER)), "{twice}");
-    assert_eq!(found(&mut network).mac, THERE, "the card tells them apart");
+    for nobody in [named("nobody"), Station::Mac(Mac([2; 6]))] {
+        let error = commission::find(&interface, &nobody).unwrap_err();
+        assert!(matches!(error, ProfinetError::NotFound { .. }), "{error}");
+    }
 }
 
 #[test]
 fn what_is_set_is_there_then() {
-    let mut network = network([Setup { ip: None, ..setup() }]);
-    let (name, ip) = (Block::set_name("robot-7", true), Block::set_ip(&suite([192, 168, 78, 7]), false));
-    for block in [name, ip, Block::signal()] {
-        commission::change(&mut network, THERE, "DCP Set", &block).unwrap();
+    let interface = interface(true);
+    let mac = only(&interface).mac;
+    let ip = suite([192, 0, 2, 7]);
+    for block in [Block::set_name("robot-7", true), Block::set_ip(&ip, false), Block::signal()] {
+        commission::change(&interface, mac, "DCP Set", &block).unwrap();
     }
-    let seen = commission::settled(&mut network, THERE, "DCP Set", |said| said.name == "robot-7").unwrap();
-    assert_eq!(seen.station.address(), Some([192, 168, 78, 7].into()));
-    let events = [
-        Event::Named("robot-7".to_owned(), true),
-        Event::Addressed(suite([192, 168, 78, 7]), false),
-        Event::Blink,
-    ];
-    assert_eq!(network.devices()[0].application().events, events);
-    commission::change(&mut network, THERE, "DCP Reset", &Block::reset()).unwrap();
-    let seen = found(&mut network).station;
+    let seen = commission::settled(&interface, mac, "DCP Set", |said| said.name == "robot-7").unwrap();
+    assert_eq!(seen.station.address(), Some(ip.address));
+    commission::change(&interface, mac, "DCP Reset", &Block::reset()).unwrap();
+    let seen = only(&interface).station;
     assert_eq!((seen.name.as_str(), seen.address()), ("", None));
-    let never = commission::settled(&mut network, THERE, "DCP Set", |said| said.name == "x").unwrap_err();
+    let never = commission::settled(&interface, mac, "DCP Set", |said| said.name == "x").unwrap_err();
     assert!(matches!(never, ProfinetError::NoAnswer { .. }), "{never}");
 }
 
 #[test]
 fn what_a_station_does_not_take_is_told() {
-    let mut network = network([Setup { takes_ip: false, ..setup() }]);
-    let mut change = |mac, block| commission::change(&mut network, mac, "DCP Set", &block).unwrap_err();
-    assert!(matches!(change(THERE, Block::set_name("Robot", true)), ProfinetError::Dcp { error: 3, .. }));
-    let elsewhere = Block::set_ip(&suite([192, 168, 78, 9]), true);
-    assert!(matches!(change(THERE, elsewhere), ProfinetError::Dcp { error: 5, .. }));
-    assert!(matches!(change(OTHER, Block::signal()), ProfinetError::NoAnswer { .. }));
+    let interface = interface(false);
+    let there = only(&interface).mac;
+    let change = |mac, block| commission::change(&interface, mac, "DCP Set", &block).unwrap_err();
+    assert!(matches!(change(there, Block::set_name("Robot", true)), ProfinetError::Dcp { error: 3, .. }));
+    let elsewhere = Block::set_ip(&suite([192, 0, 2, 9]), true);
+    assert!(matches!(change(there, elsewhere), ProfinetError::Dcp { error: 5, .. }));
+    assert!(matches!(change(Mac([2; 6]), Block::signal()), ProfinetError::NoAnswer { .. }));
 }
 
 #[test]
-fn an_address_that_somebody_has_is_seen() {
-    let other = Setup { mac: OTHER, ip: Some(suite([192, 168, 78, 9])), ..setup() };
-    let mut network = network([setup(), other]);
-    let mut holder = |last| commission::holder(&mut network, [192, 168, 78, last].into(), THERE).unwrap();
-    assert_eq!(holder(9), Some(OTHER));
-    assert_eq!(holder(1), Some(HERE.mac), "this machine's own");
-    assert_eq!(holder(2), None, "the station itself");
-    assert_eq!(holder(3), None, "nobody's");
+fn an_address_of_this_machine_is_taken() {
+    let interface = interface(true);
+    let own = interface.ip.unwrap().address;
+    let holder = |address| commission::holder(&interface, address, Mac([2; 6])).unwrap();
+    assert_eq!((holder(own), holder([192, 0, 2, 9].into())), (Some(interface.mac), None));
 }
 
 #[test]
 fn records_are_read_without_a_connection() {
-    let mut network = network([setup()]);
-    let station = found(&mut network);
-    let identity = commission::identity(&mut network, &station).unwrap();
+    let interface = interface(true);
+    let identity = commission::identity(&interface, &only(&interface)).unwrap();
     assert_eq!(identity.im0.unwrap().order_id, "RCX340");
     assert_eq!(identity.modules.unwrap().iter().map(|module| module.ident).collect::<Vec<_>>(), [1, 0x101, 0x102]);
 }
