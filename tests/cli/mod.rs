@@ -69,6 +69,7 @@ transcripts! {
     yrcx_jog
     yrcx_motion
     yrcx_profibus
+    yrcx_profinet
     yrcx_programs
 }
 

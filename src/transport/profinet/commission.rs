@@ -100,6 +100,25 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
+/// Another card than this that has a name, if one answers.
+///
+/// # Errors
+/// When the interface cannot be used.
+pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
+    let frames = Frames::open(interface)?;
+    for _ in 0..TRIES {
+        let question = looking_for(named, fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let until = frames.now() + TWIN;
+        while let Some(found) = identified(interface, &frames, until, &question)? {
+            if found.mac != than && settings::Station::Name(found.station.name) == *named {
+                return Ok(Some(found.mac));
+            }
+        }
+    }
+    Ok(None)
+}
+
 /// The question for a station. For one with a card all are asked, as not every station has Get.
 pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {

@@ -6,7 +6,7 @@
 
 use std::borrow::Cow;
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Error, Node, ParsingOptions};
 use thiserror::Error;
 
 use super::layout::{Direction, Layout, Submodule};
@@ -127,7 +127,9 @@ impl Gsdml {
         };
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
-            let line = error.pos().row;
+            // The end of a file that was cut has no place of its own.
+            let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
+            let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
             GsdmlError { line, element: "file".to_owned(), problem: format!("it is no XML: {error}") }
         })?;
         Reader { document: &document }.device()
