@@ -19,7 +19,19 @@ mod grant;
 mod plan;
 mod watcher;
 pub mod yerc;
+pub mod yrcx;
+
+use armctl_transport::session::client::SessionBusy;
 
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};
 pub use watcher::{Ends, Watcher};
+
+/// What stands in the way within a session, as errors of clients say it.
+fn session_busy(busy: &SessionBusy) -> String {
+    match busy {
+        SessionBusy::Ended(why) => why.clone(),
+        SessionBusy::Busy(_) => "the line is in use by another client".to_owned(),
+        SessionBusy::Moved(_) => "another client moves the robot; nothing was sent".to_owned(),
+    }
+}

@@ -4,7 +4,7 @@
 
 #![cfg(target_os = "linux")]
 
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
@@ -28,44 +28,35 @@ use pnio::data::FieldType;
 use pnio::device::RtOptions;
 use pnio::diag::{ChannelError, Severity};
 
-/// Both namespaces; the two programs are this one, told by the name of the test which end it is.
-const SCRIPT: &str = r#"
-set -e
-mount -t sysfs none /sys
-ip link set lo up
-ip link add pc0 type veth peer name pd0
-unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 60' & P=$!
-until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
-ip link set pc0 address 02:00:00:00:00:01
-ip link set pd0 address 02:00:00:00:00:02
-ip link set pd0 netns $P
-ip addr add 192.168.79.1/24 dev pc0
-ip link set pc0 up
-nsenter -t $P -n -m sh -c 'ip link set lo up; ip addr add 192.168.79.2/24 dev pd0; ip link set pd0 up'
+mod namespaces;
+
+/// The two programs are this one, told by the name of the test which end it is.
+const ENDS: &str = r#"
+export ROLE=end
 C=
 if command -v tshark > /dev/null; then
     tshark -q -i pc0 -w "$CAPTURE" 2> "$CAPTURE.said" & C=$!
-    until grep -q Capturing "$CAPTURE.said"; do kill -0 $C; done
+    until grep -q Capturing "$CAPTURE.said"; do kill -0 $C || exit 1; done
 fi
-ROLE=end nsenter -t $P -n -m "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
-R=0
-ROLE=end "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture || R=$?
-kill $D $P
-if [ -n "$C" ]; then kill -INT $C; wait $C || true; fi
+$THERE "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
+"$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture
+R=$?
+kill $D
+if [ -n "$C" ]; then kill -INT $C; wait $C; fi
 exit $R
 "#;
 
 #[test]
 fn our_controller_runs_a_device_that_others_wrote() {
     if !run("others") {
-        println!("{SKIPPED}");
+        println!("{}", namespaces::SKIPPED);
     }
 }
 
 #[test]
 fn our_controller_finds_asks_and_runs_our_device() {
     if !run("our") {
-        println!("{SKIPPED}");
+        println!("{}", namespaces::SKIPPED);
     }
 }
 
@@ -84,32 +75,27 @@ fn run_theirs(name: &str) {
     if std::env::var_os(PEERS).is_none() {
         println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
     } else if !run(name) {
-        println!("{SKIPPED}");
+        println!("{}", namespaces::SKIPPED);
     }
 }
 
 const PEERS: &str = "ARMCTL_PROFINET_PEERS";
-const SKIPPED: &str = "skipped: there are no user namespaces here";
 
 /// Runs the two ends of this name, and wants the controller's to come to its end; false where that cannot be.
 fn run(name: &str) -> bool {
-    let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
-    if !can.is_ok_and(|status| status.success()) {
-        return false;
-    }
     let program = std::env::current_exe().expect("this program has a path");
-    let mut command = Command::new("unshare");
+    let program = program.to_str().expect("the path is UTF-8");
     let folder = tempfile::tempdir().expect("a folder can be made");
     let capture = folder.path().join("all.pcapng");
-    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("PROGRAM", program).env("NAME", name).env("CAPTURE", &capture);
-    let output = command.output().expect("unshare can be started");
-    let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let capture = capture.to_str().expect("the path is UTF-8");
+    let variables = [("PROGRAM", program), ("NAME", name), ("CAPTURE", capture)];
+    let Some(text) = namespaces::run(ENDS, &variables) else { return false };
     assert!(text.contains("the controller has seen all"), "{text}");
     // Not what others sent; and ICMP is what systems say of ports that are closed.
     let ours = if ["others", "our"].contains(&name) { "02:00:00:00:00:01" } else { "02:00:00:00:00:02" };
     let wrong = format!("(_ws.malformed || _ws.expert.severity >= \"Warn\") && eth.src == {ours} && !icmp");
     let read = |filter: &str| {
-        let output = Command::new("tshark").arg("-r").arg(&capture).args(["-Y", filter]).output().ok()?;
+        let output = Command::new("tshark").arg("-r").arg(capture).args(["-Y", filter]).output().ok()?;
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         Some(String::from_utf8_lossy(&output.stdout).into_owned())
     };
@@ -199,7 +185,7 @@ fn others_controller() {
                 opened => break opened.unwrap(),
             }
         };
-        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().device);
+        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().details.device);
         for round in 0..3u8 {
             let mut image = vec![round + 1; 48];
             let generation = connection.view().generation;

@@ -67,7 +67,7 @@ pub enum Error {
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session that holds the line has ended, or somebody else has the line.
-    #[error("{}", session_busy(.0))]
+    #[error("{}", crate::session_busy(.0))]
     Session(SessionBusy),
     /// A name that is that of no host.
     #[error("cannot find host '{host}'")]
@@ -102,14 +102,6 @@ impl Error {
             Self::Session(busy) => matches!(busy, SessionBusy::Ended(_) | SessionBusy::Busy(_)),
             _ => false,
         }
-    }
-}
-
-fn session_busy(busy: &SessionBusy) -> String {
-    match busy {
-        SessionBusy::Ended(why) => why.clone(),
-        SessionBusy::Busy(_) => "the line is in use by another client".to_owned(),
-        SessionBusy::Moved(_) => "another client moves the robot; nothing was sent".to_owned(),
     }
 }
 

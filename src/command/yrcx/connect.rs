@@ -127,5 +127,6 @@ fn simulated_on(sim: &target::Sim) -> &'static dyn Fieldbus {
 /// Starts a simulated controller on its fieldbus.
 fn simulate(sim: &target::Sim) -> Result<(&'static dyn Fieldbus, Simulation), Failure> {
     let fieldbus = simulated_on(sim);
-    Ok((fieldbus, fieldbus.simulate(sim)?))
+    let start = simulated::start(sim.state.as_deref())?.on_bus(fieldbus.link_alarm());
+    Ok((fieldbus, fieldbus.simulate(sim, start)?))
 }

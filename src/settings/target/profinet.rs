@@ -20,7 +20,7 @@ pub const SCHEME: Scheme = Scheme {
     bus: "profinet",
     simulators: &["profinet"],
     shortest: "profinet://STATION@IFACE",
-    form: "profinet://STATION@IFACE[?layout=1:0x101:i48,2:0x102:o48&gsdml=FILE&cycle=16ms&ip=ADDRESS/24]",
+    form: "profinet://STATION@IFACE[?gsdml=FILE&cycle=16ms&watchdog=320ms&ip=ADDRESS/24], or layout=MODULES for gsdml=FILE",
     about: "yrcx: name (or MAC address) of the station, and the Ethernet interface that leads to it",
     parse: |place, query| {
         let profinet = parse(place, query)?;

@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use super::Now;
 use super::controller::client::{Client, Outcome, Step};
-use super::controller::refused;
 use super::error::ProfinetError;
 use super::interface::Interface;
 use super::port::{Calls, Frames};
@@ -265,7 +264,7 @@ pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, Profin
 fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> Result<Vec<u8>, ProfinetError> {
     let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: ROOM };
     let blocks = asked.emit(BlockType::READ, 0, &[]);
-    let blocks = refused(what, exchange(calls, client, &blocks)?)?;
+    let blocks = exchange(calls, client, &blocks)?.blocks(what)?;
     let (_, record) = Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
     Ok(record.to_vec())
 }

@@ -23,6 +23,8 @@ mod port;
 pub mod settings;
 #[cfg(target_os = "linux")]
 pub mod simulated;
+#[cfg(target_os = "linux")]
+mod sockets;
 #[cfg(test)]
 mod tests;
 pub mod wire;

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use super::Now;
 use super::controller::numbers::Numbers;
-use super::controller::view::State;
+
 use super::controller::{Action, Controller, Here};
 use super::device::{Application, Device};
 use super::error::ProfinetError;
@@ -20,6 +20,7 @@ use super::wire::Mac;
 use super::wire::dcp::IpSuite;
 use super::wire::rpc::PORT;
 use crate::image::ImagePeer;
+use crate::image::view::State;
 
 /// This machine on it.
 pub(super) const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
@@ -281,7 +282,8 @@ impl ImagePeer for Link {
 
     fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
         self.run(self.start + now, |_| false);
-        self.controller.view().input.map(|input| input.image.to_vec())
+        let view = self.controller.view();
+        view.input.filter(|_| view.state == State::Open).map(|input| input.image.to_vec())
     }
 
     fn wake(&self) -> Option<Duration> {

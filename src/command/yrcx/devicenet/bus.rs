@@ -11,6 +11,7 @@ use super::{check, connect, decode, simulated};
 use crate::command::yrcx::decode::images::BusDecoder;
 use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bus_of};
 use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::settings::target::devicenet::BUS;
@@ -50,8 +51,8 @@ impl Fieldbus for DeviceNet {
         Box::new(decode::Decoder::default())
     }
 
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
-        let hub = simulated::on_loopback(sim)?;
+    fn simulate(&self, sim: &Sim, start: Start) -> Result<Simulation, Failure> {
+        let hub = simulated::on_loopback(sim, start)?;
         let place = hub.places().first().map(String::as_str).unwrap_or_default();
         let bus = bus_of(&simulated::target(place))?;
         Ok(Simulation { bus, controller: Box::new(hub) })

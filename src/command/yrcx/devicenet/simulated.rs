@@ -4,7 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -23,14 +23,13 @@ const COMPACT: &str = "devicenet-compact";
 pub(super) const MAC: u8 = 5;
 
 /// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
-pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim, start: Start) -> Result<Hub<Controller>, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
     let fault = sim.mischief.as_deref().map(fault).transpose().map_err(|why| wrong(format!("mischief: {why}")))?;
     let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault)
-        .map_err(|error| Failure::io("the simulator on the loopback", &error))
+    serve(start, setup, &[listen], faults, fault).map_err(|error| Failure::io("the simulator on the loopback", &error))
 }
 
 /// The URL of a simulated controller behind that adapter.
@@ -91,11 +90,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What a slave does wrong, by its name.
 pub fn fault(text: &str) -> Result<DeviceFault, String> {
-    let found = DeviceFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = DeviceFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&DeviceFault::ALL, text)
 }
 
 /// A simulated controller behind its node.

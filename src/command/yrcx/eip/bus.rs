@@ -11,6 +11,7 @@ use super::{check, connect, decode, simulated};
 use crate::command::yrcx::decode::images::BusDecoder;
 use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bus_of};
 use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::settings::target::bus::Scheme;
@@ -51,8 +52,8 @@ impl Fieldbus for EtherNetIp {
         Box::new(decode::Decoder::default())
     }
 
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
-        let server = simulated::on_loopback(sim)?;
+    fn simulate(&self, sim: &Sim, start: Start) -> Result<Simulation, Failure> {
+        let server = simulated::on_loopback(sim, start)?;
         let bus = bus_of(&format!("{}://{}", SCHEME.name, server.address()))?;
         Ok(Simulation { bus, controller: Box::new(server) })
     }

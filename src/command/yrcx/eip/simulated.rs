@@ -4,7 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -18,13 +18,13 @@ use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::image::ImagePeer;
 
 /// A simulator as an adapter on the loopback, with what the URL wants to go wrong.
-pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
+pub fn on_loopback(sim: &Sim, start: Start) -> Result<Server<Controller>, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
     let mischief = sim.mischief.as_deref().map(mischief).transpose();
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
-    let server = serve(start(sim.state.as_deref())?, listen, faults);
+    let server = serve(start, listen, faults);
     let server = server.map_err(|error| Failure::io("the simulator on the loopback", &error))?;
     server.with(|adapter, _| adapter.misbehave(mischief));
     Ok(server)
@@ -70,11 +70,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What an adapter does wrong, by its name.
 pub fn mischief(text: &str) -> Result<AdapterFault, String> {
-    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&AdapterFault::ALL, text)
 }
 
 /// A simulated controller behind its adapter.

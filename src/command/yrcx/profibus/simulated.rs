@@ -8,7 +8,7 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -49,22 +49,18 @@ impl Default for Options {
 }
 
 /// A simulator as the URL wants it.
-pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
+pub fn in_process(sim: &Sim, start: Start) -> Result<Server, Failure> {
     let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
     let faults = sim.fault.as_deref().map(str::parse).transpose();
     let faults = faults.map_err(|error| wrong(format!("fault: {error}")))?;
     let mischief = sim.mischief.as_deref().map(mischief).transpose();
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
-    serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
+    serve(start, Options { faults, mischief, ..Options::default() })
 }
 
 /// What a slave does wrong, by its name.
 pub fn mischief(text: &str) -> Result<SlaveFault, String> {
-    let found = SlaveFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = SlaveFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&SlaveFault::ALL, text)
 }
 
 /// A slave that is served as long as this lives.

@@ -9,13 +9,15 @@ pub use super::serve::ServeArgs;
 pub use super::station::Station;
 use super::{check, connect, decode, simulated};
 use crate::command::yrcx::decode::images::BusDecoder;
-use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bus_of};
+use crate::command::yrcx::fieldbus::{self, At, Explained, Fieldbus, Purpose, Simulation, bus_of};
 use crate::controller::yrcx::alarm::Alarm;
+use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::Sim;
 use crate::settings::target::profinet::SCHEME;
 use crate::transport::capture::LINKTYPE_ETHERNET;
 use crate::transport::image::{ImageLink, LinkError};
+use crate::transport::profinet::wire::status::Status;
 
 /// PROFINET IO.
 #[derive(Debug)]
@@ -43,6 +45,15 @@ impl Fieldbus for ProfinetIo {
         async move { Ok(Box::new(Board::new(&at)?) as Box<dyn fieldbus::Board>) }.boxed_local()
     }
 
+    fn explain(&self, code: &str) -> Option<Explained> {
+        let digits: String = code.chars().filter(|c| !matches!(c, ' ' | '-' | ':')).collect();
+        let digits = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")).unwrap_or(&digits);
+        let is_four_bytes = digits.len() == 8 && digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let status = is_four_bytes.then(|| u32::from_str_radix(digits, 16).ok()).flatten().map(Status)?;
+        let (meaning, refused, remedies) = (status.meaning(), status.call(), status.remedies());
+        Some(Explained { code: format!("{:#010x}", status.0), meaning, refused, remedies })
+    }
+
     fn layers(&self) -> &'static [&'static str] {
         check::LAYERS
     }
@@ -51,8 +62,8 @@ impl Fieldbus for ProfinetIo {
         Box::new(decode::Decoder::default())
     }
 
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
-        let network = simulated::in_process(sim)?;
+    fn simulate(&self, sim: &Sim, start: Start) -> Result<Simulation, Failure> {
+        let network = simulated::in_process(sim, start)?;
         let bus = bus_of(&simulated::target(&network.interface().name))?;
         Ok(Simulation { bus, controller: Box::new(network) })
     }

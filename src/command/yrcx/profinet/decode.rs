@@ -14,7 +14,7 @@ use crate::transport::profinet::wire::cyclic::{Cyclic, GOOD, describe_status};
 use crate::transport::profinet::wire::dcp::{self, Dcp, IpSuite, Service, Setting};
 use crate::transport::profinet::wire::frame::{Frame, id};
 use crate::transport::profinet::wire::record::Record;
-use crate::transport::profinet::wire::rpc::{Call, Datagram, Header, Kind, PORT, Reply, operation};
+use crate::transport::profinet::wire::rpc::{self, Call, Datagram, Header, Kind, PORT, Reply, operation};
 use crate::transport::profinet::wire::status::Status;
 use crate::transport::profinet::wire::{Mac, Uuid, block};
 use crate::transport::tap::Direction;
@@ -64,7 +64,10 @@ impl BusDecoder for Decoder {
 
     fn finish(&mut self, images: &mut Images) {
         if self.unknown > 0 {
-            images.note(format!("{} cyclic frames cannot be read: their Connect is not in the file", self.unknown));
+            images.note(format!(
+                "{} cyclic frames cannot be read: no answer to a Connect stands before them",
+                self.unknown
+            ));
         }
         if self.unreadable > 0 {
             images.note(format!("{} frames of PROFINET cannot be read", self.unreadable));
@@ -105,29 +108,32 @@ impl Decoder {
         }
     }
 
-    /// A datagram of a call. Ends are told by who calls: the device calls once, that it is ready.
+    /// A datagram of a call. The controller calls the device, and the device the controller, to say that it is ready.
     fn call(&mut self, message: &Message<'_>, ends: (String, String), datagram: &Datagram<'_>, images: &mut Images) {
         let header = &datagram.header;
-        let key = (header.activity, header.sequence);
-        let (direction, text, answers) = match header.kind {
-            Kind::REQUEST if header.is_fragment() => (Direction::Sent, format!("{}, a fragment", name(header)), None),
+        let (key, name) = ((header.activity, header.sequence), name(header));
+        let is_call = header.kind == Kind::REQUEST;
+        let (text, answers) = match header.kind {
+            Kind::REQUEST if header.is_fragment() => (format!("{name}, a fragment"), None),
             Kind::REQUEST => {
                 let (about, requests) = request(header, datagram.body);
                 if self.calls.len() >= MOST {
                     self.calls.clear();
                 }
                 self.calls.insert(key, (message.number, requests));
-                (Direction::Sent, format!("{}{about}", name(header)), None)
+                (format!("{name}{about}"), None)
             }
             Kind::RESPONSE => {
                 let asked = self.calls.remove(&key);
                 let about = self.answered(header, datagram.body, asked.as_ref());
-                (Direction::Received, format!("{} answered: {about}", name(header)), asked.map(|(number, _)| number))
+                (format!("{name} answered: {about}"), asked.map(|(number, _)| number))
             }
-            Kind(kind) => (Direction::Received, format!("{}: RPC {}", name(header), kind_name(kind)), None),
+            Kind(kind) => (format!("{name}: RPC {}", kind_name(kind)), None),
         };
+        let is_from_controller = is_call == (header.interface != rpc::CONTROLLER);
+        let direction = if is_from_controller { Direction::Sent } else { Direction::Received };
         let (from, to) = ends;
-        let link = if direction == Direction::Sent { (from, to) } else { (to, from) };
+        let link = if is_from_controller { (from, to) } else { (to, from) };
         images.message(DecodedMessage { answers, ..decoded(message, direction, link, text) });
     }
 
@@ -226,7 +232,7 @@ impl Stream {
         for (at, length) in &self.places {
             let end = at + length;
             if cyclic.data.get(end).is_none_or(|status| status & GOOD == 0) {
-                return Err(format!("its provider marks byte {at} and what follows as bad (IOPS)"));
+                return Err(format!("its sender marks the data from byte {at} on as bad (IOPS)"));
             }
             image.extend_from_slice(&cyclic.data[*at..end]);
         }

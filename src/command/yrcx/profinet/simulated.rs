@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -20,7 +20,7 @@ pub(super) const NAME: &str = "yrcx-sim";
 const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// A network in this process with a simulator on it, with what the URL wants to go wrong.
-pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
+pub fn in_process(sim: &Sim, start: Start) -> Result<Network, Failure> {
     let hint = "`armctl help simulator` lists faults";
     if sim.fault.is_some() {
         return Err(Failure::usage(
@@ -30,7 +30,7 @@ pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     }
     let fault = sim.mischief.as_deref().map(fault).transpose();
     let fault = fault.map_err(|why| Failure::usage(format!("mischief: {why}")).hint(hint))?;
-    let controller = controller(start(sim.state.as_deref())?);
+    let controller = controller(start);
     Ok(Network::new(|mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
         let mut device = Device::new(setup, controller);
@@ -79,11 +79,7 @@ pub fn controller(start: Start) -> Controller {
 
 /// What a device does wrong, by its name.
 pub fn fault(text: &str) -> Result<Fault, String> {
-    let found = Fault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = Fault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&Fault::ALL, text)
 }
 
 /// A simulated controller behind its device.

@@ -1,6 +1,6 @@
 //! The handshake of remote commands (chapter 2, sections 1 and 2), one scan after the other.
 
-use super::alarms::{AlarmSource, Fault, LINK, STOP_INPUT};
+use super::alarms::{AlarmSource, Fault, STOP_INPUT};
 use super::commands::{self, Work};
 use super::motion::{End, Owner};
 use super::motions;
@@ -150,7 +150,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
             (world.now >= *at).then(|| world.act(action).map(|()| Values::default()))
         }
         Work::Continuous if world.link == Link::Down => {
-            Some(Err(Fault::new(LINK, AlarmSource::Slot, "the master is gone")))
+            Some(Err(Fault::new(world.link_lost, AlarmSource::Slot, "the master is gone")))
         }
         Work::Continuous => (!running.held).then(|| Ok(Values::default())),
         Work::Motion(robots) => {

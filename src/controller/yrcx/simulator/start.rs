@@ -13,7 +13,7 @@ use jiff::civil::DateTime;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::alarms::AlarmLog;
+use super::alarms::{AlarmLog, LINK};
 use super::console;
 use super::defaults::{self, STOCK};
 use super::memory::Memory;
@@ -22,6 +22,7 @@ use super::world::{Link, Mode, Switches, World};
 use crate::Now;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
 use crate::simulator::timeline::Timeline;
+use crate::yrcx::alarm::Alarm;
 use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
@@ -141,6 +142,13 @@ impl Start {
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
+    }
+
+    /// On a fieldbus whose lost link is this alarm.
+    #[must_use]
+    pub fn on_bus(mut self, link_lost: Alarm) -> Self {
+        self.world.link_lost = link_lost;
+        self
     }
 }
 
@@ -447,6 +455,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         },
         link: Link::Waiting,
         link_within: entries.link_within_ms.map(Duration::from_millis),
+        link_lost: LINK,
         inputs: resting(),
         motor: entries.servo,
         robots: Vec::new(),

@@ -6,9 +6,7 @@ use std::time::Duration;
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
-use super::alarms::{
-    AlarmLog, EMERGENCY_STOP, Fault, LINK, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT,
-};
+use super::alarms::{AlarmLog, EMERGENCY_STOP, Fault, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT};
 use super::alarms::{AlarmSource, NOT_AUTO};
 use super::console;
 use super::memory::Memory;
@@ -86,6 +84,8 @@ pub(super) struct World {
     pub(super) link: Link,
     /// After this time without a master the link is missed.
     pub(super) link_within: Option<Duration>,
+    /// The alarm of a lost link: that of its fieldbus; the next number says that none came in time.
+    pub(super) link_lost: Alarm,
     /// What the master shows.
     pub(super) inputs: Image,
     pub(super) motor: bool,
@@ -142,7 +142,9 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK_TOO_LATE, AlarmSource::Slot, "no master came in time"), false);
+            let Alarm { group, category } = self.link_lost;
+            let alarm = Alarm::new(group, category.saturating_add(1));
+            self.raise(&Fault::new(alarm, AlarmSource::Slot, "no master came in time"), false);
         }
         while let Some(line) = self.events.take(now) {
             // Lines were tried when the start state was read; one that is refused by now has no effect.
@@ -243,7 +245,7 @@ impl World {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK, AlarmSource::Slot, "the master is gone"), false);
+            self.raise(&Fault::new(self.link_lost, AlarmSource::Slot, "the master is gone"), false);
         }
     }
 

@@ -4,5 +4,7 @@
 mod commission;
 mod faults;
 mod opening;
+#[cfg(target_os = "linux")]
+mod simulated;
 mod tshark;
 mod world;

@@ -11,67 +11,38 @@ const KIND: [u8; 6] = [0, 1, 8, 0, 6, 4];
 /// Shortest frame, less the four bytes of its check.
 const SHORTEST: usize = 60;
 
-/// What a frame does: it asks, or it answers.
-const REQUEST: u16 = 1;
-const REPLY: u16 = 2;
-
 /// The frame that asks who has an address, without claiming one: nobody learns anything from it.
 pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
-    let nobody = (Mac::default(), address);
-    emit(Mac([0xFF; 6]), REQUEST, (source, Ipv4Addr::UNSPECIFIED), nobody)
-}
-
-/// The answer of whoever has the address.
-pub fn answer(source: Mac, asker: Mac, address: Ipv4Addr) -> Vec<u8> {
-    emit(asker, REPLY, (source, address), (asker, Ipv4Addr::UNSPECIFIED))
-}
-
-fn emit(destination: Mac, operation: u16, sender: (Mac, Ipv4Addr), target: (Mac, Ipv4Addr)) -> Vec<u8> {
     let mut out = Writer::default();
-    out.put(&destination.0);
-    out.put(&sender.0.0);
+    out.put(&[0xFF; 6]);
+    out.put(&source.0);
     out.u16(ETHER_TYPE);
     out.put(&KIND);
-    out.u16(operation);
-    for (mac, address) in [sender, target] {
-        out.put(&mac.0);
-        out.put(&address.octets());
-    }
+    out.u16(1);
+    out.put(&source.0);
+    out.zeros(4 + 6);
+    out.put(&address.octets());
     out.zeros(SHORTEST - out.bytes.len());
     out.bytes
 }
 
 /// Who a frame says has which address, if it is one of ARP: an answer, or somebody who uses the address himself.
 pub fn holder(frame: &[u8]) -> Option<(Mac, Ipv4Addr)> {
-    let (_, sender, _) = parse(frame)?;
-    Some(sender).filter(|(_, address)| !address.is_unspecified())
-}
-
-/// Which address a frame asks for, if it is a question.
-pub fn question(frame: &[u8]) -> Option<Ipv4Addr> {
-    let (operation, _, wanted) = parse(frame)?;
-    (operation == REQUEST).then_some(wanted)
-}
-
-/// What it does, its sender, and the address that it is about.
-fn parse(frame: &[u8]) -> Option<(u16, (Mac, Ipv4Addr), Ipv4Addr)> {
-    let mut reader = Reader::new(frame);
+    let mut reader = Reader::big(frame);
     reader.take(12, "addresses of cards").ok()?;
     if reader.u16("type").ok()? != ETHER_TYPE || reader.take(KIND.len(), "kinds of addresses").ok()? != KIND {
         return None;
     }
-    let operation = reader.u16("operation").ok()?;
+    reader.u16("operation").ok()?;
     let mac = reader.mac("sender's card").ok()?;
-    let address = reader.array::<4>("sender's address").ok()?;
-    reader.mac("target's card").ok()?;
-    let wanted = reader.array::<4>("target's address").ok()?;
-    Some((operation, (mac, address.into()), wanted.into()))
+    let address = Ipv4Addr::from(reader.array::<4>("sender's address").ok()?);
+    (!address.is_unspecified()).then_some((mac, address))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
@@ -83,7 +54,7 @@ mod tests {
         bytes.extend(hex("000000000000 C0A84E02"));
         bytes.resize(60, 0);
         assert_eq!(probe(HERE, ADDRESS), bytes);
-        assert_eq!((holder(&bytes), question(&bytes)), (None, Some(ADDRESS)));
+        assert_eq!(holder(&bytes), None);
     }
 
     /// RFC 826: the answer, and every frame that is not one.
@@ -92,9 +63,8 @@ mod tests {
         let mut bytes = hex("020000000001 020000000002 0806 0001 0800 06 04 0002 020000000002 C0A84E02");
         bytes.extend(hex("020000000001 00000000"));
         let there = Mac([2, 0, 0, 0, 0, 2]);
-        assert_eq!((holder(&bytes), question(&bytes)), (Some((there, ADDRESS)), None));
-        assert_eq!(answer(there, HERE, ADDRESS)[..42], bytes);
-        for cut in 0..42 {
+        assert_eq!(holder(&bytes), Some((there, ADDRESS)));
+        for cut in 0..32 {
             assert_eq!(holder(&bytes[..cut]), None);
         }
         for at in [12, 15, 17, 19] {
