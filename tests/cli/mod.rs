@@ -71,6 +71,7 @@ transcripts! {
     yrcx_motion
     yrcx_profibus
     yrcx_profinet
+    yrcx_profinet_stations
     yrcx_programs
 }
 

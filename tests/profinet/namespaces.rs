@@ -1,5 +1,5 @@
-//! Two network namespaces with a pair of virtual cards between them: `pc0` here with 192.168.79.1, `pd0` there with
-//! 192.168.79.2. Needs no rights, but user namespaces.
+//! Two network namespaces with a pair of virtual cards between them: `pc0` here with 192.168.79.1 and
+//! 02:00:00:00:00:01, `pd0` there with 192.168.79.2 and 02:00:00:00:00:02. Needs no rights, but user namespaces.
 
 use std::process::{Command, Stdio};
 
@@ -14,6 +14,8 @@ ip link set lo up
 ip link add pc0 type veth peer name pd0
 unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 300' & P=$!
 until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
+ip link set pc0 address 02:00:00:00:00:01
+ip link set pd0 address 02:00:00:00:00:02
 ip link set pd0 netns $P
 ip addr add 192.168.79.1/24 dev pc0
 ip link set pc0 up

@@ -4,6 +4,7 @@
 
 #![cfg(target_os = "linux")]
 
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
@@ -32,10 +33,16 @@ mod namespaces;
 /// The two programs are this one, told by the name of the test which end it is.
 const ENDS: &str = r#"
 export ROLE=end
+C=
+if command -v tshark > /dev/null; then
+    tshark -q -i pc0 -w "$CAPTURE" 2> "$CAPTURE.said" & C=$!
+    until grep -q Capturing "$CAPTURE.said"; do kill -0 $C || exit 1; done
+fi
 $THERE "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
 "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture
 R=$?
 kill $D
+if [ -n "$C" ]; then kill -INT $C; wait $C; fi
 exit $R
 "#;
 
@@ -53,12 +60,52 @@ fn our_controller_finds_asks_and_runs_our_device() {
     }
 }
 
+#[test]
+fn a_controller_that_others_wrote_runs_our_device() {
+    run_theirs("python");
+}
+
+#[test]
+fn a_client_of_dcp_that_others_wrote_finds_and_names_our_device() {
+    run_theirs("dcp");
+}
+
+/// Needs what `tests/profinet/install` put into a folder.
+fn run_theirs(name: &str) {
+    if std::env::var_os(PEERS).is_none() {
+        println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
+    } else if !run(name) {
+        println!("{}", namespaces::SKIPPED);
+    }
+}
+
+const PEERS: &str = "ARMCTL_PROFINET_PEERS";
+
 /// Runs the two ends of this name, and wants the controller's to come to its end; false where that cannot be.
 fn run(name: &str) -> bool {
     let program = std::env::current_exe().expect("this program has a path");
     let program = program.to_str().expect("the path is UTF-8");
-    let Some(text) = namespaces::run(ENDS, &[("PROGRAM", program), ("NAME", name)]) else { return false };
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let capture = folder.path().join("all.pcapng");
+    let capture = capture.to_str().expect("the path is UTF-8");
+    let variables = [("PROGRAM", program), ("NAME", name), ("CAPTURE", capture)];
+    let Some(text) = namespaces::run(ENDS, &variables) else { return false };
     assert!(text.contains("the controller has seen all"), "{text}");
+    // Not what others sent; and ICMP is what systems say of ports that are closed.
+    let ours = if ["others", "our"].contains(&name) { "02:00:00:00:00:01" } else { "02:00:00:00:00:02" };
+    let wrong = format!("(_ws.malformed || _ws.expert.severity >= \"Warn\") && eth.src == {ours} && !icmp");
+    let read = |filter: &str| {
+        let output = Command::new("tshark").arg("-r").arg(capture).args(["-Y", filter]).output().ok()?;
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    match read(&wrong) {
+        Some(wrong) => {
+            assert_eq!(wrong, "", "tshark has remarks");
+            assert!(read(&format!("(pn_dcp || pn_io) && eth.src == {ours}")).is_some_and(|seen| !seen.is_empty()));
+        }
+        None => println!("no tshark here to read what passed"),
+    }
     true
 }
 
@@ -238,9 +285,10 @@ fn our_controller() {
     let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
     assert!(present.contains(&"pc0".to_owned()), "{present:?}");
     let interface = Interface::find("pc0").unwrap();
+    let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
     let found = loop {
-        match commission::by_name(&interface, "yrcx-sim") {
+        match commission::find(&interface, &station) {
             Err(ProfinetError::NotFound { .. }) if begin.elapsed() < Duration::from_secs(30) => {}
             found => break found.unwrap(),
         }
@@ -253,9 +301,13 @@ fn our_controller() {
     commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();
     let bad = commission::change(&interface, found.mac, "DCP Set name", &Block::set_name("Robot", true)).unwrap_err();
     assert!(matches!(bad, ProfinetError::Dcp { error: 3, .. }), "{bad}");
-    let nobody =
-        commission::change(&interface, Mac([2, 0, 0, 0, 0, 0x77]), "DCP signal", &Block::signal()).unwrap_err();
-    assert!(matches!(nobody, ProfinetError::NoAnswer { .. }), "{nobody}");
+    let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
+    let silent = commission::change(&interface, nobody, "DCP signal", &Block::signal()).unwrap_err();
+    assert!(matches!(silent, ProfinetError::NoAnswer { .. }), "{silent}");
+    // The systems at both ends answer ARP, not our device.
+    let holder = |last, except| commission::holder(&interface, [192, 168, 79, last].into(), except).unwrap();
+    assert_eq!((holder(2, nobody), holder(2, found.mac), holder(7, nobody)), (Some(found.mac), None, None));
+    assert_eq!(holder(1, nobody), Some(interface.mac));
 
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
@@ -289,5 +341,49 @@ fn our_controller() {
         assert!(matches!(LinkError::from(second), LinkError::Owned(_)));
         link.close().await.unwrap();
     });
+    println!("the controller has seen all");
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn python_device() {
+    our_device();
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn dcp_device() {
+    our_device();
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn python_controller() {
+    if is_an_end() {
+        theirs(include_str!("controller.py"), &["pc0", "yrcx-sim"], "profinet-py has seen its data come back");
+    }
+}
+
+#[test]
+#[ignore = "one end of a test above"]
+fn dcp_controller() {
+    if is_an_end() {
+        theirs(include_str!("dcp.py"), &["192.168.79.1", "yrcx-sim"], "pnio-dcp has seen all");
+    }
+}
+
+/// Runs a program of theirs, once our device is there.
+fn theirs(program: &str, arguments: &[&str], end: &str) {
+    let interface = Interface::find("pc0").unwrap();
+    let station = Station::Name("yrcx-sim".to_owned());
+    let begin = Instant::now();
+    while commission::find(&interface, &station).is_err() {
+        assert!(begin.elapsed() < Duration::from_secs(30));
+    }
+    let python = std::path::Path::new(&std::env::var_os(PEERS).expect("it is set")).join("bin/python");
+    let output = Command::new(python).arg("-c").arg(program).args(arguments).output().expect("python can be started");
+    let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    println!("{said}");
+    assert!(said.contains(end), "{said}");
     println!("the controller has seen all");
 }

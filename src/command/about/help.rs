@@ -21,10 +21,11 @@ pub struct Help {
 }
 
 /// Topics with a line about each and their text.
-const TOPICS: [(&str, &str, &str); 12] = [
+const TOPICS: [(&str, &str, &str); 13] = [
     ("targets", "how to say which robot", include_str!("topics/targets.txt")),
     ("devicenet", "adapters, first contact, lamps", include_str!("topics/devicenet.txt")),
     ("profibus", "a YRCX over PROFIBUS DP", include_str!("topics/profibus.txt")),
+    ("profinet", "a YRCX over PROFINET IO", include_str!("topics/profinet.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
     ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),

@@ -7,6 +7,8 @@ pub const LINES: &[&str] = &[
     "yrcx repl --sim",
     "yrcx io map --bus ethernet-ip",
     "yrcx io map --bus profinet --input-start 256 --output-start 256",
+    "yrcx profinet gsdml GSDML-V2.35-maker-robot.xml",
+    "yrcx profinet gsdml GSDML-V2.35-maker-robot.xml --json",
     "toyo repl -r loader",
     "toyo repl --sim",
     "toyo ports",

@@ -31,15 +31,20 @@ pub struct Searches {
     devicenet: devicenet::Search,
     #[command(flatten)]
     profibus: profibus::Search,
+    #[cfg(target_os = "linux")]
+    #[command(flatten)]
+    profinet: profinet::Search,
 }
 
 impl Searches {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Search); 3] {
-        [
+    pub fn each(&self) -> Vec<(&'static dyn Fieldbus, &dyn Search)> {
+        vec![
             (&eip::EtherNetIp, &self.eip),
             (&devicenet::DeviceNet, &self.devicenet),
             (&profibus::ProfibusDp, &self.profibus),
+            #[cfg(target_os = "linux")]
+            (&profinet::ProfinetIo, &self.profinet),
         ]
     }
 }
@@ -78,6 +83,8 @@ pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
         eip::Identity::json_schema(generator),
         devicenet::Node::json_schema(generator),
         profibus::Station::json_schema(generator),
+        #[cfg(target_os = "linux")]
+        profinet::Station::json_schema(generator),
     ]
 }
 

@@ -3,7 +3,7 @@
 use super::motion::Moving;
 use super::{
     alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
-    profibus, program, raw, status, var,
+    profibus, profinet, program, raw, status, var,
 };
 use crate::command::{Subcommands, commands};
 
@@ -111,6 +111,8 @@ commands! {
         Devicenet(Subcommands<devicenet::DeviceNet>),
         /// Diagnose PROFIBUS: stations of the line, without owning any
         Profibus(Subcommands<profibus::Profibus>),
+        /// Diagnose PROFINET: stations, names, addresses, modules
+        Profinet(Subcommands<profinet::Profinet>),
         /// Reset the remote command status
         StatusReset(orders::StatusReset),
         /// Send the words of any remote command and decode the answer

@@ -65,6 +65,8 @@ const READS: &[&str] = &[
     "profibus scan",
     "profibus probe",
     "profibus diag",
+    "profinet identify",
+    "profinet probe",
 ];
 
 const WRITES: &[&str] = &[
@@ -92,10 +94,14 @@ const WRITES: &[&str] = &[
     "reset",
     "stop",
     "raw --wi 0x604",
+    "profinet blink",
+    "profinet set-name robot-7 --temporary",
+    "profinet set-ip 192.168.0.10/24 --temporary",
 ];
 
-/// A setting of the network board, which is no remote command.
-const BOARD: &str = "eip set 0xF5 1 3 00";
+/// Settings of the device on the fieldbus, which are no remote commands.
+const BOARDS: [&str; 4] =
+    ["eip set 0xF5 1 3 00", "profinet set-name robot-7", "profinet set-ip 192.168.0.10/24", "profinet reset"];
 
 /// Each after what makes it overwrite something else.
 const DESTROYS: &[(&str, &str)] = &[
@@ -137,6 +143,7 @@ const MOTIONS: &[&str] = &[
     "recover",
     "run",
     "raw --wi 0x42",
+    "profinet probe --try",
 ];
 
 /// What sends nothing that shows: what the controller shows is looked at, and zeros are what it is shown at rest.
@@ -164,13 +171,13 @@ impl Desk {
 /// All lines with the risk that each shall have.
 fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
-    let destroys =
-        DESTROYS.iter().map(|(_, line)| (*line, Risk::Destroy)).chain([(WORD, Risk::Destroy), (BOARD, Risk::Destroy)]);
+    let destroys = DESTROYS.iter().map(|(_, line)| *line).chain([WORD]).chain(BOARDS);
+    let destroys = destroys.map(|line| (line, Risk::Destroy));
     with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
 }
 
 /// Commands that need no robot, or have their own way to one.
-const AT_DESK: [&str; 1] = ["yrcx.io.map"];
+const AT_DESK: [&str; 2] = ["yrcx.io.map", "yrcx.profinet.gsdml"];
 
 /// A controller that nothing is sent to, and the command of a line.
 fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
@@ -180,12 +187,16 @@ fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
 
 /// Whether a line asks a device without a link for images.
 fn is_for_board(line: &str) -> bool {
-    ["eip ", "profibus "].iter().any(|bus| line.starts_with(bus))
+    ["eip ", "profibus ", "profinet "].iter().any(|bus| line.starts_with(bus))
 }
 
 /// Where a line leads: commands of a fieldbus want one.
 fn url_for(line: &str) -> &'static str {
-    if line.contains("profibus ") { "profibus:///dev/null?station=5" } else { "eip://127.0.0.1" }
+    match line.split(' ').next() {
+        Some("profibus") => "profibus:///dev/null?station=5",
+        Some("profinet") => "profinet://robot-1@eth0",
+        _ => "eip://127.0.0.1",
+    }
 }
 
 #[test]

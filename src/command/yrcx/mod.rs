@@ -51,7 +51,7 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
-#[cfg(target_os = "linux")]
+#[cfg_attr(not(target_os = "linux"), path = "profinet/elsewhere.rs")]
 pub mod profinet;
 mod program;
 mod raw;

@@ -114,14 +114,18 @@ fn station(text: &str) -> Result<Station, String> {
         };
     }
     // Schemes and hosts may be in capitals in other URLs; a station with capitals cannot be.
-    let name = text.to_ascii_lowercase();
-    check_name(&name).map_err(|why| format!("'{text}' is not a name of a station: {why}{}", similar(&name)))?;
-    Ok(Station::Name(name))
+    name(&text.to_ascii_lowercase()).map(Station::Name)
+}
+
+/// A name that a station can have.
+pub fn name(text: &str) -> Result<String, String> {
+    let wrong = |why| format!("'{text}' is not a name of a station: {why}{}", similar(text));
+    check_name(text).map(|()| text.to_owned()).map_err(wrong)
 }
 
 /// What engineering tools make of a name that is not allowed.
 fn similar(name: &str) -> String {
-    let name = name.replace(['_', ' '], "-");
+    let name = name.to_ascii_lowercase().replace(['_', ' '], "-");
     if check_name(&name).is_ok() { format!("; did you mean '{name}'?") } else { String::new() }
 }
 
@@ -150,7 +154,7 @@ fn watchdog(text: &str, cycle: Duration) -> Result<Duration, String> {
 }
 
 /// `192.168.0.5`, or with the bits of its mask behind.
-fn suite(text: &str) -> Result<IpSuite, String> {
+pub fn suite(text: &str) -> Result<IpSuite, String> {
     let wrong = || format!("ip is an address as in 192.168.0.5 or 192.168.0.5/24, not '{text}'");
     let (address, bits) = match text.split_once('/') {
         None => (text, PREFIX),

@@ -2,26 +2,34 @@
 //!
 //! Each call blocks for as long as it says.
 
-use std::net::SocketAddrV4;
+use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
+use super::Now;
 use super::controller::client::{Client, Outcome, Step};
 use super::error::ProfinetError;
 use super::interface::Interface;
 use super::port::{Calls, Frames};
 use super::settings;
 use super::wire::block::BlockType;
-use super::wire::dcp::{self, Block, Dcp, Kind, Service, Station};
+use super::wire::dcp::{Block, Dcp, Kind, Service, Station};
 use super::wire::frame::{Frame, id};
 use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
-use super::wire::{Mac, Uuid};
+use super::wire::{Mac, Uuid, arp};
 
 /// Over how many steps of 10 ms stations spread their answers when all are asked.
 const SPREAD: u16 = 128;
 /// How long to wait for a station that was asked alone, and how often.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
+/// After the first answer, for another station that has the same name.
+const TWIN: Duration = Duration::from_millis(250);
+/// How long to wait for whoever has an address, each of the tries.
+const ARP: Duration = Duration::from_millis(300);
+/// How often to look whether what was set is there, and for how long.
+const LOOK: Duration = Duration::from_millis(200);
+const SETTLE: Duration = Duration::from_secs(5);
 /// Stations that are told of; a network has a few hundred.
 const MOST: usize = 4096;
 /// Room for a record.
@@ -42,29 +50,17 @@ pub struct Found {
 /// When the interface cannot be used.
 pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
     let frames = Frames::open(interface)?;
-    let xid = fastrand::u32(1..);
-    let request = Dcp::identify_all(xid, SPREAD);
-    send(&frames, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &request)?;
+    let question = Dcp::identify_all(fastrand::u32(1..), SPREAD);
+    frames.send(&identify(interface.mac, &question))?;
+    let until = frames.now() + wait;
     let mut found: Vec<Found> = Vec::new();
-    frames.hear(frames.now() + wait, |frame| {
-        let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| dcp.service == Service::Identify && dcp.xid == xid)?;
-        let station =
-            dcp.station().ok().filter(|_| frame.destination == interface.mac && dcp.kind == Kind::Response)?;
-        if found.len() < MOST && found.iter().all(|other| other.mac != frame.source) {
-            found.push(Found { mac: frame.source, station });
+    while let Some(other) = identified(interface, &frames, until, &question)? {
+        if found.len() < MOST && found.iter().all(|found| found.mac != other.mac) {
+            found.push(other);
         }
-        None::<()>
-    })?;
+    }
     found.sort_by(|one, two| (&one.station.name, one.mac).cmp(&(&two.station.name, two.mac)));
     Ok(found)
-}
-
-/// The station of a name.
-///
-/// # Errors
-/// When the interface cannot be used, nobody has the name, or two have.
-pub fn by_name(interface: &Interface, name: &str) -> Result<Found, ProfinetError> {
-    find(interface, &settings::Station::Name(name.to_owned()))
 }
 
 /// A station, by its name or its card.
@@ -72,43 +68,74 @@ pub fn by_name(interface: &Interface, name: &str) -> Result<Found, ProfinetError
 /// # Errors
 /// When the interface cannot be used, it does not answer, or two have its name.
 pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
-    if let settings::Station::Name(name) = wanted {
-        dcp::check_name(name).map_err(|why| ProfinetError::Impossible(format!("'{name}' is not a name: {why}")))?;
-    }
     let frames = Frames::open(interface)?;
-    let mut found: Option<Found> = None;
     for _ in 0..TRIES {
-        let xid = fastrand::u32(1..);
-        let question = match wanted {
-            settings::Station::Name(name) => Dcp::identify(xid, name),
-            settings::Station::Mac(_) => Dcp::identify_all(xid, 1),
-        };
-        send(&frames, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &question)?;
-        let twin = frames.hear(frames.now() + PATIENCE, |frame| {
-            let dcp =
-                Dcp::parse(frame.payload).ok().filter(|dcp| dcp.service == Service::Identify && dcp.xid == xid)?;
-            let said = dcp.station().ok().filter(|said| {
-                frame.destination == interface.mac
-                    && match wanted {
-                        settings::Station::Name(name) => said.name == *name,
-                        settings::Station::Mac(mac) => frame.source == *mac,
-                    }
-            })?;
-            match &found {
-                Some(first) if first.mac != frame.source => return Some((first.mac, frame.source)),
+        let question = looking_for(wanted, fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let mut until = frames.now() + PATIENCE;
+        let mut first: Option<Found> = None;
+        while let Some(found) = identified(interface, &frames, until, &question)? {
+            let is_it = match wanted {
+                settings::Station::Name(name) => found.station.name == *name,
+                settings::Station::Mac(mac) => found.mac == *mac,
+            };
+            match &first {
+                _ if !is_it => {}
+                None => {
+                    until = until.min(frames.now() + TWIN);
+                    first = Some(found);
+                }
+                Some(first) if first.mac != found.mac => {
+                    let cards = (first.mac, found.mac);
+                    return Err(ProfinetError::Duplicate { station: wanted.to_string(), cards });
+                }
                 Some(_) => {}
-                None => found = Some(Found { mac: frame.source, station: said }),
             }
-            None
-        })?;
-        if let Some(cards) = twin {
-            return Err(ProfinetError::Duplicate { station: wanted.to_string(), cards });
         }
-        if let Some(found) = found {
+        if let Some(found) = first {
             return Ok(found);
         }
     }
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
+}
+
+/// Another card than this that has a name, if one answers.
+///
+/// # Errors
+/// When the interface cannot be used.
+pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
+    let frames = Frames::open(interface)?;
+    for _ in 0..TRIES {
+        let question = looking_for(named, fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let until = frames.now() + TWIN;
+        while let Some(found) = identified(interface, &frames, until, &question)? {
+            if found.mac != than && settings::Station::Name(found.station.name) == *named {
+                return Ok(Some(found.mac));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// The question for a station. For one with a card all are asked, as not every station has Get.
+pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
+    match wanted {
+        settings::Station::Name(name) => Dcp::identify(xid, name),
+        settings::Station::Mac(_) => Dcp::identify_all(xid, 1),
+    }
+}
+
+/// The frame of a question for stations.
+pub fn identify(source: Mac, question: &Dcp) -> Vec<u8> {
+    let payload = question.emit();
+    Frame { destination: Mac::DCP_IDENTIFY, source, tag: None, id: id::DCP_IDENTIFY, payload: &payload }.emit()
+}
+
+/// The frame that sets something at a station.
+pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
+    let payload = Dcp::change(xid, vec![block.clone()]).emit();
+    Frame { destination, source, tag: None, id: id::DCP_GET_SET, payload: &payload }.emit()
 }
 
 /// Sets something at a station: its name, its address, that it blinks. The same goes out three times at most, which does
@@ -118,9 +145,9 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
 /// When the interface cannot be used, the station does not answer, or refuses.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
     let frames = Frames::open(interface)?;
-    let request = Dcp::change(fastrand::u32(1..), vec![block.clone()]);
+    let request = set(interface.mac, mac, fastrand::u32(1..), block);
     for _ in 0..TRIES {
-        send(&frames, interface.mac, mac, id::DCP_GET_SET, &request)?;
+        frames.send(&request)?;
         let answer = frames.hear(frames.now() + PATIENCE, |frame| {
             let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
             // Some stations do not copy the Xid.
@@ -140,6 +167,68 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
         }
     }
     Err(ProfinetError::NoAnswer { what, after: PATIENCE * TRIES })
+}
+
+/// Waits until a station says of itself what was set.
+///
+/// # Errors
+/// When it does not within some seconds, or the interface cannot be used.
+pub fn settled(
+    interface: &Interface,
+    mac: Mac,
+    what: &'static str,
+    is_so: impl Fn(&Station) -> bool,
+) -> Result<Found, ProfinetError> {
+    let frames = Frames::open(interface)?;
+    let end = frames.now() + SETTLE;
+    while frames.now() < end {
+        let question = looking_for(&settings::Station::Mac(mac), fastrand::u32(1..));
+        frames.send(&identify(interface.mac, &question))?;
+        let until = frames.now() + LOOK;
+        while let Some(found) = identified(interface, &frames, until, &question)? {
+            if found.mac == mac && is_so(&found.station) {
+                return Ok(found);
+            }
+        }
+    }
+    Err(ProfinetError::NoAnswer { what, after: SETTLE })
+}
+
+/// The card that has an address, if one answers ARP other than this.
+///
+/// # Errors
+/// When the interface cannot be used.
+pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
+    // The system does not answer its own question.
+    if interface.ip.is_some_and(|own| own.address == address) {
+        return Ok(Some(interface.mac));
+    }
+    let frames = Frames::of_arp(interface)?;
+    for _ in 0..TRIES {
+        frames.send(&arp::probe(interface.mac, address))?;
+        let until = frames.now() + ARP;
+        while let Some(bytes) = frames.next(until)? {
+            if let Some((mac, _)) = arp::holder(&bytes).filter(|(mac, held)| *held == address && *mac != except) {
+                return Ok(Some(mac));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// The next station that answers a question.
+fn identified(
+    interface: &Interface,
+    frames: &Frames,
+    until: Now,
+    question: &Dcp,
+) -> Result<Option<Found>, ProfinetError> {
+    frames.hear(until, |frame| {
+        let dcp = Dcp::parse(frame.payload).ok()?;
+        let is_answer = dcp.service == Service::Identify && dcp.kind == Kind::Response && dcp.xid == question.xid;
+        let is_one = is_answer && frame.destination == interface.mac && !frame.source.is_group();
+        dcp.station().ok().filter(|_| is_one).map(|station| Found { mac: frame.source, station })
+    })
 }
 
 /// What a device says of itself in its records, each as far as it has it.
@@ -197,9 +286,4 @@ fn exchange(calls: &Calls, client: &mut Client, blocks: &[u8]) -> Result<Outcome
             None => {}
         }
     }
-}
-
-fn send(frames: &Frames, source: Mac, destination: Mac, id: u16, dcp: &Dcp) -> Result<(), ProfinetError> {
-    let payload = dcp.emit();
-    frames.send(&Frame { destination, source, tag: None, id, payload: &payload })
 }

@@ -6,18 +6,22 @@
 
 use std::borrow::Cow;
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Error, Node, ParsingOptions};
 use thiserror::Error;
 
 use super::layout::{Direction, Layout, Submodule};
 use super::wire::record::Parameter;
 
 /// Largest file that is read.
-pub const MOST_BYTES: usize = 16 * 1024 * 1024;
+pub const MOST_BYTES: u64 = 16 * 1024 * 1024;
 /// Most elements and attributes of one.
 const MOST_NODES: u32 = 2_000_000;
-/// Most modules that fit an access point.
+/// Most modules that fit an access point, and most submodules of a module.
 const MOST_MODULES: usize = 512;
+/// Most access points.
+const MOST_HEADS: usize = 64;
+/// Most slots of a list.
+const MOST_SLOTS: usize = 4096;
 /// Longest record that is written at the start.
 const LONGEST_RECORD: usize = 4096;
 
@@ -113,7 +117,7 @@ impl Gsdml {
     /// The first thing that is wrong with it.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
         let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
-        if bytes.len() > MOST_BYTES {
+        if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
             return Err(whole(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len())));
         }
         let text = match std::str::from_utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)) {
@@ -123,7 +127,9 @@ impl Gsdml {
         };
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
-            let line = error.pos().row;
+            // The end of a file that was cut has no place of its own.
+            let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
+            let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
             GsdmlError { line, element: "file".to_owned(), problem: format!("it is no XML: {error}") }
         })?;
         Reader { document: &document }.device()
@@ -216,10 +222,14 @@ impl Head {
 }
 
 impl Module {
-    /// Bytes that it sends, and takes.
+    /// Bytes of its data.
+    pub fn size(&self, direction: Direction) -> usize {
+        let length = |item: &Item| if direction == Direction::Input { item.input } else { item.output };
+        self.submodules.iter().map(|item| usize::from(length(item))).sum()
+    }
+
     fn sizes(&self) -> (usize, usize) {
-        let sum = |length: fn(&Item) -> u16| self.submodules.iter().map(|item| usize::from(length(item))).sum();
-        (sum(|item| item.input), sum(|item| item.output))
+        (self.size(Direction::Input), self.size(Direction::Output))
     }
 }
 
@@ -244,7 +254,11 @@ impl<'a, 'input> Reader<'a, 'input> {
         let identity = self.all("DeviceIdentity").next();
         let identity = identity.ok_or_else(|| self.wrong(root, "there is no DeviceIdentity in it"))?;
         let (vendor, device) = (self.number(identity, "VendorID")?, self.number(identity, "DeviceID")?);
-        let heads = self.all("DeviceAccessPointItem").map(|node| self.head(node)).collect::<Result<Vec<_>, _>>()?;
+        let heads: Vec<_> = self.all("DeviceAccessPointItem").take(MOST_HEADS + 1).collect();
+        if let Some(node) = heads.get(MOST_HEADS) {
+            return Err(self.wrong(*node, format!("{MOST_HEADS} access points are the most")));
+        }
+        let heads = heads.into_iter().map(|node| self.head(node)).collect::<Result<Vec<_>, _>>()?;
         if heads.is_empty() {
             return Err(self.wrong(root, "there is no DeviceAccessPointItem in it"));
         }
@@ -305,10 +319,17 @@ impl<'a, 'input> Reader<'a, 'input> {
     /// The submodules of a module or an access point; those to choose from only where there is no choice.
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
+        let add = |items: &mut Vec<Item>, node, subslot| {
+            if items.len() == MOST_MODULES {
+                return Err(self.wrong(node, format!("{MOST_MODULES} submodules are the most")));
+            }
+            items.push(self.item(node, subslot)?);
+            Ok(())
+        };
         for item in node.descendants().filter(|item| item.has_tag_name_local("VirtualSubmoduleItem")) {
             let fixed = self.slots(item, "FixedInSubslots")?;
             for subslot in if fixed.is_empty() { vec![1] } else { fixed } {
-                items.push(self.item(item, subslot)?);
+                add(&mut items, item, subslot)?;
             }
         }
         for reference in node.descendants().filter(|item| item.has_tag_name_local("SubmoduleItemRef")) {
@@ -316,7 +337,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             let found = self.all("SubmoduleItem").find(|item| item.attribute("ID") == Some(target));
             let found = found.ok_or_else(|| self.wrong(reference, format!("there is no SubmoduleItem '{target}'")))?;
             for subslot in self.slots(reference, "FixedInSubslots")? {
-                items.push(self.item(found, subslot)?);
+                add(&mut items, found, subslot)?;
             }
         }
         Ok(items)
@@ -462,6 +483,9 @@ impl<'a, 'input> Reader<'a, 'input> {
             let wrong = || self.wrong(node, format!("{name} is no list of numbers: '{part}'"));
             let (first, last) = (number(first).ok_or_else(wrong)?, number(last).ok_or_else(wrong)?);
             slots.extend(first..=last);
+            if slots.len() > MOST_SLOTS {
+                return Err(self.wrong(node, format!("{name} has more than {MOST_SLOTS} numbers")));
+            }
         }
         Ok(slots)
     }

@@ -13,7 +13,6 @@ use super::error::ProfinetError;
 use super::simulated;
 use super::wire::Mac;
 use super::wire::dcp::IpSuite;
-use super::wire::frame::ETHER_TYPE;
 use crate::image::tap::Tap;
 
 /// An Ethernet interface.
@@ -126,17 +125,17 @@ impl Interface {
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// A socket for frames of PROFINET, which does not block.
+    /// A socket for frames of one type, which does not block.
     ///
     /// # Errors
     /// When that is not allowed, or not possible.
-    pub fn raw_socket(&self) -> Result<Socket, ProfinetError> {
+    pub fn raw_socket(&self, ether_type: u16) -> Result<Socket, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,
             _ => ProfinetError::local("raw Ethernet socket", error),
         };
         let Card::Real(link) = &self.card else { return Err(ProfinetError::Ended) };
-        let protocol = Protocol::from(i32::from(ETHER_TYPE.to_be()));
+        let protocol = Protocol::from(i32::from(ether_type.to_be()));
         let socket = Socket::new(Domain::PACKET, Type::RAW, Some(protocol)).map_err(|error| failed(&error))?;
         nix::sys::socket::bind(socket.as_raw_fd(), link).map_err(|error| failed(&error.into()))?;
         socket.set_nonblocking(true).map_err(|error| failed(&error))?;

@@ -10,6 +10,7 @@ pub mod controller;
 pub mod device;
 pub mod error;
 pub mod gsdml;
+pub mod guess;
 #[cfg(target_os = "linux")]
 pub mod interface;
 pub mod layout;

@@ -11,8 +11,8 @@ use super::error::ProfinetError;
 use super::interface::Interface;
 use super::network::in_frame;
 use super::simulated::Network;
-use super::wire::frame::Frame;
-use super::wire::{Mac, rpc};
+use super::wire::frame::{self, Frame};
+use super::wire::{Mac, arp, rpc};
 use super::{Now, simulated};
 use crate::image::tap::{Passed, Tap};
 
@@ -53,10 +53,19 @@ impl<S> End<S> {
 impl Frames {
     /// Of an interface that can be used.
     pub(super) fn open(interface: &Interface) -> Result<Self, ProfinetError> {
+        Self::of(interface, frame::ETHER_TYPE)
+    }
+
+    /// Likewise, frames of ARP.
+    pub(super) fn of_arp(interface: &Interface) -> Result<Self, ProfinetError> {
+        Self::of(interface, arp::ETHER_TYPE)
+    }
+
+    fn of(interface: &Interface, ether_type: u16) -> Result<Self, ProfinetError> {
         interface.check()?;
         let end = match interface.network() {
             Some(network) => End::Simulated(network.clone()),
-            None => End::Socket(interface.raw_socket()?, Instant::now()),
+            None => End::Socket(interface.raw_socket(ether_type)?, Instant::now()),
         };
         Ok(Self { end, tap: interface.tap.clone() })
     }
@@ -65,14 +74,13 @@ impl Frames {
         self.end.now()
     }
 
-    pub(super) fn send(&self, frame: &Frame<'_>) -> Result<(), ProfinetError> {
-        let bytes = frame.emit();
-        self.tap.pass(|| Passed::Frame(bytes.clone()));
+    pub(super) fn send(&self, frame: &[u8]) -> Result<(), ProfinetError> {
+        self.tap.pass(|| Passed::Frame(frame.to_vec()));
         match &self.end {
-            End::Simulated(network) => network.send_frame(&bytes),
+            End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
                 let mut socket = socket;
-                socket.write_all(&bytes).map_err(|error| ProfinetError::local("sending a frame", &error))?;
+                socket.write_all(frame).map_err(|error| ProfinetError::local("sending a frame", &error))?;
             }
         }
         Ok(())
@@ -85,18 +93,23 @@ impl Frames {
         mut take: impl FnMut(&Frame<'_>) -> Option<T>,
     ) -> Result<Option<T>, ProfinetError> {
         while let Some(bytes) = self.next(until)? {
-            if let Ok(frame) = Frame::parse(&bytes) {
-                self.tap.pass(|| Passed::Frame(bytes.clone()));
-                let made = take(&frame);
-                if made.is_some() {
-                    return Ok(made);
-                }
+            if let Some(made) = Frame::parse(&bytes).ok().and_then(|frame| take(&frame)) {
+                return Ok(Some(made));
             }
         }
         Ok(None)
     }
 
-    fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
+    /// The next frame that comes until then.
+    pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
+        let came = self.take(until)?;
+        if let Some(bytes) = &came {
+            self.tap.pass(|| Passed::Frame(bytes.clone()));
+        }
+        Ok(came)
+    }
+
+    fn take(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (mut source, start) = match &self.end {
             End::Simulated(network) => return Ok(network.hear_frame(until)),
             End::Socket(socket, start) => (socket, start),

@@ -11,6 +11,7 @@ use socket2::Socket;
 use super::error::ProfinetError;
 use super::interface::Interface;
 use super::wire::dcp::IpSuite;
+use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
 
 /// Frames or datagrams taken at once before the clock is looked at.
@@ -33,7 +34,7 @@ impl Sockets {
     /// # Errors
     /// When it cannot be used, or they cannot be had.
     pub fn open(interface: &Interface) -> Result<(Self, IpSuite), ProfinetError> {
-        let raw = interface.raw_socket()?;
+        let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
         let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);

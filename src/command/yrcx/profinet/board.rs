@@ -1,5 +1,8 @@
 //! A station of PROFINET, as it answers questions that connect nobody.
 
+use std::net::Ipv4Addr;
+use std::time::Duration;
+
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
@@ -8,13 +11,16 @@ use crate::command::face::layers::Layers;
 use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::image::Image;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::settings::target::profinet::{Profinet, SCHEME};
 use crate::transport::image::LinkError;
 use crate::transport::image::tap::Tap;
 use crate::transport::profinet::commission::{self, Found, Identity};
 use crate::transport::profinet::error::ProfinetError;
 use crate::transport::profinet::interface::Interface;
+use crate::transport::profinet::layout::Layout;
+use crate::transport::profinet::settings::Station;
+use crate::transport::profinet::wire::dcp::{self, Block};
 
 /// A station that is asked when something is asked.
 #[derive(Debug)]
@@ -63,6 +69,60 @@ impl Board {
     /// What it says of itself in its records.
     pub async fn identity(&self, found: Found) -> Result<Identity, Failure> {
         self.ask(move |interface| commission::identity(interface, &found)).await
+    }
+
+    /// Another station that has this name, if one answers.
+    pub async fn namesake(&self, name: &str, than: &Found) -> Result<Option<String>, Failure> {
+        let (station, mac) = (Station::Name(name.to_owned()), than.mac);
+        let other = self.ask(move |interface| commission::other(interface, &station, mac)).await?;
+        Ok(other.map(|mac| format!("station {mac}")))
+    }
+
+    /// Who else has this address, if somebody answers.
+    pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
+        let (mac, own) = (than.mac, self.interface()?.mac);
+        let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
+        Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
+    }
+
+    /// Sets something at the station, and waits until it says so of itself.
+    pub async fn set(
+        &self,
+        found: &Found,
+        what: &'static str,
+        block: Block,
+        is_so: impl Fn(&dcp::Station) -> bool + Send + 'static,
+    ) -> Result<Found, Failure> {
+        let mac = found.mac;
+        let set = self.ask(move |interface| {
+            let answer = commission::change(interface, mac, what, &block);
+            let is_open = matches!(answer, Err(ProfinetError::NoAnswer { .. }));
+            match answer {
+                // A refusal is an answer as well.
+                Err(error @ ProfinetError::Dcp { .. }) => return Ok(Err(error)),
+                Err(error) if !is_open => return Err(error),
+                _ => {}
+            }
+            Ok(commission::settled(interface, mac, what, is_so))
+        });
+        match set.await? {
+            Ok(found) => Ok(found),
+            Err(error @ ProfinetError::Dcp { .. }) => {
+                let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
+                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the station as it is"))
+            }
+            Err(error) => {
+                let message = format!("{}: sent, and whether it was done is unknown: {error}", self.label);
+                Err(Failure::new(Kind::OutcomeUnknown, message).hint("`yrcx profinet identify` tells"))
+            }
+        }
+    }
+
+    /// Connects with this layout until data flows, and takes leave; what the station says to it.
+    pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
+        let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
+        let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
+        Ok(connect::attempt(&profinet, settings, self.tap.clone()).await)
     }
 
     /// Why something did not come about.

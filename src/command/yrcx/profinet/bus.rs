@@ -4,7 +4,9 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::Board;
+pub use super::discover::Search;
 pub use super::serve::ServeArgs;
+pub use super::station::Station;
 use super::{check, connect, decode, simulated};
 use crate::command::yrcx::decode::images::BusDecoder;
 use crate::command::yrcx::fieldbus::{self, At, Explained, Fieldbus, Purpose, Simulation, bus_of};

@@ -13,6 +13,7 @@ use crate::transport::profinet::commission::Found;
 use crate::transport::profinet::error::{Misfit, ProfinetError};
 use crate::transport::profinet::layout::Layout;
 use crate::transport::profinet::simulated::Network;
+use crate::transport::profinet::wire::frame::ETHER_TYPE;
 use crate::transport::profinet::wire::record::RealModule;
 
 /// In the order in which they are looked at.
@@ -37,7 +38,7 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     let here = usable.map_err(|error| ("interface", board.failure(error)))?;
     layers.ok("interface", format!("{} is up with a carrier, {} at {}", interface.name, here.address, interface.mac));
     if interface.network().is_none() {
-        interface.raw_socket().map_err(|error| ("privilege", board.failure(error)))?;
+        interface.raw_socket(ETHER_TYPE).map_err(|error| ("privilege", board.failure(error)))?;
     }
     layers.ok("privilege", "raw Ethernet is allowed");
     let found = board.station().await.map_err(|failure| ("station", failure))?;

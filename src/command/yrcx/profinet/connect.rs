@@ -8,10 +8,13 @@ use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
 use crate::files;
 use crate::settings::target::profinet::Profinet;
+use crate::transport::image::tap::Tap;
 use crate::transport::image::{Cause, ImageLink, LinkError};
+use crate::transport::profinet::error::ProfinetError;
 use crate::transport::profinet::gsdml::{Gsdml, Head};
 use crate::transport::profinet::layout::{Direction, Layout};
 use crate::transport::profinet::link::Link;
+use crate::transport::profinet::network;
 use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup};
 use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::record::Parameter;
@@ -29,6 +32,16 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
         return Ok(ImageLink::in_process(Box::new(network.open(settings)?)));
     }
     Ok(ImageLink::over(Link::open(&profinet.interface, settings, at.tap).await?))
+}
+
+/// Opens a connection until data flows, and takes leave at once.
+pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -> Result<(), ProfinetError> {
+    if let Some(network) = Network::find(&profinet.interface) {
+        // The other end is in this process, and always hears of the end.
+        let _ = ImageLink::in_process(Box::new(network.open(settings)?)).close().await;
+        return Ok(());
+    }
+    network::Network::shared(&profinet.interface)?.open(settings, tap).await?.close().await
 }
 
 /// What the URL says.

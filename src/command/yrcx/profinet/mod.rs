@@ -1,9 +1,95 @@
-//! Controllers on PROFINET IO: this machine is the IO controller of a device.
+//! Controllers on PROFINET IO, of which this machine is the IO controller, and `yrcx profinet`: stations, their names and
+//! addresses, and the maker's file.
 
 mod board;
 pub mod bus;
 mod check;
 mod connect;
 mod decode;
+mod discover;
+mod gsdml;
+mod identify;
+mod probe;
 mod serve;
+mod set;
 pub mod simulated;
+mod station;
+
+use serde_json::json;
+
+use self::board::Board;
+use super::connect::{Endpoint, endpoint};
+use super::link::Link;
+use crate::command::{Offline, commands};
+use crate::controller::text;
+use crate::failure::Failure;
+use crate::settings::Robot;
+use crate::settings::target::profinet::SCHEME;
+use crate::transport::profinet::commission;
+use crate::transport::profinet::settings::Station;
+use crate::transport::profinet::wire::Mac;
+use crate::transport::profinet::wire::dcp::Block;
+
+/// The board of a link that is for it alone.
+fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
+    link.board(SCHEME.bus)
+}
+
+/// Why `--unit` means nothing here.
+const NO_UNIT: &str = "the station is that of the whole controller";
+
+/// The station of a robot, before anybody is asked.
+fn station_of(robot: &Robot) -> Result<Station, Failure> {
+    let other = || Failure::usage(format!("{} is on another fieldbus than {}", robot.label(), SCHEME.bus));
+    match endpoint(robot)? {
+        Endpoint::Bus(bus, _) => {
+            bus.options().map(|options: &crate::settings::target::profinet::Profinet| options.station.clone())
+        }
+        Endpoint::Sim(_) => Some(Station::Name(simulated::NAME.to_owned())),
+    }
+    .ok_or_else(other)
+}
+
+/// In a dry run, notes the question for the station.
+fn rehearse_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
+    let question = commission::looking_for(&station_of(robot)?, 0);
+    let hex = text::hex(&commission::identify(Mac::default(), &question));
+    link.rehearse_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: which card the station has" }))
+}
+
+/// The frame that sets something, as far as it is known before anybody was asked.
+fn frame_for(station: &Station, block: &Block) -> String {
+    let (destination, is_known) = match station {
+        Station::Name(_) => (Mac::default(), false),
+        Station::Mac(mac) => (*mac, true),
+    };
+    unknown(&text::hex(&commission::set(Mac::default(), destination, 0, block)), is_known)
+}
+
+/// A frame without what is not known before: the cards of this machine and of a station that is known by its name, and the
+/// number of the question (bytes 0, 6 and 18).
+fn unknown(hex: &str, is_destination_known: bool) -> String {
+    let is_unknown =
+        |digit| (!is_destination_known && digit < 12) || (12..24).contains(&digit) || (36..44).contains(&digit);
+    hex.chars().enumerate().map(|(digit, c)| if is_unknown(digit) { '?' } else { c }).collect()
+}
+
+commands! {
+    /// What a station can be asked, and what can be set at it.
+    pub enum Profinet {
+        /// Show who a station is: name, card, maker, address
+        Identify(identify::Identify),
+        /// Show records and modules of the station, and find the layout for a target
+        Probe(probe::Probe),
+        /// Make the light of the station blink
+        Blink(set::Blink),
+        /// Give the station a name
+        SetName(set::SetName),
+        /// Give the station an IP address
+        SetIp(set::SetIp),
+        /// Make the station forget its name and its address
+        Reset(set::Reset),
+        /// Read the maker's GSDML file: modules, and the layout for a target
+        Gsdml(Offline<gsdml::ReadFile>),
+    }
+}

@@ -7,13 +7,12 @@ use crate::command::yrcx::fieldbus::{Serve, Served};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
-use crate::settings::target::profinet::SCHEME;
+use crate::settings::target::profinet::{self, SCHEME};
 use crate::transport::image::LinkError;
 use crate::transport::profinet::device::Fault;
 use crate::transport::profinet::device::server::Server;
 use crate::transport::profinet::interface::Interface;
 use crate::transport::profinet::layout::Layout;
-use crate::transport::profinet::wire::dcp::check_name;
 
 /// What the device is, and what it does wrong.
 #[derive(Debug, Args)]
@@ -23,7 +22,7 @@ pub struct ServeArgs {
     #[arg(long, value_name = "IFACE")]
     interface: Option<String>,
     /// PROFINET: name of the station
-    #[arg(long, value_name = "NAME", default_value = NAME, value_parser = name)]
+    #[arg(long, value_name = "NAME", default_value = NAME, value_parser = profinet::name)]
     station_name: String,
     /// PROFINET: modules of the device, as in 1:0x101:i48,2:0x102:o48
     #[arg(long, value_name = "LAYOUT")]
@@ -32,10 +31,6 @@ pub struct ServeArgs {
     /// owned and others
     #[arg(long, value_name = "WHAT", value_parser = fault)]
     device_fault: Option<Fault>,
-}
-
-fn name(text: &str) -> Result<String, String> {
-    check_name(text).map(|()| text.to_owned())
 }
 
 impl Serve for ServeArgs {

@@ -89,6 +89,8 @@ fn mistakes_are_named_with_line_and_element() {
         ("ModuleItemTarget=\"N\"", "ModuleItemTarget=\"Q\"", 8, "ModuleItemRef", "no ModuleItem 'Q'"),
         ("DataType=\"Unsigned16\"/", "DataType=\"Blob\"/", 16, "DataItem", "'Blob' is not known"),
         ("PhysicalSlots=\"0..3\"", "PhysicalSlots=\"a..3\"", 5, "DeviceAccessPointItem", "no list of numbers"),
+        ("FixedInSlots=\"1\"", "FixedInSlots=\"0..65535 0..65535\"", 8, "ModuleItemRef", "more than 4096"),
+        ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "512 submodules are the most"),
         ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "are no bytes"),
         ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "does not fit its record"),
         ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is no Unsigned16"),

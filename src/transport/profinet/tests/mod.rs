@@ -1,5 +1,7 @@
 //! The controller against the device, in virtual time.
 
+#[cfg(target_os = "linux")]
+mod commission;
 mod faults;
 mod opening;
 #[cfg(target_os = "linux")]

@@ -11,6 +11,7 @@ use crate::bytes::Reader;
 pub use crate::bytes::{Order, Problem, WireError};
 
 pub mod alarm;
+pub mod arp;
 pub mod block;
 pub mod connect;
 pub mod cyclic;

@@ -1,0 +1,68 @@
+//! Which stations answer on an interface.
+
+use std::time::Duration;
+
+use clap::Args;
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::station::Station;
+use crate::command::yrcx::fieldbus::{self, Found, Scope, fields};
+use crate::command::yrcx::link_error::not_open;
+use crate::failure::Failure;
+use crate::settings::target::profinet::SCHEME;
+use crate::transport::image::LinkError;
+use crate::transport::image::tap::Tap;
+use crate::transport::profinet::commission;
+use crate::transport::profinet::interface::Interface;
+
+/// Which interface to ask on.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct Search {
+    /// Ask all stations of PROFINET behind this Ethernet interface, as in eth0 (repeatable)
+    #[arg(long = "interface", value_name = "IFACE")]
+    interfaces: Vec<String>,
+}
+
+impl fieldbus::Search for Search {
+    fn scope(&self) -> Scope {
+        if self.interfaces.is_empty() { Scope::Nothing } else { Scope::Network }
+    }
+
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+        async move {
+            let mut all = Vec::new();
+            for name in &self.interfaces {
+                let (name, tap) = (name.clone(), tap.clone());
+                let asked = tokio::task::spawn_blocking(move || {
+                    let mut interface = Interface::find(&name)?;
+                    interface.tap = tap;
+                    commission::stations(&interface, wait).map(|found| (name, found))
+                });
+                let asked = asked.await.map_err(|error| Failure::local(error.to_string()))?;
+                let (name, found) = asked.map_err(|error| not_open("discover", &SCHEME, &LinkError::from(error)))?;
+                for station in Station::all(&found) {
+                    all.push(found_station(&station, &name)?);
+                }
+            }
+            Ok(all)
+        }
+        .boxed_local()
+    }
+}
+
+fn found_station(station: &Station, interface: &str) -> Result<Found, Failure> {
+    // A name that two have leads nowhere.
+    let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has its name too"));
+    let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };
+    let name = if station.station.is_empty() { "no name" } else { &station.station };
+    Ok(Found {
+        address: station.ip.clone().unwrap_or_else(|| station.mac.clone()),
+        target: format!("{}://{place}@{interface}", SCHEME.name),
+        // The number of the maker is not known: what the station is called is all there is.
+        is_yrcx: ["RCX", "YAMAHA"].iter().any(|word| station.kind.to_uppercase().contains(word)),
+        device: format!("{name}, {}", station.in_a_line()),
+        identity: fields(station)?,
+    })
+}

@@ -1,0 +1,196 @@
+//! `yrcx profinet gsdml`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::{OfflineCommand, Report};
+use crate::controller::yrcx::image::Image;
+use crate::failure::Failure;
+use crate::files;
+use crate::output::Screen;
+use crate::output::view::{Cell, Section, Table, View};
+use crate::transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
+use crate::transport::profinet::layout::Direction;
+
+/// Reads the maker's file of a device: which modules it has, and the layout that a target needs. Takes no robot.
+#[derive(Debug, Args)]
+#[command(after_help = "A mistake in the file is told with its line and element (exit 2). The layout is that of the \
+                        modules of 48 bytes each way, which is what a YRCX has; where the file leaves a choice, write \
+                        the layout into the target by hand: `armctl help profinet` has its form.")]
+pub struct ReadFile {
+    /// The file: GSDML-V2.35-….xml
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+impl OfflineCommand for ReadFile {
+    type Report = Described;
+    const ID: &'static str = "yrcx.profinet.gsdml";
+
+    fn run(&self, _screen: &Screen) -> Result<Described, Failure> {
+        let shown = self.file.display();
+        let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
+        let read = Gsdml::parse(&bytes).map_err(|error| {
+            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device's maker")
+        })?;
+        Ok(Described::from(&read))
+    }
+}
+
+/// A device as its maker describes it. Names are untrusted.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Described {
+    /// As in `0x0123`.
+    vendor: String,
+    /// As in `0x0001`.
+    device: String,
+    /// What the device may have in slot 0: one of them is plugged.
+    access_points: Vec<AccessPoint>,
+}
+
+/// An access point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct AccessPoint {
+    /// Its name within the file.
+    id: String,
+    name: String,
+    /// The name that a new device has; empty for none.
+    station: String,
+    /// As in `0x1`.
+    ident: String,
+    /// `advanced`, `legacy`.
+    startup: Vec<&'static str>,
+    /// Shortest time between frames.
+    cycle_us: u32,
+    modules: Vec<Module>,
+    /// `layout=` of a target with images of 48 bytes each way; null where no modules make these, or several do.
+    layout: Option<String>,
+    /// Records that are written to it at the start then.
+    parameters: Option<usize>,
+}
+
+/// A module that fits an access point.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Module {
+    /// Its name within the file.
+    id: String,
+    name: String,
+    /// As in `0x101`.
+    ident: String,
+    /// Slots that it may be in.
+    slots: Vec<u16>,
+    /// Slots that it is always in.
+    fixed: Vec<u16>,
+    /// Bytes from the device.
+    in_size: usize,
+    /// Bytes to the device.
+    out_size: usize,
+}
+
+impl From<&Gsdml> for Described {
+    fn from(read: &Gsdml) -> Self {
+        Self {
+            vendor: format!("{:#06x}", read.vendor),
+            device: format!("{:#06x}", read.device),
+            access_points: read.heads.iter().map(AccessPoint::from).collect(),
+        }
+    }
+}
+
+impl From<&Head> for AccessPoint {
+    fn from(head: &Head) -> Self {
+        let chosen = head.choose(Image::BYTES, Image::BYTES);
+        let modes = [("advanced", head.startup.0), ("legacy", head.startup.1)];
+        Self {
+            id: head.id.clone(),
+            name: head.name.clone(),
+            station: head.dns_name.clone(),
+            ident: format!("{:#x}", head.ident),
+            startup: modes.into_iter().filter(|(_, has)| *has).map(|(mode, _)| mode).collect(),
+            // In units of 31.25 us.
+            cycle_us: u32::from(head.shortest) * 125 / 4,
+            modules: head.modules.iter().map(Module::from).collect(),
+            layout: chosen.as_ref().and_then(|chosen| head.layout(chosen).ok()).map(|layout| layout.to_string()),
+            parameters: chosen.as_ref().and_then(|chosen| head.parameters(chosen).ok()).map(|records| records.len()),
+        }
+    }
+}
+
+impl From<&Fitting> for Module {
+    fn from(fitting: &Fitting) -> Self {
+        Self {
+            id: fitting.module.id.clone(),
+            name: fitting.module.name.clone(),
+            ident: format!("{:#x}", fitting.module.ident),
+            slots: fitting.slots.clone(),
+            fixed: fitting.fixed.clone(),
+            in_size: fitting.module.size(Direction::Input),
+            out_size: fitting.module.size(Direction::Output),
+        }
+    }
+}
+
+impl Report for Described {
+    fn view(&self) -> View {
+        let device = vec![("vendor", self.vendor.as_str().into()), ("device", self.device.as_str().into())];
+        let mut view = View::default().and(Section::Fields(device));
+        for head in &self.access_points {
+            let known = |text: &str| Cell::maybe((!text.is_empty()).then_some(text));
+            view = view.and(Section::Fields(vec![
+                ("access point", head.id.as_str().into()),
+                ("name", known(&head.name)),
+                ("ident", head.ident.as_str().into()),
+                ("station", known(&head.station)),
+                ("startup", head.startup.join(", ").into()),
+                ("shortest cycle", format!("{} us", head.cycle_us).into()),
+                ("layout", Cell::maybe(head.layout.as_deref())),
+                ("parameters", Cell::maybe(head.parameters.map(|count| format!("{count} records")))),
+            ]));
+            let columns = ["module", "name", "ident", "slots", "from device", "to device"];
+            let mut table = Table::new(&columns, "no module fits it");
+            for module in &head.modules {
+                let always = if module.fixed.is_empty() { "" } else { " (always there)" };
+                table.row([
+                    module.id.as_str().into(),
+                    known(&module.name),
+                    Cell::from(module.ident.as_str()).whole(),
+                    format!("{}{always}", ranges(&module.slots)).into(),
+                    module.in_size.into(),
+                    module.out_size.into(),
+                ]);
+            }
+            view = view.and(Section::Table(table));
+        }
+        view
+    }
+}
+
+/// `1 to 4, 7`.
+fn ranges(slots: &[u16]) -> String {
+    let mut ranges: Vec<(u16, u16)> = Vec::new();
+    for slot in slots {
+        match ranges.last_mut() {
+            Some((_, last)) if last.checked_add(1) == Some(*slot) => *last = *slot,
+            _ => ranges.push((*slot, *slot)),
+        }
+    }
+    let shown = ranges.iter().map(|(first, last)| match first == last {
+        true => first.to_string(),
+        false => format!("{first} to {last}"),
+    });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slots_in_a_row_are_a_range() {
+        assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1 to 3, 7, 9 to 10");
+        assert_eq!((ranges(&[]), ranges(&[u16::MAX])), (String::new(), "65535".to_owned()));
+    }
+}

@@ -1,0 +1,256 @@
+//! `yrcx profinet probe`.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::board::Board;
+use super::station::Station;
+use super::{NO_UNIT, board_of, connect, rehearse_search};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yrcx::image::Image;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::transport::profinet::commission::Identity;
+use crate::transport::profinet::error::ProfinetError;
+use crate::transport::profinet::guess;
+use crate::transport::profinet::layout::Layout;
+use crate::transport::profinet::wire::record::{Im0, RealModule};
+
+/// Asks the station for its records (I&M0, 0xF000): who it is, and which modules it has. It is not connected.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "With --try it is connected: with the layout of the target, then with those that its modules leave \
+                        possible, until data flows with one. Each connection shows the controller the image at rest, and \
+                        its end stops the robot. A station that another controller has refuses, and nothing changes."
+)]
+pub struct Probe {
+    /// Try layouts until one fits
+    #[arg(long = "try")]
+    tries: bool,
+}
+
+impl Command for Probe {
+    type Family = Yrcx;
+    type Report = Probed;
+    const ID: &'static str = "yrcx.profinet.probe";
+
+    fn risk(&self) -> Risk {
+        // The end of a connection stops the robot, though nothing here sets it in motion.
+        if self.tries { Risk::Motion } else { Risk::Read }
+    }
+
+    fn intent(&self) -> String {
+        "connect to the station with one layout after the other; the end of each connection stops the robot".to_owned()
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
+        let Context { robot, link, .. } = context;
+        link.no_unit(NO_UNIT)?;
+        link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
+        if self.tries {
+            link.then("a connection with each layout that is possible, until data flows with one");
+        }
+        rehearse_search(link, robot)?;
+        if self.tries {
+            link.permit(Self::ID, self.risk())?;
+        }
+        let board: &Board = board_of(link)?;
+        let found = board.station().await?;
+        let station = Station::from(&found);
+        let identity = board.identity(found).await?;
+        let guesses = possible(board, &identity);
+        let tried = if self.tries { attempts(board, guesses.into()).await? } else { untried(&guesses) };
+        Ok(Probed::new(station, identity, tried, self.tries))
+    }
+}
+
+/// Layouts that may fit, the one of the target first.
+fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
+    let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
+    // A target that does not tell a layout is what this is for.
+    let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
+    let guessed = match &identity.modules {
+        Ok(real) => guess::layouts(real, bytes),
+        // The answer to it tells what the device has.
+        Err(_) => vec![Layout::two_modules(1, 2)],
+    };
+    let mut layouts: Vec<Layout> = Vec::new();
+    for layout in told.into_iter().chain(guessed) {
+        if !layouts.contains(&layout) {
+            layouts.push(layout);
+        }
+    }
+    layouts
+}
+
+/// Most connections that are tried.
+const MOST: usize = 10;
+
+async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
+    let mut tried: Vec<(Layout, Attempt)> = Vec::new();
+    while let Some(layout) = left.pop_front().filter(|_| tried.len() < MOST) {
+        if tried.iter().any(|(other, _)| *other == layout) {
+            continue;
+        }
+        let answer = board.attempt(&layout).await?;
+        if let Err(ProfinetError::Modules(misfits)) = &answer {
+            left.extend(guess::adjusted(&layout, misfits));
+        }
+        let is_over = match &answer {
+            Ok(()) => true,
+            Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
+            // Nobody is there any more, or this machine is not ready for it.
+            Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
+            Err(_) => false,
+        };
+        let text = answer.as_ref().map_or_else(ToString::to_string, |()| "data flows both ways".to_owned());
+        let attempt = Attempt { layout: layout.to_string(), fits: Some(answer.is_ok()), answer: Some(text) };
+        tried.push((layout, attempt));
+        if is_over {
+            break;
+        }
+    }
+    Ok(tried.into_iter().map(|(_, attempt)| attempt).collect())
+}
+
+fn untried(layouts: &[Layout]) -> Vec<Attempt> {
+    layouts.iter().map(|layout| Attempt { layout: layout.to_string(), fits: None, answer: None }).collect()
+}
+
+/// What a station has.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Probed {
+    #[serde(flatten)]
+    station: Station,
+    /// I&M0; null where the station does not tell.
+    identity: Option<Product>,
+    /// Modules that are there; null where the station does not tell.
+    modules: Option<Vec<Module>>,
+    /// Why the station does not tell.
+    refusals: Vec<String>,
+    /// Layouts that may fit, or were tried, as `layout=` of a target wants them.
+    layouts: Vec<Attempt>,
+    #[serde(skip)]
+    has_tried: bool,
+}
+
+/// I&M0. Its texts are untrusted.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Product {
+    order_id: String,
+    serial: String,
+    /// As in `0x0123`.
+    maker: String,
+    hardware: u16,
+    /// As in `V1.2.3`.
+    software: String,
+}
+
+/// A module.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Module {
+    slot: u16,
+    /// As in `0x101`.
+    ident: String,
+    /// Subslots with their kinds, as in `0x1:0x1`.
+    submodules: Vec<String>,
+}
+
+/// A layout.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Attempt {
+    /// `0:0x1,1:0x101:i48,2:0x102:o48`.
+    layout: String,
+    /// Null where it was not tried.
+    fits: Option<bool>,
+    /// What came of it.
+    answer: Option<String>,
+}
+
+impl From<Im0> for Product {
+    fn from(im0: Im0) -> Self {
+        let (released, major, minor, patch) = im0.software;
+        Self {
+            order_id: im0.order_id,
+            serial: im0.serial,
+            maker: format!("{:#06x}", im0.vendor),
+            hardware: im0.hardware,
+            software: format!("{released}{major}.{minor}.{patch}"),
+        }
+    }
+}
+
+impl From<RealModule> for Module {
+    fn from(module: RealModule) -> Self {
+        let shown = |(subslot, ident): &(u16, u32)| format!("{subslot:#x}:{ident:#x}");
+        Self {
+            slot: module.slot,
+            ident: format!("{:#x}", module.ident),
+            submodules: module.submodules.iter().map(shown).collect(),
+        }
+    }
+}
+
+impl Probed {
+    fn new(station: Station, identity: Identity, layouts: Vec<Attempt>, has_tried: bool) -> Self {
+        let mut refusals = Vec::new();
+        let mut refused = |error: &ProfinetError| refusals.push(error.to_string());
+        let product = identity.im0.inspect_err(&mut refused).ok().map(Product::from);
+        let modules = identity.modules.inspect_err(&mut refused).ok();
+        let modules = modules.map(|modules| modules.into_iter().map(Module::from).collect());
+        Self { station, identity: product, modules, refusals, layouts, has_tried }
+    }
+}
+
+impl Report for Probed {
+    fn view(&self) -> View {
+        let mut fields = self.station.fields();
+        if let Some(product) = &self.identity {
+            fields.extend([
+                ("order id", Cell::from(product.order_id.as_str())),
+                ("serial", product.serial.as_str().into()),
+                ("maker", product.maker.as_str().into()),
+                ("hardware", product.hardware.to_string().into()),
+                ("software", product.software.as_str().into()),
+            ]);
+        }
+        fields.extend(self.refusals.iter().map(|why| ("remark", Cell::from(why.as_str()).tone(Tone::Warning))));
+        let mut view = View::default().and(Section::Fields(fields));
+        if let Some(modules) = &self.modules {
+            let mut table = Table::new(&["slot", "module", "submodules"], "no module is plugged");
+            for module in modules {
+                table.row([module.slot.into(), module.ident.as_str().into(), module.submodules.join(" ").into()]);
+            }
+            view = view.and(Section::Table(table));
+        }
+        let mut table = Table::new(&["layout", "answer"], "no layout is possible");
+        for attempt in &self.layouts {
+            let answer = Cell::from(attempt.answer.as_deref().unwrap_or("not tried"));
+            let tone = match attempt.fits {
+                Some(true) => Tone::Good,
+                Some(false) => Tone::Bad,
+                None => Tone::Plain,
+            };
+            table.row([Cell::from(attempt.layout.as_str()).whole(), answer.tone(tone)]);
+        }
+        view.and(Section::Table(table))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        let is_open = self.has_tried && !self.layouts.iter().any(|attempt| attempt.fits == Some(true));
+        is_open.then(|| {
+            Failure::new(Kind::ConditionNotMet, "no layout that was tried fits")
+                .hint("get the GSDML file of the unit: `armctl yrcx profinet gsdml FILE` reads it")
+        })
+    }
+}

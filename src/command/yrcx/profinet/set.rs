@@ -1,0 +1,298 @@
+//! `yrcx profinet blink`, `set-name`, `set-ip` and `reset`: what is set at a station by DCP.
+
+use std::net::Ipv4Addr;
+
+use clap::Args;
+use serde_json::json;
+
+use super::board::Board;
+use super::{NO_UNIT, board_of, frame_for, rehearse_search, station_of};
+use crate::command::frame::dry_run::Known as _;
+use crate::command::frame::orders::Done;
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context};
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
+use crate::settings::target::profinet;
+use crate::transport::profinet::commission::Found;
+use crate::transport::profinet::wire::dcp::{Block, IpSuite, Station};
+
+/// What a station that a controller is connected to makes of a new name or address.
+const ENDS: &str = "If a controller is connected to it, that may end the connection, which stops the robot.";
+
+/// Makes the light of the station blink for about three seconds, to find it in the cabinet.
+#[derive(Debug, Args)]
+pub struct Blink {}
+
+/// Gives the station a name (DCP Set). It keeps the name when it is switched off, unless --temporary.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Names have small letters, digits, - and . only, 63 characters between dots. A name that another \
+                        station has is refused. Afterwards the station is profinet://NAME@eth0."
+)]
+pub struct SetName {
+    /// The new name, as in robot-7
+    #[arg(value_name = "NAME", value_parser = profinet::name)]
+    name: String,
+    /// Only until it is switched off
+    #[arg(long)]
+    temporary: bool,
+}
+
+/// Gives the station an IP address (DCP Set). It keeps it when it is switched off, unless --temporary.
+#[derive(Debug, Args)]
+#[command(after_help = "Before, ARP asks whether somebody has the address, which is then refused. A target with ip= \
+                        sets the address at every start of a connection, and needs no set-ip.")]
+pub struct SetIp {
+    /// The new address, and the bits of its mask: 192.168.0.10/24
+    #[arg(value_name = "ADDRESS/BITS", value_parser = suite)]
+    address: IpSuite,
+    /// Router to other networks
+    #[arg(long, value_name = "ADDRESS")]
+    gateway: Option<Ipv4Addr>,
+    /// Only until it is switched off
+    #[arg(long)]
+    temporary: bool,
+}
+
+/// Makes the station forget its name and its address (DCP Reset to factory, communication parameters).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Afterwards it has no name, and is reached by its card: profinet://02:00:00:00:00:01@eth0. Data and \
+                        programs of the robot are not touched."
+)]
+pub struct Reset {}
+
+fn suite(text: &str) -> Result<IpSuite, String> {
+    let short = || format!("the bits of the mask are missing, as in {text}/24");
+    text.contains('/').then_some(()).ok_or_else(short)?;
+    profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
+}
+
+/// Something to be set.
+struct Task<C: Fn(&Found) -> Change> {
+    id: &'static str,
+    risk: Risk,
+    /// What the frame does.
+    what: &'static str,
+    block: Block,
+    change: C,
+    /// What the station says of itself once it is done.
+    is_so: Box<dyn Fn(&Station) -> bool + Send>,
+}
+
+/// Sets it, once what is lost by that was confirmed; `check` says whether it can be. A dry run notes the frames.
+async fn set<C: Fn(&Found) -> Change>(
+    context: Context<'_, Yrcx>,
+    task: Task<C>,
+    check: impl AsyncFnOnce(&Board, &Found) -> Result<(), Failure>,
+) -> Result<Found, Failure> {
+    let Context { robot, link, authority, .. } = context;
+    link.no_unit(NO_UNIT)?;
+    rehearse_search(link, robot).known()?;
+    let hex = frame_for(&station_of(robot)?, &task.block);
+    link.rehearse_frame(json!({ "hex": hex, "about": task.what }))?;
+    let found = {
+        let board: &Board = board_of(link)?;
+        let found = board.station().await?;
+        check(board, &found).await?;
+        found
+    };
+    authority.confirm(&(task.change)(&found)).await?;
+    link.permit(task.id, task.risk)?;
+    board_of(link)?.set(&found, task.what, task.block, task.is_so).await
+}
+
+/// Lost by it is what is kept for good.
+const fn risk(temporary: bool) -> Risk {
+    if temporary { Risk::Write } else { Risk::Destroy }
+}
+
+const fn kept(temporary: bool) -> &'static str {
+    if temporary { " until it is switched off" } else { "" }
+}
+
+impl Command for Blink {
+    type Family = Yrcx;
+    type Report = Done;
+    const ID: &'static str = "yrcx.profinet.blink";
+
+    fn risk(&self) -> Risk {
+        Risk::Write
+    }
+
+    fn intent(&self) -> String {
+        "make the light of the station blink".to_owned()
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let task = Task {
+            id: Self::ID,
+            risk: self.risk(),
+            what: "DCP Set signal",
+            block: Block::signal(),
+            change: |_: &Found| Change::nothing(),
+            is_so: Box::new(|_| true),
+        };
+        let found = set(context, task, async |_, _| Ok(())).await?;
+        Ok(Done::new(format!("station {} blinks for about three seconds", found.mac)))
+    }
+}
+
+impl Command for SetName {
+    type Family = Yrcx;
+    type Report = Done;
+    const ID: &'static str = "yrcx.profinet.set-name";
+
+    fn risk(&self) -> Risk {
+        risk(self.temporary)
+    }
+
+    fn intent(&self) -> String {
+        format!("give the station the name '{}'{}", self.name, kept(self.temporary))
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let change = |found: &Found| {
+            let old = &found.station.name;
+            let change = Change::new(format!("overwrite the name of station {}", found.mac));
+            if old.is_empty() { Change::nothing() } else { change.replaces("name", old, &self.name).note(ENDS) }
+        };
+        let name = self.name.clone();
+        let task = Task {
+            id: Self::ID,
+            risk: self.risk(),
+            what: "DCP Set name",
+            block: Block::set_name(&self.name, !self.temporary),
+            change,
+            is_so: Box::new(move |said| said.name == name),
+        };
+        let found = set(context, task, async |board, found| match board.namesake(&self.name, found).await? {
+            Some(other) => Err(taken(&format!("the name '{}'", self.name), &other)),
+            None => Ok(()),
+        });
+        let found = found.await?;
+        Ok(Done::new(format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary))))
+    }
+}
+
+impl Command for SetIp {
+    type Family = Yrcx;
+    type Report = Done;
+    const ID: &'static str = "yrcx.profinet.set-ip";
+
+    fn risk(&self) -> Risk {
+        risk(self.temporary)
+    }
+
+    fn intent(&self) -> String {
+        format!("give the station the address {}{}", self.address.address, kept(self.temporary))
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let address = self.address.address;
+        let suite = IpSuite { gateway: self.gateway.unwrap_or(self.address.gateway), ..self.address };
+        let change = |found: &Found| match found.station.address() {
+            None => Change::nothing(),
+            Some(old) => Change::new(format!("overwrite the address of station {}", found.mac))
+                .replaces("address", &old.to_string(), &address.to_string())
+                .note(ENDS),
+        };
+        let task = Task {
+            id: Self::ID,
+            risk: self.risk(),
+            what: "DCP Set IP",
+            block: Block::set_ip(&suite, !self.temporary),
+            change,
+            is_so: Box::new(move |said| said.address() == Some(address)),
+        };
+        let screen = context.screen;
+        let found = set(context, task, async |board, found| {
+            if let Some(own) = board.interface()?.ip.filter(|own| !own.reaches(address)) {
+                screen.note(&format!("warning: {address} is in another network than {} of this machine", own.address));
+            }
+            match board.holder(address, found).await? {
+                Some(other) => Err(taken(&format!("the address {address}"), &other)),
+                None => Ok(()),
+            }
+        });
+        let found = found.await?;
+        Ok(Done::new(format!("station {} has the address {address}{}", found.mac, kept(self.temporary))))
+    }
+}
+
+/// Somebody else has it.
+fn taken(what: &str, other: &str) -> Failure {
+    Failure::new(Kind::ConditionNotMet, format!("{what} is taken: {other} has it"))
+        .hint("nothing was set; `armctl robots discover --interface IFACE` lists names and addresses")
+}
+
+impl Command for Reset {
+    type Family = Yrcx;
+    type Report = Done;
+    const ID: &'static str = "yrcx.profinet.reset";
+
+    fn risk(&self) -> Risk {
+        Risk::Destroy
+    }
+
+    fn intent(&self) -> String {
+        "make the station forget its name and its address".to_owned()
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        Confirmation::WhenKnown
+    }
+
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::Explicit
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let change = |found: &Found| {
+            let (name, address) = (&found.station.name, found.station.address());
+            let mut change = Change::new(format!("delete what station {} was given", found.mac));
+            if name.is_empty() && address.is_none() {
+                return Change::nothing();
+            }
+            if !name.is_empty() {
+                change = change.item(format!("name: {name}"));
+            }
+            if let Some(address) = address {
+                change = change.item(format!("address: {address}"));
+            }
+            change.note(ENDS)
+        };
+        let task = Task {
+            id: Self::ID,
+            risk: self.risk(),
+            what: "DCP Reset to factory",
+            block: Block::reset(),
+            change,
+            is_so: Box::new(|said| said.name.is_empty()),
+        };
+        let found = set(context, task, async |_, _| Ok(())).await?;
+        Ok(Done::new(format!("station {} has no name and no address of its own", found.mac)))
+    }
+}

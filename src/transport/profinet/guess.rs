@@ -1,0 +1,105 @@
+//! Layouts to try on a device whose maker's file nobody has.
+
+use super::error::Misfit;
+use super::layout::{Layout, Submodule};
+use super::wire::record::RealModule;
+
+/// Most layouts that are tried.
+const MOST: usize = 8;
+
+/// Layouts for images of this many bytes each way, by the modules that a device says it has. Nothing tells which of them
+/// sends and which takes, nor how much; the likelier stand first.
+pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
+    let all = real.iter().flat_map(|module| module.submodules.iter().map(move |submodule| (module, *submodule)));
+    let bare: Vec<Submodule> = all
+        .map(|(module, (subslot, ident))| Submodule {
+            slot: module.slot,
+            subslot,
+            module: module.ident,
+            ident,
+            input: 0,
+            output: 0,
+        })
+        .collect();
+    // Slot 0 is the head; its ports and those of modules have no data.
+    let places: Vec<usize> =
+        (0..bare.len()).filter(|at| bare[*at].slot != 0 && bare[*at].subslot < FIRST_PORT).collect();
+    let mut layouts = Vec::new();
+    let mut add = |input: usize, output: usize| {
+        let mut submodules = bare.clone();
+        submodules[input].input = size;
+        submodules[output].output = size;
+        layouts.extend(Layout::new(submodules).ok().filter(|_| layouts.len() < MOST));
+    };
+    for (at, first) in places.iter().enumerate() {
+        for second in &places[at + 1..] {
+            add(*first, *second);
+            add(*second, *first);
+        }
+    }
+    for only in &places {
+        add(*only, *only);
+    }
+    layouts
+}
+
+/// Subslots from this on are interfaces and ports.
+const FIRST_PORT: u16 = 0x8000;
+
+/// The layout with what the device has where it differs, if it said so: what it has nothing for is left away.
+pub fn adjusted(layout: &Layout, misfits: &[Misfit]) -> Option<Layout> {
+    let fitted = layout.submodules().iter().filter_map(|submodule| {
+        let mut submodule = *submodule;
+        for misfit in misfits.iter().filter(|misfit| misfit.slot == submodule.slot) {
+            match misfit.subslot {
+                None => submodule.module = misfit.found?,
+                Some(subslot) if subslot == submodule.subslot => submodule.ident = misfit.found?,
+                Some(_) => {}
+            }
+        }
+        Some(submodule)
+    });
+    Layout::new(fitted.collect()).ok().filter(|fitted| fitted != layout)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn module(slot: u16, ident: u32, submodules: &[(u16, u32)]) -> RealModule {
+        RealModule { slot, ident, submodules: submodules.to_vec() }
+    }
+
+    fn texts(real: &[RealModule]) -> Vec<String> {
+        layouts(real, 48).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn modules_are_tried_both_ways_round() {
+        let head = module(0, 1, &[(1, 1), (0x8000, 0x8000)]);
+        let two = [head.clone(), module(1, 0x101, &[(1, 1)]), module(2, 0x102, &[(1, 7), (0x8001, 9)])];
+        let before = "0:0x1,0.0x8000:0x1/0x8000";
+        let port = "2.0x8001:0x102/0x9";
+        assert_eq!(
+            texts(&two)[..3],
+            [
+                format!("{before},1:0x101:i48,2:0x102/0x7:o48,{port}"),
+                format!("{before},1:0x101:o48,2:0x102/0x7:i48,{port}"),
+                format!("{before},1:0x101:i48o48,2:0x102/0x7,{port}"),
+            ]
+        );
+        assert_eq!(texts(&[head.clone(), module(3, 5, &[(1, 1)])]), [format!("{before},3:0x5:i48o48")]);
+        assert_eq!(texts(&[head]), Vec::<String>::new());
+        let many: Vec<RealModule> = (1..40).map(|slot| module(slot, 1, &[(1, 1)])).collect();
+        assert_eq!(texts(&many).len(), MOST);
+    }
+
+    #[test]
+    fn what_a_device_says_it_has_is_taken() {
+        let layout: Layout = "0:1,1:0x99:i48,2:0x102:o48,3:4".parse().unwrap();
+        let misfit = |slot, subslot, found| Misfit { slot, subslot, found, expected: None };
+        let told = [misfit(1, None, Some(0x40)), misfit(2, Some(1), Some(5)), misfit(3, None, None)];
+        assert_eq!(adjusted(&layout, &told).unwrap().to_string(), "0:0x1,1:0x40:i48,2:0x102/0x5:o48");
+        assert_eq!(adjusted(&layout, &[misfit(1, None, Some(0x99))]), None, "nothing new");
+    }
+}
