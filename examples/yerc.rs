@@ -3,9 +3,9 @@
 //! The controller is a simulator in this process; `Endpoint::udp("192.0.2.10")` is one on the network.
 #![expect(clippy::print_stdout, reason = "an example tells what it does")]
 
-use std::error::Error;
 use std::time::Duration;
 
+use anyhow::Context as _;
 use armctl::client::yerc::{Client, Endpoint, Options};
 use armctl::controller::Risk;
 use armctl::controller::yerc::Model::Dx200;
@@ -15,15 +15,15 @@ use armctl::controller::yerc::payload::{PulseMove, SpeedClass};
 use armctl::controller::yerc::query::{Coordinates, MoveKind, MovePulse, ReadPosition, ReadStatus, Servo};
 
 #[tokio::main(flavor = "current_thread")]
-async fn main() -> Result<(), Box<dyn Error>> {
+async fn main() -> anyhow::Result<()> {
     // Without a grant a client reads.
     let options = Options::new(Dx200).granting(Risk::Motion);
-    let mut robot = Client::connect(Endpoint::simulator(Dx200), options).await?;
+    let mut robot = Client::connect(Endpoint::simulator(Dx200), options).await.context("connect")?;
 
     let status = robot.ask(&ReadStatus).await?;
     println!("servo on: {}, alarm: {}", status.servo_on(), status.alarm());
 
-    let job = robot.read_file(&FileName::new("TESTJOB.JBI")?).await?;
+    let job = robot.read_file(&FileName::new("TESTJOB.JBI")?).await.context("TESTJOB.JBI")?;
     println!("TESTJOB.JBI: {} bytes", job.len());
 
     robot.ask(&Servo(true)).await?;

@@ -16,6 +16,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::ValueEnum as _;
 
 use self::parser::{Parser, Refusal};
@@ -39,6 +40,10 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let args = with_family(args);
+    if let Some(version) = parser::version(&args) {
+        let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
+        return exit(screen.data(&version).map_err(|failure| tell(&screen, failure.into())));
+    }
     let mut parser = Parser::default();
     let parsed = parser.parse(&args);
     parser.abandon();
@@ -86,10 +91,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
 /// Runs it on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
     has_room()?;
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build()
-        .map_err(|error| Failure::io("start", &error))?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().context("start")?;
     let done = runtime.block_on(done);
     // A thread that waits for stdin or a name server must not hold up the end.
     runtime.shutdown_background();

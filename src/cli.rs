@@ -17,13 +17,27 @@ use crate::output::{ColorChoice, Format};
 use crate::settings::duration;
 use crate::settings::target::{Family, Given};
 
+/// What `-V` says.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// What `--version` says.
+pub const LONG_VERSION: &str = concat!(
+    env!("CARGO_PKG_VERSION"),
+    "\ncommit: ",
+    env!("ARMCTL_COMMIT"),
+    "\ndate:   ",
+    env!("ARMCTL_DATE"),
+    "\ntarget: ",
+    env!("ARMCTL_TARGET")
+);
+
 /// Talk to industrial robot controllers from a terminal or a script.
 ///
 /// Without a robot at hand, add --sim: every controller has a built-in simulator.
 #[derive(Debug, Parser)]
 #[command(
     name = "armctl",
-    version,
+    version = VERSION,
+    long_version = LONG_VERSION,
     disable_help_subcommand = true,
     arg_required_else_help = true,
     subcommand_required = true,

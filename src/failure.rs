@@ -164,16 +164,21 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// An error with context from [`anyhow`]: a [`Failure`] inside keeps its kind, anything else is a local fault.
+/// What is only told, and not looked at on its way, comes as an [`anyhow::Error`]: the contexts stand before the message of
+/// the [`Failure`] or the I/O error inside, whose kind and hint stay. Anything else is a local fault.
 impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
-        match error.downcast::<Self>() {
-            Ok(failure) => failure,
-            Err(error) => match error.downcast_ref::<std::io::Error>() {
-                Some(io) => Self::io(error.to_string(), io),
-                None => Self::local(format!("{error:#}")),
-            },
+        let mut context = String::new();
+        for cause in error.chain() {
+            if let Some(failure) = cause.downcast_ref::<Self>() {
+                return Self { message: context + &failure.message, ..failure.clone() };
+            }
+            context += &match cause.downcast_ref::<std::io::Error>() {
+                Some(io) => return Self::io(context.trim_end_matches(": "), io),
+                None => format!("{cause}: "),
+            };
         }
+        Self::local(context.trim_end_matches(": "))
     }
 }
 
@@ -204,10 +209,16 @@ mod tests {
     }
 
     #[test]
-    fn context_keeps_the_kind_of_a_failure() {
-        use anyhow::Context;
+    fn context_stands_before_the_message_and_keeps_kind_and_hint() {
+        let refused = Failure::new(Kind::Refused, "no").code("0x2060").hint("ask again");
+        let told = Failure::from(anyhow::Error::new(refused.clone()).context("job").context("cell3"));
+        assert_eq!(told, Failure { message: "cell3: job: no".into(), ..refused });
 
-        let failed: Result<(), _> = Err(Failure::new(Kind::Refused, "no")).context("while asking");
-        assert_eq!(Failure::from(failed.unwrap_err()).kind, Kind::Refused);
+        let absent = || std::io::Error::from(std::io::ErrorKind::NotFound);
+        let told = Failure::from(anyhow::Error::new(absent()).context("robots.toml"));
+        assert_eq!(told, Failure::io("robots.toml", &absent()));
+
+        let told = Failure::from(anyhow::anyhow!("a page of paper").context("printer"));
+        assert_eq!(told, Failure::local("printer: a page of paper"));
     }
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use anyhow::Context as _;
 use serde_json::Value;
 
 use super::parser::Parser;
@@ -61,7 +62,7 @@ pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
 fn read(path: &Path) -> Result<String, Failure> {
     let most = files::SETTINGS;
     let bytes = if path.as_os_str() == "-" { files::stdin(most) } else { files::read(path, most) };
-    let bytes = bytes.map_err(|error| Failure::io(path.display(), &error))?;
+    let bytes = bytes.with_context(|| path.display().to_string())?;
     let text = String::from_utf8(bytes)
         .map_err(|_| Failure::usage(format!("{}: this is not UTF-8", path.display())).hint("save the file as UTF-8"))?;
     Ok(text.strip_prefix('\u{FEFF}').map_or_else(|| text.clone(), ToOwned::to_owned))

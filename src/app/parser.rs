@@ -8,12 +8,23 @@ use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches, Subcommand}
 
 use super::misplaced;
 use super::typed::Typed;
-use crate::cli::{Cli, FamilyWord, Top, Words};
+use crate::cli::{Cli, FamilyWord, LONG_VERSION, Top, VERSION, Words};
 use crate::command::about::page::page;
 use crate::command::common::Common;
 use crate::command::families;
 use crate::failure::Failure;
 use crate::settings::target::Family;
+
+/// What a line says that asks for the version and for nothing else: there is nothing to lay out for it.
+pub fn version(args: &[OsString]) -> Option<String> {
+    let [_, flag] = args else { return None };
+    let version = match flag.to_str()? {
+        "-V" => VERSION,
+        "--version" => LONG_VERSION,
+        _ => return None,
+    };
+    Some(format!("armctl {version}\n"))
+}
 
 /// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line is tried on the
 /// words that it names alone. What was laid out as a whole serves the next line, too.
@@ -49,7 +60,9 @@ impl Refusal {
                         path.pop();
                     }
                 }
-                Self::Text(page(whole, &path, is_long))
+                let mut whole = whole.clone();
+                whole.build();
+                Self::Text(page(&whole, &path, is_long))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
                 let command = path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
@@ -67,9 +80,10 @@ impl Refusal {
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
             Self::Mistake(error) => {
                 let text = error.render().to_string();
-                let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+                let message: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
+                let message = message.join(" ");
                 let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
-                Failure::usage(message).hint(tip)
+                Failure::usage(message.trim_start_matches("error: ")).hint(tip)
             }
         }
     }
@@ -211,6 +225,16 @@ mod tests {
         }
         let narrow = lay_out(Family::Yerc, &|name| ["job", "select"].contains(&name));
         assert_eq!(narrow.get_subcommands().count(), 1);
+    }
+
+    #[test]
+    fn the_version_is_told_as_the_whole_would() {
+        for flag in ["-V", "--version"] {
+            let args = ["armctl", flag].map(OsString::from);
+            let told = Cli::command().try_get_matches_from(&args).unwrap_err();
+            assert_eq!((told.kind(), version(&args)), (ErrorKind::DisplayVersion, Some(told.to_string())));
+        }
+        assert_eq!(version(&["armctl", "--version", "-q"].map(OsString::from)), None);
     }
 
     #[test]

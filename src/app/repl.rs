@@ -13,6 +13,7 @@ mod terminal;
 use std::io::IsTerminal as _;
 use std::sync::Arc;
 
+use anyhow::Context as _;
 use tokio::io::{AsyncBufRead, AsyncBufReadExt as _, AsyncReadExt as _, BufReader};
 
 use self::assistant::Assistant;
@@ -236,7 +237,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
 
     let mut bytes = Vec::new();
     let read = script.take(LONGEST).read_until(b'\n', &mut bytes).await;
-    let length = read.map_err(|error| Failure::io("stdin", &error))?;
+    let length = read.context("stdin")?;
     if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
         return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
             .hint("give commands in lines; `armctl help repl` shows how"));

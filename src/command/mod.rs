@@ -26,6 +26,7 @@ pub mod yrcx;
 
 pub(crate) use frame::commands;
 pub use frame::{
-    Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Driver, Entry,
-    Family, Offline, OfflineCommand, Outcome, Own, OwnArguments, Report, SchemaEntry, Subcommands, ValueKind,
+    Access, AnyCommand, AnyContext, AnyReport, Candidate, Command, CommandSet, ConnectMode, Connection, Context,
+    Driver, Entry, Family, Offline, OfflineCommand, Outcome, Own, OwnArguments, Report, SchemaEntry, Subcommands,
+    ValueKind,
 };

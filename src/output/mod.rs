@@ -18,6 +18,7 @@ mod wrap;
 
 use std::io::{self, IsTerminal, Write};
 
+use anyhow::Context as _;
 use serde::Serialize;
 
 use crate::failure::{Failure, Kind};
@@ -140,7 +141,7 @@ impl Screen {
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
         let _busy = busy::busy();
         let mut stdout = io::stdout().lock();
-        stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| Failure::io("stdout", &error))
+        Ok(stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout")?)
     }
 
     /// Writes a value as JSON: a line in a pipe or as `jsonl`, indented on a terminal.
@@ -159,7 +160,7 @@ impl Screen {
         let mut stdout = io::BufWriter::new(io::stdout().lock());
         let written = escape::json_to(&mut stdout, value, pretty).map_err(io::Error::from);
         let ended = written.and_then(|()| stdout.write_all(b"\n")).and_then(|()| stdout.flush());
-        ended.map_err(|error| Failure::io("stdout", &error))
+        Ok(ended.context("stdout")?)
     }
 
     /// Says something on stderr, unless `--quiet`.

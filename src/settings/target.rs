@@ -6,9 +6,11 @@ pub mod bus;
 pub mod devicenet;
 pub mod eip;
 pub mod profibus;
+#[cfg(target_os = "linux")]
+pub mod profinet;
+mod url;
 
 use std::fmt;
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -17,6 +19,8 @@ use serialport::{DataBits, Parity, StopBits};
 
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
+
+use self::url::{Query, authority, baud, choice, host_and_port, percent_decoded, port};
 
 pub use address::Address;
 pub use bare::Given;
@@ -194,8 +198,6 @@ const ROBOT_PORT: u16 = 10040;
 const FILE_PORT: u16 = 10041;
 /// Speed of a serial line (TO 1-2).
 const BAUD: u32 = 9600;
-/// Speeds that ports can have.
-const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
 impl Target {
     /// The simulator with its built-in start state.
@@ -312,7 +314,7 @@ fn hint(scheme: &str) -> String {
         None => format!(
             "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: for the \
              simulator; `armctl help targets` explains them",
-            BUSES.each_ref().map(|bus| bus.shortest).join(", ")
+            BUSES.iter().map(|bus| bus.shortest).collect::<Vec<_>>().join(", ")
         ),
     }
 }
@@ -412,30 +414,6 @@ impl Sim {
     }
 }
 
-/// What stands between the slashes and the parameters.
-fn authority<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
-    let authority = place.strip_prefix("//").ok_or_else(|| format!("two slashes are missing after {scheme}:"))?;
-    Ok(authority.strip_suffix('/').unwrap_or(authority))
-}
-
-/// One of some words, the first of which is the usual one.
-fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&str, T); N]) -> Result<T, String> {
-    let Some(given) = query.take(key) else { return Ok(known[0].1) };
-    let found = known.iter().find(|(word, _)| *word == given);
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let words = known.map(|(word, _)| word).join(" or ");
-        format!("{key} is {words}, not '{given}'")
-    })
-}
-
-fn baud(query: &mut Query) -> Result<Option<u32>, String> {
-    let Some(text) = query.take("baud") else { return Ok(None) };
-    match text.parse() {
-        Ok(baud) if BAUDS.contains(&baud) => Ok(Some(baud)),
-        _ => Err(format!("baud is a number from {} to {}, not '{text}'", BAUDS.start(), BAUDS.end())),
-    }
-}
-
 fn traits(query: &mut Query) -> Result<YercTraits, String> {
     let model = query.take("model").map(|name| name.parse()).transpose()?;
     let move_words = match query.take("move_words").as_deref() {
@@ -445,89 +423,6 @@ fn traits(query: &mut Query) -> Result<YercTraits, String> {
         Some(other) => return Err(format!("move_words is 25 or 26, not '{other}'")),
     };
     Ok(YercTraits { model, move_words })
-}
-
-/// Splits `host:port`, `[v6]:port`, or either without a port.
-fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> {
-    let (host, port) = if let Some(rest) = authority.strip_prefix('[') {
-        let (host, rest) = rest.split_once(']').ok_or("the bracket of the IPv6 address is not closed")?;
-        match rest.strip_prefix(':') {
-            Some(port) => (host, Some(port)),
-            None if rest.is_empty() => (host, None),
-            None => return Err(format!("'{rest}' after the address is no port")),
-        }
-    } else {
-        match authority.split_once(':') {
-            Some((host, port)) => (host, Some(port)),
-            None => (authority, None),
-        }
-    };
-    if host.is_empty() {
-        return Err("the host is missing".to_owned());
-    }
-    if host.chars().any(|c| c.is_whitespace() || c.is_control() || "/@#".contains(c)) {
-        return Err(format!("'{host}' is no host name"));
-    }
-    Ok((host.to_owned(), port))
-}
-
-fn port(name: &str, text: &str) -> Result<u16, String> {
-    match text.parse() {
-        Ok(port) if port > 0 => Ok(port),
-        _ => Err(format!("{name} is a number from 1 to 65535, not '{text}'")),
-    }
-}
-
-/// The part of a URL after `?`.
-struct Query(Vec<(String, String)>);
-
-impl fmt::Display for Query {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join("&"))
-    }
-}
-
-impl Query {
-    fn parse(text: &str) -> Result<Self, String> {
-        let mut pairs: Vec<(String, String)> = Vec::new();
-        for pair in text.split('&').filter(|pair| !pair.is_empty()) {
-            let (key, value) = pair.split_once('=').ok_or_else(|| format!("'{pair}' has no value"))?;
-            if pairs.iter().any(|(known, _)| known == key) {
-                return Err(format!("'{key}' is there twice"));
-            }
-            pairs.push((key.to_owned(), percent_decoded(value)?));
-        }
-        Ok(Self(pairs))
-    }
-
-    fn take(&mut self, key: &str) -> Option<String> {
-        let index = self.0.iter().position(|(known, _)| known == key)?;
-        Some(self.0.remove(index).1)
-    }
-
-    /// What nobody took is a mistake, not decoration.
-    fn finish(&self) -> Result<(), String> {
-        match self.0.first() {
-            None => Ok(()),
-            Some((key, _)) => Err(format!("unknown parameter '{key}'")),
-        }
-    }
-}
-
-fn percent_decoded(text: &str) -> Result<String, String> {
-    let wrong = || format!("'{text}' has a damaged % escape");
-    let mut bytes = Vec::with_capacity(text.len());
-    let mut rest = text.bytes();
-    while let Some(byte) = rest.next() {
-        if byte != b'%' {
-            bytes.push(byte);
-            continue;
-        }
-        let mut digit = || rest.next().and_then(|byte| char::from(byte).to_digit(16)).ok_or_else(wrong);
-        let value = digit()? * 16 + digit()?;
-        bytes.push(u8::try_from(value).map_err(|_| wrong())?);
-    }
-    String::from_utf8(bytes).map_err(|_| wrong())
 }
 
 #[cfg(test)]
@@ -568,7 +463,7 @@ mod tests {
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
             ("sim:?axes=5", "axes is a number from 1 to 4"),
-            ("sim:?bus=can", "devicenet-compact or profibus, not 'can'"),
+            ("sim:?bus=can", "devicenet-compact or profibus or profinet, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
             ("serial://", "port is missing"),

@@ -11,10 +11,9 @@ use clap::builder::ArgExt;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory as _};
 use clap_complete::engine::{ArgValueCompleter, CompletionCandidate};
 
-use super::Candidate;
 use super::values::{self, Context};
 use crate::cli::Cli;
-use crate::command::ValueKind;
+use crate::command::{Candidate, ValueKind};
 
 /// How candidates are marked, on their way through the engine, behind which more must follow.
 const BEGUN: &str = "begun";

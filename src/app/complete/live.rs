@@ -8,14 +8,16 @@ use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
 use std::time::{Duration, Instant};
 
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
 use serde_json::Value;
 use tokio::time::timeout;
 
-use super::Candidate;
 use crate::app::parser::Parser;
 use crate::app::prepared::{Invocation, Task};
 use crate::command::frame::authority::Authority;
-use crate::command::{Access, AnyContext};
+use crate::command::frame::kind::{Ask, Question};
+use crate::command::{Access, AnyContext, Candidate};
 use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
@@ -23,33 +25,9 @@ use crate::settings::{Robot, Sessions, Setting, Sources};
 /// The longest that somebody waits.
 pub(super) const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What can be asked for.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Wish {
-    /// Jobs of a yerc controller.
-    Jobs,
-    /// All its files.
-    Files,
-    /// Tasks of a YRCX with a program in them.
-    Tasks,
-    /// Numbers of the programs in them.
-    Programs,
-    /// Names of the programs in them.
-    ProgramNames,
-}
-
-impl Wish {
-    const fn family(self) -> Family {
-        match self {
-            Self::Jobs | Self::Files => Family::Yerc,
-            Self::Tasks | Self::Programs | Self::ProgramNames => Family::Yrcx,
-        }
-    }
-}
-
 /// What the robot of the line answers in time.
-pub(super) fn values(wish: Wish, sources: &Sources, patience: Duration) -> Vec<Candidate> {
-    let Some(robot) = robot(wish.family(), sources, patience) else { return Vec::new() };
+pub(super) fn values(family: Family, ask: Question, sources: &Sources, patience: Duration) -> Vec<Candidate> {
+    let Some(robot) = robot(family, sources, patience) else { return Vec::new() };
     let until = Instant::now() + patience;
     let (found, arrived) = mpsc::channel();
     // A thread of its own: the line editor may ask from within anything, and nothing is waited for longer than this.
@@ -57,7 +35,7 @@ pub(super) fn values(wish: Wish, sources: &Sources, patience: Duration) -> Vec<C
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         if let Ok(runtime) = runtime {
             // What has been found until then counts.
-            let _ = runtime.block_on(async { timeout(patience, Asker::new(robot, found).ask(wish)).await });
+            let _ = runtime.block_on(async { timeout(patience, ask(&Asker::new(robot, found))).await });
             runtime.shutdown_background();
         }
     };
@@ -98,61 +76,7 @@ impl Asker {
         Self { robot, found, began: Instant::now() }
     }
 
-    async fn ask(&self, wish: Wish) {
-        match wish {
-            Wish::Jobs => {
-                for (name, _) in self.files("jbi").await {
-                    let name = name.strip_suffix(".JBI").unwrap_or(&name);
-                    self.tell(name, String::new());
-                }
-            }
-            Wish::Files => {
-                for kind in ["jbi", "dat", "cnd", "prm", "sys", "lst"] {
-                    for (name, kind) in self.files(kind).await {
-                        self.tell(&name, kind);
-                    }
-                }
-            }
-            Wish::Tasks => {
-                for (task, state) in self.tasks().await {
-                    self.tell(&task, state);
-                }
-            }
-            Wish::Programs | Wish::ProgramNames => {
-                for (task, state) in self.tasks().await {
-                    let shown = self.data(&["yrcx", "program", "show", "--task", &task]).await;
-                    let Some(shown) = shown else { continue };
-                    let (number, name) = (text(&shown, "program"), text(&shown, "name"));
-                    let about = format!("task {task}, {state}");
-                    match wish {
-                        Wish::Programs => self.tell(&number, format!("{name}: {about}")),
-                        _ => self.tell(&name, format!("program {number}: {about}")),
-                    }
-                }
-            }
-        }
-    }
-
-    fn tell(&self, value: &str, help: String) {
-        // Nobody may listen any more.
-        let _ = self.found.send(Candidate::new(value, help));
-    }
-
-    /// Names and types.
-    async fn files(&self, kind: &str) -> Vec<(String, String)> {
-        let data = self.data(&["yerc", "file", "list", "--type", kind]).await;
-        rows(data.as_ref(), "files").map(|file| (text(file, "name"), text(file, "type"))).collect()
-    }
-
-    /// Numbers and states of the tasks with a program.
-    async fn tasks(&self) -> Vec<(String, String)> {
-        let data = self.data(&["yrcx", "info", "tasks", "1..8"]).await;
-        let tasks = rows(data.as_ref(), "tasks").map(|task| (text(task, "task"), text(task, "state")));
-        tasks.filter(|(_, state)| state != "no task").collect()
-    }
-
-    /// What a command that reads reports.
-    async fn data(&self, words: &[&str]) -> Option<Value> {
+    async fn report(&self, words: &[&str]) -> Option<Value> {
         // No question is begun that may have to be broken off.
         if self.began.elapsed() > self.robot.timeout.value / 2 {
             return None;
@@ -174,14 +98,13 @@ impl Asker {
     }
 }
 
-fn rows<'a>(data: Option<&'a Value>, list: &str) -> impl Iterator<Item = &'a Value> {
-    data.and_then(|data| data.get(list)?.as_array()).into_iter().flatten()
-}
+impl Ask for Asker {
+    fn data<'a>(&'a self, words: &'a [&'a str]) -> LocalBoxFuture<'a, Option<Value>> {
+        self.report(words).boxed_local()
+    }
 
-fn text(row: &Value, field: &str) -> String {
-    match row.get(field) {
-        Some(Value::String(text)) => text.clone(),
-        Some(Value::Null) | None => String::new(),
-        Some(other) => other.to_string(),
+    fn tell(&self, candidate: Candidate) {
+        // Nobody may listen any more.
+        let _ = self.found.send(candidate);
     }
 }

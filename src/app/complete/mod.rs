@@ -8,8 +8,11 @@
 //! cursor as far as it was typed, maybe empty. The shells' scripts (`shell.rs`) and the line editor of `armctl repl` call
 //! the same function. It prints nothing and fails at nothing: where nothing is known there are no candidates.
 //!
-//! Arguments only name the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Which values a kind has is in
-//! `values.rs`, those that only a controller knows in `live.rs`; the library that knows words and flags is unstable and stays in `engine.rs`.
+//! Arguments only name the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Which values a common kind has is
+//! in `values.rs`; a family keeps its own in `command/FAMILY/complete.rs`. How a robot is asked for those that only it knows is
+//! in `live.rs`. The library that knows words and flags is unstable and stays in `engine.rs`.
+//!
+//! [`ValueKind`]: crate::command::ValueKind
 
 mod engine;
 mod live;
@@ -22,28 +25,7 @@ use std::time::Duration;
 pub use shell::answer;
 
 use super::with_family;
-
-/// Something that could stand at the cursor.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Candidate {
-    /// The whole word.
-    pub value: String,
-    /// What it is, in a line.
-    pub help: Option<String>,
-    /// Whether more must follow without a blank, as behind `udp://`.
-    pub is_begun: bool,
-}
-
-impl Candidate {
-    fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
-        let help = Some(help.into()).filter(|help| !help.is_empty());
-        Self { value: value.into(), help, is_begun: false }
-    }
-
-    fn begun(self) -> Self {
-        Self { is_begun: true, ..self }
-    }
-}
+use crate::command::Candidate;
 
 /// What could stand at `words[index]`, best first; `is_among` other lines of this process, as at the prompt, where
 /// simulators live on from one line to the next.

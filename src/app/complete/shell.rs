@@ -8,7 +8,8 @@ use std::ffi::OsString;
 
 use clap::ValueEnum as _;
 
-use super::{Candidate, complete};
+use super::complete;
+use crate::command::Candidate;
 use crate::command::about::completions::Shell;
 
 /// The variable that turns a command line into a question.

@@ -7,18 +7,12 @@ use std::time::Duration;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args as _, Command, FromArgMatches as _};
 
-use super::Candidate;
-use super::live::{self, Wish};
+use super::live;
 use crate::app::prepared::{Need, sources};
 use crate::cli::Globals;
-use crate::command::ValueKind;
 use crate::command::about::{help, schema};
 use crate::command::families::{self, FAMILIES};
-use crate::controller::toyo::table::instructions::INSTRUCTIONS;
-use crate::controller::toyo::table::palletizing::RECORDS;
-use crate::controller::toyo::table::parameters::PARAMETERS;
-use crate::controller::yrcx::signal::{Side, Signal};
-use crate::controller::yrcx::table;
+use crate::command::{Candidate, ValueKind};
 use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
 use crate::transport::session::place::{Place, Spot};
@@ -62,10 +56,6 @@ impl Context {
         sources(self.globals.clone()?, Need::Inventory, self.is_among).ok()
     }
 
-    fn live(&self, wish: Wish) -> Vec<Candidate> {
-        self.sources().map_or_else(Vec::new, |sources| live::values(wish, &sources, self.patience))
-    }
-
     fn inventory(&self) -> Option<Inventory> {
         let named = self.globals.as_ref()?.config.clone();
         let named = named.or_else(|| std::env::var_os("ARMCTL_CONFIG").filter(|path| !path.is_empty()).map(Into::into));
@@ -101,25 +91,11 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         ValueKind::Code(family) => {
             families::of(family).codes().into_iter().map(|(code, name)| Candidate::new(code, name)).collect()
         }
-        ValueKind::YercJob => context.live(Wish::Jobs),
-        ValueKind::YercFile => context.live(Wish::Files),
-        ValueKind::YrcxTask => context.live(Wish::Tasks),
-        ValueKind::YrcxProgram => context.live(Wish::Programs),
-        ValueKind::YrcxProgramName => context.live(Wish::ProgramNames),
-        ValueKind::YercVariable => variable_kinds(),
-        ValueKind::ToyoParameter => PARAMETERS.iter().map(|row| Candidate::new(row.name, row.about)).collect(),
-        ValueKind::ToyoInstruction => INSTRUCTIONS.iter().map(|row| Candidate::new(row.word, row.about)).collect(),
-        ValueKind::ToyoRecord => RECORDS.iter().map(|row| Candidate::new(row.name, row.about)).collect(),
-        ValueKind::YrcxInput => signals(Side::Input, ""),
-        ValueKind::YrcxInputState => [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat(),
-        ValueKind::YrcxOutput => signals(Side::Output, ""),
-        ValueKind::YrcxParameter => {
-            table::parameter::PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect()
-        }
-        ValueKind::YrcxPort => ports(false),
-        ValueKind::YrcxOutputPort => ports(true),
         ValueKind::Session => sessions(),
-        ValueKind::YrcxVariable => static_variables(),
+        ValueKind::Listed(candidates) => candidates(),
+        ValueKind::Asked(family, ask) => {
+            context.sources().map_or_else(Vec::new, |sources| live::values(family, ask, &sources, context.patience))
+        }
     }
 }
 
@@ -146,55 +122,8 @@ fn urls() -> Vec<Candidate> {
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
 }
 
-/// What references to variables of a yerc controller begin with.
-const VARIABLES: [(&str, &str); 8] = [
-    ("B", "byte"),
-    ("I", "integer, 16 bits"),
-    ("D", "double-precision integer, 32 bits"),
-    ("R", "real"),
-    ("S", "string"),
-    ("P", "position of a robot"),
-    ("BP", "position of a base axis"),
-    ("EX", "position of a station axis"),
-];
-
-fn variable_kinds() -> Vec<Candidate> {
-    VARIABLES.iter().map(|(letters, about)| Candidate::new(*letters, *about).begun()).collect()
-}
-
-fn signals(side: Side, ending: &str) -> Vec<Candidate> {
-    let dedicated = Signal::of_side(side);
-    dedicated
-        .map(|row| Candidate::new(format!("{}{ending}", row.name), format!("{}: {}", row.text, row.effect)))
-        .collect()
-}
-
-/// Ports of eight signals; those that can be switched, or all.
-fn ports(can_switch: bool) -> Vec<Candidate> {
-    let all = |letters: &'static str, from: u16, to: u16, about: &'static str| {
-        let numbers = (from..=to).filter(|number| number % 10 < 8);
-        numbers.map(move |number| Candidate::new(format!("{letters}{number}"), about))
-    };
-    let first = if can_switch { 2 } else { 0 };
-    let outputs = all("DO", first, 27, "parallel outputs")
-        .chain(all("MO", first, 27, "internal outputs"))
-        .chain(all("SO", first, 27, "serial outputs"))
-        .chain(all("LO", 0, 1, "arm lock outputs"))
-        .chain(all("TO", 0, 0, "timer outputs"));
-    let inputs = all("DI", 0, 27, "parallel inputs").chain(all("SI", 0, 27, "serial inputs"));
-    if can_switch { outputs.collect() } else { inputs.chain(outputs).collect() }
-}
-
 /// Whose link is held by a session.
 fn sessions() -> Vec<Candidate> {
     let spots = Place::find().ok().flatten().and_then(|place| place.spots().ok()).unwrap_or_default();
     spots.iter().filter_map(Spot::owner).map(|info| Candidate::new(info.robot, info.target)).collect()
-}
-
-/// `SGI0` to `SGR31`.
-fn static_variables() -> Vec<Candidate> {
-    let numbered = |letters: &'static str, about: &'static str| {
-        (0..32).map(move |number| Candidate::new(format!("{letters}{number}"), about))
-    };
-    numbered("SGI", "whole number").chain(numbered("SGR", "real number")).collect()
 }

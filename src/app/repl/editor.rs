@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc as blocking;
 use std::sync::{Mutex, PoisonError};
 
+use anyhow::Context as _;
 use rustyline::config::{Behavior, BellStyle, CompletionType};
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
@@ -70,7 +71,7 @@ impl Editor {
             }
         };
         let thread = std::thread::Builder::new().name("editor".to_owned()).spawn(work);
-        thread.map_err(|error| Failure::io("start", &error))?;
+        thread.context("start")?;
         Ok((Self { prompts, typed }, say))
     }
 

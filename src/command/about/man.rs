@@ -3,6 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::{Args, Command};
 
 use super::page;
@@ -35,7 +36,7 @@ impl Man {
 }
 
 fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
-    std::fs::write(path, page).map_err(|error| Failure::io(path.display(), &error))
+    Ok(std::fs::write(path, page).with_context(|| path.display().to_string())?)
 }
 
 /// File name and text of every man page: `armctl.1`, `armctl-yerc-status.1`, …
@@ -71,7 +72,7 @@ fn verbs(command: &Command) -> impl Iterator<Item = &Command> {
 fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
     let everywhere = page::everywhere(root);
     let mut own = command.clone().name(name_of(path)).mut_args(|argument| {
-        let is_own = path.is_empty() || !everywhere.contains(argument.get_id().as_str());
+        let is_own = path.is_empty() || !argument.is_global_set() || !everywhere.contains(argument.get_id().as_str());
         // What a short help leaves out belongs here.
         argument.hide_short_help(false).hide(!is_own)
     });

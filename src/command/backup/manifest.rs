@@ -6,6 +6,7 @@ use std::fs;
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
@@ -194,9 +195,8 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 
     let path = folder.join(MANIFEST);
     let text = match files::text(&path, MAX_LIST) {
-        Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::io(path.display(), &error)),
+        text => text.with_context(|| path.display().to_string())?,
     };
     let wrong = |why: String| {
         Failure::local(format!("{}: {why}", path.display())).hint("this is no whole list of a backup; make a new one")
@@ -240,9 +240,8 @@ pub fn look<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     // Of a backup that was killed.
     files::sweep(folder);
     let mut entries = match fs::read_dir(folder) {
-        Ok(entries) => entries,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::io(folder.display(), &error)),
+        entries => entries.with_context(|| folder.display().to_string())?,
     };
     if let Some(list) = read(folder)? {
         return Ok(Some(list));
@@ -353,18 +352,18 @@ impl Saved {
                 .hint("the file is not what was backed up; take it from another copy of the backup, or leave it out"))
         };
         let mut file = match files::open(&path) {
-            Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::NotFound => return damaged("it is missing".to_owned()),
-            Err(error) => return Err(Failure::io(path.display(), &error)),
+            file => file.with_context(|| path.display().to_string())?,
         };
         let mut hash = Hash::default();
         let mut buffer = vec![0; 1 << 16];
         loop {
             match file.read(&mut buffer) {
-                Ok(0) => break,
-                Ok(read) => hash.take(buffer.get(..read).unwrap_or_default()),
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) => return Err(Failure::io(path.display(), &error)),
+                read => match read.with_context(|| path.display().to_string())? {
+                    0 => break,
+                    read => hash.take(buffer.get(..read).unwrap_or_default()),
+                },
             }
         }
         if hash.bytes != self.bytes {

@@ -5,6 +5,7 @@ pub mod capture;
 
 use std::path::Path;
 
+use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -64,7 +65,7 @@ pub fn stdin() -> Result<String, Failure> {
     /// Room for thousands of frames.
     const MOST: u64 = 16 << 20;
 
-    let bytes = files::stdin(MOST).map_err(|error| Failure::io("stdin", &error))?;
+    let bytes = files::stdin(MOST).context("stdin")?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod discover;
 
+use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -206,11 +207,10 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     })?;
     let _busy = busy();
     // Others may be changing it: what is read is what is replaced.
-    let _turn = files::turn(path).map_err(|error| Failure::io(path.display(), &error))?;
+    let _turn = files::turn(path).with_context(|| path.display().to_string())?;
     let text = match files::text(path, files::SETTINGS) {
-        Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-        Err(error) => return Err(Failure::io(path.display(), &error)),
+        text => text.with_context(|| path.display().to_string())?,
     };
     let wrong = |why: &dyn std::fmt::Display| {
         Failure::usage(format!("{}: {why}", path.display()))
@@ -221,7 +221,7 @@ fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static 
     let text = document.to_string();
     // What would not be read again is not written.
     Inventory::parse(&text, &path.display().to_string())?;
-    files::replace(path, text.as_bytes()).map_err(|error| Failure::io(path.display(), &error))?;
+    files::replace(path, text.as_bytes()).with_context(|| path.display().to_string())?;
     Ok(path.display().to_string())
 }
 

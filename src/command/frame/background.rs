@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
+use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
@@ -83,7 +84,7 @@ pub async fn open_for(robot: &Robot, inventory: Option<&Path>, screen: &Screen) 
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let place = Place::make().map_err(|error| no_place(&error))?;
     let log = place.spot(&key_of(robot)).log();
-    let mut child = detach(words, &log).map_err(|error| Failure::io("this program, in the background", &error))?;
+    let mut child = detach(words, &log).context("this program, in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
         Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
@@ -92,7 +93,7 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
             return Err(interrupt);
         }
     };
-    let line = line.map_err(|error| Failure::io("the background", &error))?;
+    let line = line.context("the background")?;
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),

@@ -1,9 +1,12 @@
 //! What values arguments have.
 
+use futures_util::future::LocalBoxFuture;
+use serde_json::Value;
+
 use crate::settings::target::Family;
 
 /// A kind of value that has candidates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub enum ValueKind {
     /// A robot of the inventory.
     Robot,
@@ -23,36 +26,58 @@ pub enum ValueKind {
     Schema,
     /// A code that `explain` explains.
     Code(Family),
-    /// A job of a yerc controller.
-    YercJob,
-    /// A file of a yerc controller.
-    YercFile,
-    /// The beginning of a reference to variables of a yerc controller: `B`.
-    YercVariable,
-    /// A parameter of a Toyo controller, by name or id.
-    ToyoParameter,
-    /// The instruction of a step of a Toyo program.
-    ToyoInstruction,
-    /// A record of a palletizing program.
-    ToyoRecord,
-    /// A dedicated signal that a YRCX is shown.
-    YrcxInput,
-    /// The same with the state to set.
-    YrcxInputState,
-    /// A dedicated signal that a YRCX shows.
-    YrcxOutput,
-    /// A port of a YRCX.
-    YrcxPort,
-    /// A port of a YRCX that can be switched.
-    YrcxOutputPort,
-    /// A parameter of a YRCX.
-    YrcxParameter,
-    /// A task of a YRCX.
-    YrcxTask,
-    /// A program of a YRCX by its number.
-    YrcxProgram,
-    /// A program of a YRCX by its name.
-    YrcxProgramName,
-    /// A static variable of a YRCX.
-    YrcxVariable,
+    /// A value that the tables of a family list.
+    Listed(fn() -> Vec<Candidate>),
+    /// A value that only a robot of the family knows.
+    Asked(Family, Question),
+}
+
+/// Tells all candidates of a kind.
+pub type Question = for<'a> fn(&'a dyn Ask) -> LocalBoxFuture<'a, ()>;
+
+/// Something that could stand at the cursor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Candidate {
+    /// The whole word.
+    pub value: String,
+    /// What it is, in a line.
+    pub help: Option<String>,
+    /// Whether more must follow without a blank, as behind `udp://`.
+    pub is_begun: bool,
+}
+
+impl Candidate {
+    /// A whole word; the help may be empty.
+    pub fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
+        let help = Some(help.into()).filter(|help| !help.is_empty());
+        Self { value: value.into(), help, is_begun: false }
+    }
+
+    /// The beginning of a word.
+    #[must_use]
+    pub fn begun(self) -> Self {
+        Self { is_begun: true, ..self }
+    }
+}
+
+/// A robot that is asked for candidates.
+pub trait Ask {
+    /// What a command that reads reports; nothing where the robot has no time left, or no answer.
+    fn data<'a>(&'a self, words: &'a [&'a str]) -> LocalBoxFuture<'a, Option<Value>>;
+    /// Tells of a candidate at once: whatever comes too late is none.
+    fn tell(&self, candidate: Candidate);
+}
+
+/// The rows of a list in what a command reports.
+pub fn rows<'a>(data: Option<&'a Value>, list: &str) -> impl Iterator<Item = &'a Value> {
+    data.and_then(|data| data.get(list)?.as_array()).into_iter().flatten()
+}
+
+/// A field of what a command reports, as text.
+pub fn text(row: &Value, field: &str) -> String {
+    match row.get(field) {
+        Some(Value::String(text)) => text.clone(),
+        Some(Value::Null) | None => String::new(),
+        Some(other) => other.to_string(),
+    }
 }

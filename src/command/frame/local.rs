@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
+use anyhow::Context as _;
 use etcetera::BaseStrategy as _;
 use tempfile::NamedTempFile;
 
@@ -132,7 +133,7 @@ impl Target {
     /// Begins to write; until [`Draft::commit`] nothing is where the file shall be.
     pub fn begin(&self) -> Result<Draft, Failure> {
         let folder = folder_of(&self.path);
-        let file = files::draft_in(&folder).map_err(|error| Failure::io(folder.display(), &error))?;
+        let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
         Ok(Draft { file: BufWriter::with_capacity(BUFFER, file), target: self.clone() })
     }
 }
@@ -153,25 +154,21 @@ pub struct Draft {
 impl Draft {
     /// Appends bytes.
     pub fn write(&mut self, bytes: &[u8]) -> Result<(), Failure> {
-        self.file.write_all(bytes).map_err(|error| Failure::io(self.target.path.display(), &error))
+        Ok(self.file.write_all(bytes).with_context(|| self.target.path.display().to_string())?)
     }
 
     /// Puts the file in its place, whole and on the disk.
     pub fn commit(self) -> Result<(), Failure> {
         let Target { path, replace } = self.target;
-        let failed = |error: &std::io::Error| Failure::io(path.display(), error);
-        let file = self.file.into_inner().map_err(|error| failed(error.error()))?;
+        let place = || path.display().to_string();
+        let file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).with_context(place)?;
         // Some file systems tell only now that the disk is full.
-        file.as_file().sync_data().map_err(|error| failed(&error))?;
-        if replace {
-            file.persist(&path).map_err(|error| failed(&error.error))?;
-        } else {
-            file.persist_noclobber(&path).map_err(|error| match error.error.kind() {
-                ErrorKind::AlreadyExists => exists(&path),
-                _ => failed(&error.error),
-            })?;
+        file.as_file().sync_data().with_context(place)?;
+        let kept = if replace { file.persist(&path) } else { file.persist_noclobber(&path) };
+        match kept {
+            Err(error) if !replace && error.error.kind() == ErrorKind::AlreadyExists => Err(exists(&path)),
+            kept => Ok(kept.map(drop).map_err(std::io::Error::from).with_context(place)?),
         }
-        Ok(())
     }
 }
 
@@ -182,7 +179,7 @@ pub fn own_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
 
 /// Makes a folder unless it is there.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder.display(), &error))
+    Ok(std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?)
 }
 
 fn exists(path: &Path) -> Failure {

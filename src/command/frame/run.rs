@@ -6,6 +6,7 @@ mod rounds;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
 use tokio::time::timeout_at;
@@ -67,6 +68,12 @@ pub struct RunError {
 impl From<Failure> for RunError {
     fn from(failure: Failure) -> Self {
         Self { failure, envelope: None, told: false }
+    }
+}
+
+impl From<anyhow::Error> for RunError {
+    fn from(error: anyhow::Error) -> Self {
+        Failure::from(error).into()
     }
 }
 
@@ -444,10 +451,10 @@ impl Run {
 
 /// Empties the file of `--trace`; `-` is none.
 pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
-    match file.filter(|path| path.as_os_str() != "-") {
-        Some(path) => std::fs::File::create(path).map(|_| ()).map_err(|error| Failure::io(path.display(), &error)),
-        None => Ok(()),
+    if let Some(path) = file.filter(|path| path.as_os_str() != "-") {
+        std::fs::File::create(path).with_context(|| path.display().to_string())?;
     }
+    Ok(())
 }
 
 /// Does the work of all robots, of so many at the same time, and gives what came of it in their order. One that waits long

@@ -6,6 +6,8 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use anyhow::Context as _;
+
 use super::connection::Access;
 use crate::controller::text::hex;
 use crate::failure::{Failure, plain};
@@ -52,7 +54,7 @@ impl Trace {
                 level = level.max(2);
                 None
             }
-            Some(path) if !access.dry_run => Some(begin(path).map_err(|error| Failure::io(path.display(), &error))?),
+            Some(path) if !access.dry_run => Some(begin(path).with_context(|| path.display().to_string())?),
             _ => None,
         };
         Ok(Self { screen: *screen, level, capture, held: None, broken: None })

@@ -1,5 +1,6 @@
 //! `toyo ports`: the serial ports of this machine.
 
+use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -29,7 +30,7 @@ impl OfflineCommand for Ports {
 
 /// The serial ports of this machine, as they are told.
 pub fn all() -> Result<Vec<Port>, Failure> {
-    let found = ports::ports().map_err(|error| Failure::io("the list of serial ports", &error))?;
+    let found = ports::ports().context("the list of serial ports")?;
     Ok(found.into_iter().map(Port::from).collect())
 }
 

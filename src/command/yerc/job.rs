@@ -15,10 +15,10 @@ use super::link::Yerc;
 use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
-use crate::command::ValueKind;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::yerc::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::{Encoding, Name};
@@ -193,7 +193,7 @@ impl Report for Jobs {
 #[derive(Debug, Args)]
 pub struct Select {
     /// Its name, without .JBI
-    #[arg(add = ValueKind::YercJob)]
+    #[arg(add = complete::JOB)]
     name: String,
     /// Line to start at
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 9999))]

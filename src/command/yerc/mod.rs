@@ -5,6 +5,7 @@ mod axes;
 mod check;
 mod chosen;
 pub mod commands;
+mod complete;
 mod connect;
 pub mod decode;
 mod each;

@@ -4,6 +4,7 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -74,7 +75,7 @@ impl serve::Serve for Serve {
         let file = SocketAddr::new(robot.ip(), file_port);
         let bound = Server::bind([robot, file], self.fault.map(Faults::pair)).await;
         let server = bound.map_err(|error| cannot_listen(&format!("UDP {robot} and {}", file.port()), &error))?;
-        let local = |channel| server.local(channel).map_err(|error| Failure::io("socket", &error));
+        let local = |channel| server.local(channel).context("socket");
         let (robot, file) = (local(0)?, local(1)?);
         let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
         Ok(Started {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use anyhow::Context as _;
+
 pub use crate::client::yerc::Simulated;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::simulator::Start;
@@ -22,7 +24,7 @@ pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> R
 const MOST: u64 = 256 << 20;
 
 fn load(path: &Path) -> Result<Start, Failure> {
-    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     // Files that the state names lie beside it.
     let folder = path.parent().unwrap_or(Path::new(""));
     let read = |name: &str| {

@@ -20,6 +20,7 @@ pub mod buses;
 mod check;
 mod clock;
 pub mod commands;
+mod complete;
 mod connect;
 #[cfg(test)]
 mod coverage;
@@ -50,6 +51,8 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
+#[cfg(target_os = "linux")]
+pub mod profinet;
 mod program;
 mod raw;
 mod refusal;

@@ -9,7 +9,7 @@ use super::numbers::single;
 use super::overwrite::Stored;
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
-use crate::command::ValueKind;
+use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::nearest::nearest;
 use crate::controller::yrcx::order::Order;
@@ -57,7 +57,7 @@ fn parameter(text: &str) -> Result<&'static Parameter, String> {
 #[command(after_help = listing())]
 pub struct Get {
     /// Parameters by name or number, as in TOLE or 259
-    #[arg(required = true, value_name = "PARAMETER", value_delimiter = ',', value_parser = parameter, add = ValueKind::YrcxParameter)]
+    #[arg(required = true, value_name = "PARAMETER", value_delimiter = ',', value_parser = parameter, add = complete::PARAMETER)]
     parameters: Vec<&'static Parameter>,
     /// Axes, 1 to 4: 3, or 1,2,3,4; for parameters of an axis
     #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
@@ -145,7 +145,7 @@ one_row! {
     #[command(after_help = listing())]
     Set(self) "yrcx.param.set" -> Stored {
         /// Parameter by name or number, as in TOLE or 259
-        #[arg(value_name = "PARAMETER", value_parser = parameter, add = ValueKind::YrcxParameter)]
+        #[arg(value_name = "PARAMETER", value_parser = parameter, add = complete::PARAMETER)]
         parameter: &'static Parameter,
         /// A whole number in the unit of the parameter
         #[arg(value_name = "VALUE", allow_negative_numbers = true)]

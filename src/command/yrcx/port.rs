@@ -8,8 +8,8 @@ use super::link::Yrcx;
 use super::numbers::{named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
-use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
+use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
@@ -104,7 +104,7 @@ impl Place {
 #[command(after_help = NAMES)]
 pub struct Get {
     /// Ports, or signals of them
-    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place, add = ValueKind::YrcxPort)]
+    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place, add = complete::PORT)]
     places: Vec<Place>,
 }
 
@@ -176,7 +176,7 @@ one_row! {
     #[command(after_help = NAMES)]
     Set(self) "yrcx.port.set" -> Done {
         /// A port, or a signal of one
-        #[arg(value_name = "PORT", value_parser = signal_or_port, add = ValueKind::YrcxOutputPort)]
+        #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
         place: Place,
         /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
         #[arg(value_name = "VALUE", value_parser = value)]

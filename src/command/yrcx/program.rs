@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::link;
 use super::single::{Single, one_row};
-use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
+use crate::command::yrcx::complete;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::{COMMON_LINES, Command};
@@ -40,13 +40,13 @@ commands! {
 #[group(required = true, multiple = false)]
 struct Which {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
     /// Program by the task that it is registered in, 1 to 16
-    #[arg(long, value_name = "N", add = ValueKind::YrcxTask)]
+    #[arg(long, value_name = "N", add = complete::TASK)]
     task: Option<String>,
 }
 
@@ -55,13 +55,13 @@ struct Which {
 #[group(required = true, multiple = false)]
 struct WhichOrAll {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
     /// Program by the task that it is registered in, 1 to 16
-    #[arg(long, value_name = "N", add = ValueKind::YrcxTask)]
+    #[arg(long, value_name = "N", add = complete::TASK)]
     task: Option<String>,
     /// All programs that are registered
     #[arg(long)]
@@ -111,10 +111,10 @@ impl WhichOrAll {
 #[group(required = true, multiple = false)]
 struct Registered {
     /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N", add = ValueKind::YrcxProgram)]
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
     /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME", add = ValueKind::YrcxProgramName)]
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
     name: Option<String>,
 }
 

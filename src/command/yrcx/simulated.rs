@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use anyhow::Context as _;
+
 pub use crate::client::yrcx::Simulated;
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
@@ -21,9 +23,18 @@ pub fn has_faults(sim: &Sim) -> bool {
 /// The start state: a file's, or the built-in one.
 pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     let Some(path) = file else { return Ok(Start::default()) };
-    let text = files::text(path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")
+    })
+}
+
+/// What goes wrong, by its name.
+pub fn fault_by_name<T: Copy>(known: &[(&'static str, T)], text: &str) -> Result<T, String> {
+    let found = known.iter().find(|(name, _)| *name == text);
+    found.map(|(_, fault)| *fault).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        format!("there are {}", names.join(", "))
     })
 }

@@ -7,6 +7,8 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use anyhow::Context as _;
+
 use crate::command::Access;
 use crate::command::frame::trace;
 use crate::controller::text::hex;
@@ -104,7 +106,7 @@ impl Recorder {
             }
             record.finish()
         });
-        let writer = writer.map_err(|error| Failure::io("trace", &error))?;
+        let writer = writer.context("trace")?;
         let lost = Arc::new(AtomicU64::new(0));
         let (counted, sender) = (Arc::clone(&lost), packets.clone());
         let tap = Tap::new(move |passed| {

@@ -10,8 +10,8 @@ use super::link::Yrcx;
 use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
+use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
@@ -42,7 +42,7 @@ commands! {
 pub struct Get {
     /// Variables: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range
     #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = ValueKind::YrcxVariable)]
+        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = complete::VARIABLE)]
     variables: Vec<Numbers>,
 }
 
@@ -172,10 +172,10 @@ macro_rules! changes {
             #[derive(Debug, Args)]
             pub struct $name {
                 /// Variable that changes: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones
-                #[arg(value_name = "VARIABLE", value_parser = variable, add = ValueKind::YrcxVariable)]
+                #[arg(value_name = "VARIABLE", value_parser = variable, add = complete::VARIABLE)]
                 variable: i32,
                 /// A number, or a variable such as SGI2
-                #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand, add = ValueKind::YrcxVariable)]
+                #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand, add = complete::VARIABLE)]
                 operand: Operand,
             }
 

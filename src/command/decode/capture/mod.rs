@@ -11,6 +11,7 @@ use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
 use std::time::Duration;
 
+use anyhow::Context as _;
 use clap::Args;
 use jiff::Timestamp;
 use serde::Serialize;
@@ -339,7 +340,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     }
 
     fn read(&self, each: impl FnMut(&Message<'_>)) -> Result<Summary, Failure> {
-        let file = (self.open)().map_err(|error| Failure::io(self.name, &error))?;
+        let file = (self.open)().with_context(|| self.name.to_owned())?;
         read(file, each).map_err(|error| {
             let hint = match error {
                 OpenError::Compressed => "unpack it first: gunzip, or unzstd",

@@ -3,6 +3,7 @@
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -260,10 +261,10 @@ fn copy<'e>(side: &Side, entry: &'e Entry) -> Result<&'e Saved, Failure> {
 
 fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
     let path = folder.join(&copy.file);
-    let failed = |error: &std::io::Error| Failure::io(path.display(), error);
-    let file = files::open(&path).map_err(|error| failed(&error))?;
+    let place = || path.display().to_string();
+    let file = files::open(&path).with_context(place)?;
     let mut bytes = Vec::new();
-    file.take(MOST_TEXT as u64 + 1).read_to_end(&mut bytes).map_err(|error| failed(&error))?;
+    file.take(MOST_TEXT as u64 + 1).read_to_end(&mut bytes).with_context(place)?;
     Ok(bytes)
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Args;
 
 use super::compare::{Differences, Side};
@@ -100,7 +101,7 @@ impl Command for Diff {
         let robot = context.robot;
         let old = Self::side(place(&self.old, robot, context.several))?;
         manifest::admit(&old.manifest, robot, true)?;
-        let temporary = tempfile::tempdir().map_err(|error| Failure::io("a folder for a while", &error))?;
+        let temporary = tempfile::tempdir().context("a folder for a while")?;
         let folder = temporary.path().join("controller");
         let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };
         // What was read so far is of no use; but what a controller refuses to tell is a difference.

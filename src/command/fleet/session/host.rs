@@ -6,6 +6,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
+use anyhow::Context as _;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
@@ -61,8 +62,7 @@ impl SessionHost {
         };
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
-        let host =
-            Host::new(claim, key, info, held, say).map_err(|error| Failure::io(spot.socket().display(), &error))?;
+        let host = Host::new(claim, key, info, held, say).with_context(|| spot.socket().display().to_string())?;
         let host = if robot.read_only.value { host.guarded(face.guard()) } else { host };
         Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
     }
@@ -92,12 +92,12 @@ type Say = Arc<dyn Fn(&str) + Send + Sync>;
 /// Begins to hold nothing yet. What happens to links is told to `say`.
 pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-    let runtime = runtime.map_err(|error| Failure::io("start", &error))?;
+    let runtime = runtime.context("start")?;
     let (orders, ordered) = mpsc::unbounded_channel();
     let say: Say = Arc::new(say);
     let work = move || LocalSet::new().block_on(&runtime, work(ordered, say));
     let thread = std::thread::Builder::new().name("links".to_owned()).spawn(work);
-    let thread = thread.map_err(|error| Failure::io("start", &error))?;
+    let thread = thread.context("start")?;
     let manager = SessionManager::new(orders);
     Ok((manager.clone(), ManagerThread { manager, thread }))
 }

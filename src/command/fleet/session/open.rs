@@ -6,6 +6,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::rc::Rc;
 
+use anyhow::Context as _;
 use clap::Args;
 use jiff::Timestamp;
 
@@ -79,7 +80,7 @@ impl Open {
             run.screen.note("Ctrl-C ends it");
             return Ok(serve(run, host).await?);
         }
-        leave_terminal().map_err(|error| Failure::io("the terminal", &error))?;
+        leave_terminal().context("the terminal")?;
         match Self::open(run, robot, true).await {
             Ok((host, opened)) => {
                 run.screen.json(&Start::Opened(opened))?;

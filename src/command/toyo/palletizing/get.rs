@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record, reads};
-use crate::command::ValueKind;
+use crate::command::toyo::complete;
 use crate::command::toyo::files;
 use crate::command::toyo::items::{self, read_each};
 use crate::command::toyo::link::Toyo;
@@ -27,7 +27,7 @@ pub struct Get {
     #[arg(value_parser = parse_program)]
     program: i32,
     /// Records by name or number: start source-p0 6; without any, all 16
-    #[arg(value_name = "RECORD", value_parser = parse_record, add = ValueKind::ToyoRecord)]
+    #[arg(value_name = "RECORD", value_parser = parse_record, add = complete::RECORD)]
     records: Vec<&'static Pallet>,
     /// Write them into this new file
     #[arg(long, value_name = "FILE")]

@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
-use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::complete;
 use crate::command::toyo::files;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::wrong;
@@ -36,7 +36,7 @@ pub struct Set {
     #[arg(value_parser = parse_program)]
     program: i32,
     /// Record by name or number: source-p1, 3
-    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "RECORD", value_parser = parse_record, add = ValueKind::ToyoRecord)]
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "RECORD", value_parser = parse_record, add = complete::RECORD)]
     record: Option<&'static Pallet>,
     /// All values in their order, or some as name=value
     #[arg(

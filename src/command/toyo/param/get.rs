@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::entry::{self, Entry};
 use super::parse_name;
-use crate::command::ValueKind;
+use crate::command::toyo::complete;
 use crate::command::toyo::items;
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
@@ -20,7 +20,7 @@ use crate::output::view::View;
                         beside what it means.")]
 pub struct Get {
     /// Names or ids in any case: soft-limit-plus, P01
-    #[arg(required = true, value_name = "NAME", value_parser = parse_name, add = ValueKind::ToyoParameter)]
+    #[arg(required = true, value_name = "NAME", value_parser = parse_name, add = complete::PARAMETER)]
     names: Vec<&'static Parameter>,
 }
 

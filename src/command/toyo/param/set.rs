@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{machine, parse_name};
-use crate::command::ValueKind;
 use crate::command::toyo::cells::Cells;
+use crate::command::toyo::complete;
 use crate::command::toyo::link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
@@ -32,7 +32,7 @@ use crate::output::view::View;
 )]
 pub struct Set {
     /// Name or id in any case: soft-limit-plus, P01
-    #[arg(value_name = "NAME", value_parser = parse_name, add = ValueKind::ToyoParameter)]
+    #[arg(value_name = "NAME", value_parser = parse_name, add = complete::PARAMETER)]
     parameter: &'static Parameter,
     /// All values in their order, or some as name=value
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true)]

@@ -7,10 +7,10 @@ use serde::Serialize;
 use super::and_mode;
 use super::get::Step;
 use super::steps;
-use crate::command::ValueKind;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::toyo::cells::{Cells, THERE};
+use crate::command::toyo::complete;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
@@ -34,7 +34,7 @@ pub struct Insert {
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
     /// Its instruction, such as OUT STN=0 PN1=.......1; quote < and >
-    #[arg(num_args = 0.., default_value = "NOP", add = ValueKind::ToyoInstruction)]
+    #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
@@ -93,8 +93,8 @@ impl Insert {
         let step = self.step;
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, step).await?;
-        let before = link.read_content(&steps::read_request(step)).await?;
-        let last = link.read_content(&steps::read_request(room)).await?;
+        let before = link.ask(&steps::read_request(step)).await?;
+        let last = link.ask(&steps::read_request(room)).await?;
         if last != steps::nop() {
             let message = format!("step {room}, the last of task {task}, would fall out: {}", last.written());
             return Err(Failure::new(Kind::Rejected, message)
@@ -102,9 +102,9 @@ impl Insert {
         }
         authority.confirm(&Change::nothing()).await?;
         steps::open(link).await?;
-        link.order(&self.order()).await?;
+        link.ask(&self.order()).await?;
         if step < room {
-            let behind = link.read_content(&steps::read_request(step + 1)).await?;
+            let behind = link.ask(&steps::read_request(step + 1)).await?;
             if behind != before {
                 return Err(moved_wrong(step + 1, &before, &behind));
             }
@@ -127,7 +127,7 @@ impl Insert {
         link.plan_depending("@RSTX ?", last);
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
-        link.order(&self.order()).await?;
+        link.ask(&self.order()).await?;
         if self.step < 5000 {
             link.plan_if(&steps::read_request(self.step + 1), "whether it is the last one");
         }

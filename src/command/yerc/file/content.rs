@@ -5,6 +5,8 @@ use std::fs::File;
 use std::io::{ErrorKind, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
+
 use crate::failure::Failure;
 use crate::files;
 
@@ -44,14 +46,14 @@ impl Content {
 
     /// Opens a file that is only looked at.
     pub fn open_any(path: &Path) -> Result<Self, Failure> {
-        let failed = |error: &std::io::Error| Failure::io(path.display(), error);
+        let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
                 return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
             }
-            opened => opened.map_err(|error| failed(&error))?,
+            opened => opened.with_context(place)?,
         };
-        let len = file.metadata().map_err(|error| failed(&error))?.len();
+        let len = file.metadata().with_context(place)?.len();
         Ok(Self { file, path: path.to_owned(), len, fixes: false, job_name: None })
     }
 
@@ -105,7 +107,7 @@ impl Content {
 
     /// Its bytes from the beginning.
     pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
-        self.file.rewind().map_err(|error| Failure::io(self.path.display(), &error))?;
+        self.file.rewind().with_context(|| self.path.display().to_string())?;
         Ok(Pieces { file: &self.file, path: &self.path, fixer: self.fixes.then(Fixer::default) })
     }
 }
@@ -123,7 +125,7 @@ impl Pieces<'_> {
     pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
         let mut piece = Vec::with_capacity(PIECE);
         let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
-        read.map_err(|error| Failure::io(self.path.display(), &error))?;
+        read.with_context(|| self.path.display().to_string())?;
         Ok(match &mut self.fixer {
             Some(fixer) => fixer.fixed(&piece),
             None => piece,

@@ -6,8 +6,8 @@ use super::lists::{Lists, There};
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
-use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -20,7 +20,7 @@ use crate::gate::{Change, Confirmation};
 #[derive(Debug, Args)]
 pub struct Delete {
     /// Names in full, such as TESTJOB.JBI
-    #[arg(required = true, value_name = "NAME", add = ValueKind::YercFile)]
+    #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
 }
 

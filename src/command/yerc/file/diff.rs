@@ -10,10 +10,10 @@ use super::compare::{Comparer, Comparison, WithoutDate};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
-use crate::command::ValueKind;
 use crate::command::backup::text_diff;
 use crate::command::backup::text_diff::{Change, Ending, Line, MOST_TEXT, TextDifference};
 use crate::command::frame::local::{local_name, own_folder};
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::failure::{Failure, Kind};
@@ -23,7 +23,7 @@ use crate::output::view::{Section, View};
 #[derive(Debug, Args)]
 pub struct Diff {
     /// Name on the controller
-    #[arg(add = ValueKind::YercFile)]
+    #[arg(add = complete::FILE)]
     name: String,
     /// Local file; without it, the one of that name in this folder
     #[arg(value_name = "FILE")]

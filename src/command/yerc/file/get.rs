@@ -9,8 +9,8 @@ use serde::Serialize;
 use super::name::{self, Shown};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
-use crate::command::ValueKind;
 use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -24,7 +24,7 @@ use crate::output::{Screen, escape};
 #[derive(Debug, Args)]
 pub struct Get {
     /// Names in full, such as TESTJOB.JBI
-    #[arg(required = true, value_name = "NAME", add = ValueKind::YercFile)]
+    #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
     /// Folder to put them in; - writes one file to stdout
     #[arg(long, value_name = "DIR", default_value = ".")]

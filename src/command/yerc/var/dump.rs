@@ -1,6 +1,5 @@
 //! `yerc var dump`.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -9,17 +8,16 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
-use tempfile::NamedTempFile;
 
 use super::entry::{Entry, is_undefined};
 use super::get::Named;
 use super::read::{once, read_all};
 use super::{in_form, listed, parse_kind};
+use crate::command::frame::local::{Draft, Target};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, VariableKind};
 use crate::failure::Failure;
-use crate::files;
 use crate::output::escape;
 use crate::output::view::View;
 
@@ -61,7 +59,7 @@ impl Command for Dump {
         let Context { robot, link, screen, .. } = context;
         let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
         let is_stdout = self.file == Path::new("-");
-        let place = if is_stdout { None } else { self.place(&robot.name, link.is_dry())? };
+        let draft = if is_stdout { None } else { self.place(&robot.name, link.is_dry())? };
         let progress = screen.spinner("reading");
         let answers = read_all(link, &references, |wanted, known| {
             progress.say(&format!("reading {} ({known} of {})", listed(wanted.iter().copied()), references.len()));
@@ -93,14 +91,15 @@ impl Command for Dump {
             taken_at: now(),
             variables,
         };
-        let Some(place) = place else { return Ok(Dumped::Document(document)) };
+        let Some(mut draft) = draft else { return Ok(Dumped::Document(document)) };
         let summary = Summary {
             file: self.file.display().to_string(),
             variables: document.variables.len(),
             undefined: document.variables.iter().filter(|entry| !entry.has_value()).count(),
             taken_at: document.taken_at.clone(),
         };
-        self.keep(place, &document.text()?)?;
+        draft.write(document.text()?.as_bytes())?;
+        draft.commit()?;
         Ok(Dumped::Summary(summary))
     }
 }
@@ -118,35 +117,14 @@ impl Dump {
 
     /// The file beside the one to be written, made before the controller is asked: what cannot be written is known
     /// at once.
-    fn place(&self, robot: &str, dry: bool) -> Result<Option<NamedTempFile>, Failure> {
+    fn place(&self, robot: &str, dry: bool) -> Result<Option<Draft>, Failure> {
         let shown = self.file.display();
         if self.taken.get_or_init(|| robot.to_owned()) != robot {
             return Err(Failure::usage(format!("{shown} is for the variables of one robot"))
                 .hint("run the command once for each robot, with a file each"));
         }
-        if !self.force && self.file.symlink_metadata().is_ok() {
-            return Err(exists(&self.file));
-        }
-        if dry {
-            return Ok(None);
-        }
-        let folder = files::folder_of(&self.file);
-        files::draft_in(&folder).map(Some).map_err(|error| Failure::io(folder.display(), &error))
-    }
-
-    fn keep(&self, mut place: NamedTempFile, text: &str) -> Result<(), Failure> {
-        let failed = |error: std::io::Error| Failure::io(self.file.display(), &error);
-        place.write_all(text.as_bytes()).map_err(failed)?;
-        place.as_file().sync_all().map_err(failed)?;
-        if self.force {
-            place.persist(&self.file).map_err(|error| failed(error.error))?;
-        } else {
-            place.persist_noclobber(&self.file).map_err(|error| match error.error.kind() {
-                std::io::ErrorKind::AlreadyExists => exists(&self.file),
-                _ => failed(error.error),
-            })?;
-        }
-        Ok(())
+        let target = Target::new(self.file.clone(), self.force)?;
+        if dry { Ok(None) } else { target.begin().map(Some) }
     }
 }
 
@@ -154,11 +132,6 @@ impl Dump {
 fn now() -> String {
     let now = Timestamp::now();
     now.round(jiff::Unit::Second).unwrap_or(now).to_string()
-}
-
-fn exists(file: &Path) -> Failure {
-    Failure::local(format!("{} exists and was kept", file.display()))
-        .hint("--force replaces it; or choose another name")
 }
 
 /// A dump, or where it went.

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
-use crate::command::ValueKind;
 use crate::command::frame::items;
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, parse_references};
@@ -24,7 +24,7 @@ use crate::output::view::{Cell, Table, View};
                         say so.")]
 pub struct Get {
     /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
-    #[arg(required = true, value_name = "REF", value_parser = Named::parse, add = ValueKind::YercVariable)]
+    #[arg(required = true, value_name = "REF", value_parser = Named::parse, add = complete::VARIABLE)]
     variables: Vec<Named>,
     /// Read strings by the 16-byte commands, also from a DX200
     #[arg(long)]

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -154,7 +155,7 @@ impl Restore {
     }
 
     fn read(&self) -> Result<String, Failure> {
-        files::text(&self.file, MOST).map_err(|error| Failure::io(self.file.display(), &error))
+        Ok(files::text(&self.file, MOST).with_context(|| self.file.display().to_string())?)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,8 +14,8 @@ use super::super::writes::{Order, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
-use crate::command::ValueKind;
 use crate::command::frame::dry_run::unknown;
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -40,7 +41,7 @@ use crate::output::view::{Cell, Table, View};
 )]
 pub struct Set {
     /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
-    #[arg(required = true, value_name = "REF=VALUE", add = ValueKind::YercVariable)]
+    #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE)]
     assignments: Vec<Assignment>,
     /// Write strings by the 16-byte commands, also on a DX200
     #[arg(long)]
@@ -255,7 +256,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
 const MOST: u64 = 1 << 20;
 
 fn read(path: &Path) -> Result<String, Failure> {
-    files::text(path, MOST).map_err(|error| Failure::io(path.display(), &error))
+    Ok(files::text(path, MOST).with_context(|| path.display().to_string())?)
 }
 
 /// A request of `var set`.

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
 use super::parts::{Part, Records};
@@ -512,7 +513,7 @@ impl Store {
 /// Reads and checks the file of a part: what is to be written.
 pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
     let path = folder.join(part.file());
-    let text = files::text(&path, files::SETTINGS).map_err(|error| Failure::io(path.display(), &error))?;
+    let text = files::text(&path, files::SETTINGS).with_context(|| path.display().to_string())?;
     let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
     let columns = match (part, part.records()) {
         (_, Some(records)) => records.names(),

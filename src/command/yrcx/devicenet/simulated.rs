@@ -4,9 +4,11 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
+use anyhow::Context as _;
+
 use super::bus::DeviceNet;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -31,8 +33,8 @@ pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let fault = sim.mischief.as_deref().map(fault).transpose().map_err(|why| wrong(format!("mischief: {why}")))?;
     let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault)
-        .map_err(|error| Failure::io("the simulator on the loopback", &error))
+    let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault);
+    Ok(served.context("the simulator on the loopback")?)
 }
 
 /// The URL of a simulated controller behind that adapter.
@@ -94,11 +96,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What a slave does wrong, by its name.
 pub fn fault(text: &str) -> Result<DeviceFault, String> {
-    let found = DeviceFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = DeviceFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&DeviceFault::ALL, text)
 }
 
 /// A simulated controller behind its node.

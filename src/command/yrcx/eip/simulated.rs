@@ -4,9 +4,11 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
+use anyhow::Context as _;
+
 use super::bus::EtherNetIp;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -27,7 +29,7 @@ pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim.state.as_deref())?, listen, faults);
-    let server = server.map_err(|error| Failure::io("the simulator on the loopback", &error))?;
+    let server = server.context("the simulator on the loopback")?;
     server.with(|adapter, _| adapter.misbehave(mischief));
     Ok(server)
 }
@@ -77,11 +79,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What an adapter does wrong, by its name.
 pub fn mischief(text: &str) -> Result<AdapterFault, String> {
-    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&AdapterFault::ALL, text)
 }
 
 /// A simulated controller behind its adapter.

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::ValueKind;
+use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::program;
 use crate::command::yrcx::several::{Answers, Rows, Several, ask_each};
@@ -24,7 +24,7 @@ const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Tas
 #[derive(Debug, Args)]
 struct Chosen {
     /// Tasks, 1 to 16: 3, 1..8 or 1,9; those that there are, unless given
-    #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = ValueKind::YrcxTask)]
+    #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = complete::TASK)]
     tasks: Vec<Span>,
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Readable, State, WordState, readable, table, word_table};
-use crate::command::ValueKind;
+use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -18,7 +18,7 @@ use crate::output::view::{Section, View};
 pub struct Get {
     /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown; SOW2, SOD4, SIW2, SID4 for
     /// words. All dedicated outputs, and the general-purpose ones that are on, unless given
-    #[arg(value_name = "SIGNAL", value_parser = readable, add = ValueKind::YrcxOutput)]
+    #[arg(value_name = "SIGNAL", value_parser = readable, add = complete::OUTPUT)]
     signals: Vec<Readable>,
 }
 

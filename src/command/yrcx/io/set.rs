@@ -3,8 +3,8 @@
 use clap::Args;
 
 use super::input;
-use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
+use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
@@ -24,7 +24,7 @@ use crate::failure::Failure;
 )]
 pub struct Set {
     /// Name or number and state, as in servo-on=on or 20=off; or a word and its value, as in SIW2=5 or SID4=0x1F
-    #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = ValueKind::YrcxInputState)]
+    #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = complete::INPUT_STATE)]
     changes: Vec<Change>,
 }
 
@@ -115,7 +115,7 @@ fn told(changes: &[Change]) -> String {
 #[derive(Debug, Args)]
 pub struct Pulse {
     /// Name or number, as in alarm-reset or 20
-    #[arg(value_name = "SIGNAL", value_parser = input, add = ValueKind::YrcxInput)]
+    #[arg(value_name = "SIGNAL", value_parser = input, add = complete::INPUT)]
     signal: Signal,
 }
 

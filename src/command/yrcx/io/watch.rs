@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{State, table};
-use crate::command::ValueKind;
+use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::image::Image;
@@ -20,7 +20,7 @@ use crate::settings::duration;
 #[derive(Debug, Args)]
 pub struct Watch {
     /// Names or numbers of outputs of the controller, as in servo-on or 20; all unless given
-    #[arg(value_name = "SIGNAL", value_parser = output, add = ValueKind::YrcxOutput)]
+    #[arg(value_name = "SIGNAL", value_parser = output, add = complete::OUTPUT)]
     signals: Vec<Signal>,
     /// How long to go on
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]

@@ -1,0 +1,97 @@
+//! Candidates for arguments.
+
+use std::ops::RangeInclusive;
+
+use futures_util::FutureExt as _;
+
+use crate::command::frame::kind::{Ask, rows, text};
+use crate::command::{Candidate, ValueKind};
+use crate::controller::yrcx::signal::{Side, Signal};
+use crate::controller::yrcx::table::parameter::PARAMETERS;
+use crate::settings::target::Family;
+
+/// A dedicated signal that the controller is shown.
+pub const INPUT: ValueKind = ValueKind::Listed(|| signals(Side::Input, ""));
+/// The same with the state to set.
+pub const INPUT_STATE: ValueKind =
+    ValueKind::Listed(|| [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat());
+/// A dedicated signal that the controller shows.
+pub const OUTPUT: ValueKind = ValueKind::Listed(|| signals(Side::Output, ""));
+/// A port.
+pub const PORT: ValueKind = ValueKind::Listed(|| inputs().chain(outputs(0)).collect());
+/// A port that can be switched.
+pub const OUTPUT_PORT: ValueKind = ValueKind::Listed(|| outputs(2).collect());
+/// A parameter.
+pub const PARAMETER: ValueKind =
+    ValueKind::Listed(|| PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect());
+/// A static variable: `SGI0` to `SGR31`.
+pub const VARIABLE: ValueKind = ValueKind::Listed(|| {
+    let whole = numbered("SGI", 0..=31, "whole number");
+    whole.chain(numbered("SGR", 0..=31, "real number")).collect()
+});
+/// A task with a program in it.
+pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+    async {
+        for (task, state) in tasks(robot).await {
+            robot.tell(Candidate::new(task, state));
+        }
+    }
+    .boxed_local()
+});
+/// The program of a task by its number.
+pub const PROGRAM: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+    programs(robot, |number, name, about| Candidate::new(number, format!("{name}: {about}"))).boxed_local()
+});
+/// The program of a task by its name.
+pub const PROGRAM_NAME: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+    programs(robot, |number, name, about| Candidate::new(name, format!("program {number}: {about}"))).boxed_local()
+});
+
+fn signals(side: Side, ending: &str) -> Vec<Candidate> {
+    let dedicated = Signal::of_side(side);
+    dedicated
+        .map(|row| Candidate::new(format!("{}{ending}", row.name), format!("{}: {}", row.text, row.effect)))
+        .collect()
+}
+
+fn inputs() -> impl Iterator<Item = Candidate> {
+    ports("DI", 0..=27, "parallel inputs").chain(ports("SI", 0..=27, "serial inputs"))
+}
+
+fn outputs(first: u16) -> impl Iterator<Item = Candidate> {
+    ports("DO", first..=27, "parallel outputs")
+        .chain(ports("MO", first..=27, "internal outputs"))
+        .chain(ports("SO", first..=27, "serial outputs"))
+        .chain(ports("LO", 0..=1, "arm lock outputs"))
+        .chain(ports("TO", 0..=0, "timer outputs"))
+}
+
+/// Ports of eight signals, numbered in octal.
+fn ports(letters: &'static str, numbers: RangeInclusive<u16>, about: &'static str) -> impl Iterator<Item = Candidate> {
+    numbered(letters, numbers.filter(|number| number % 10 < 8), about)
+}
+
+fn numbered(
+    letters: &'static str,
+    numbers: impl Iterator<Item = u16>,
+    about: &'static str,
+) -> impl Iterator<Item = Candidate> {
+    numbers.map(move |number| Candidate::new(format!("{letters}{number}"), about))
+}
+
+/// What `candidate` makes of number, name and whereabouts of each program.
+async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate) {
+    for (task, state) in tasks(robot).await {
+        if let Some(shown) = robot.data(&["yrcx", "program", "show", "--task", &task]).await {
+            let (number, name) = (text(&shown, "program"), text(&shown, "name"));
+            robot.tell(candidate(&number, &name, &format!("task {task}, {state}")));
+        }
+    }
+}
+
+/// Numbers and states of the tasks with a program.
+async fn tasks(robot: &dyn Ask) -> Vec<(String, String)> {
+    let data = robot.data(&["yrcx", "info", "tasks", "1..8"]).await;
+    let tasks = rows(data.as_ref(), "tasks").map(|task| (text(task, "task"), text(task, "state")));
+    tasks.filter(|(_, state)| state != "no task").collect()
+}
