@@ -161,7 +161,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
             let mut link = Yrcx::connect(&robot, access, &screen).await?;
             for _ in 0..effort.trips {
                 let start = Instant::now();
-                answers.push(link.run(&order).await?.elapsed.as_secs_f64() * 1000.0);
+                answers.push(link.ask(&order).await?.elapsed.as_secs_f64() * 1000.0);
                 times.push(start.elapsed().as_secs_f64() * 1000.0);
                 // Somewhere else within the interval the next time.
                 tokio::time::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?))).await;

@@ -92,15 +92,12 @@ impl Family for Yrcx {
             let link = Link::new(robot, &access, screen, Client::apart(options), recorder)?;
             return Ok(Link { board: Some(board), ..link });
         }
-        let (client, recorder) = match Box::pin(attach(robot, &access, screen)).await? {
-            Some(attached) => {
-                let options = Options { commands: endpoint.is_owner(), ..options };
-                (Client::over(ImageLink::in_session(attached), options), None)
-            }
-            None => {
-                let (image, recorder) = Box::pin(endpoint.open(robot, &access, screen)).await?;
-                (Client::over(image, options), recorder)
-            }
+        let (client, recorder) = if let Some(attached) = Box::pin(attach(robot, &access, screen)).await? {
+            let options = Options { commands: endpoint.is_owner(), ..options };
+            (Client::over(ImageLink::in_session(attached), options), None)
+        } else {
+            let (image, recorder) = Box::pin(endpoint.open(robot, &access, screen)).await?;
+            (Client::over(image, options), recorder)
         };
         Link::new(robot, &access, screen, client, recorder)?.ready(screen).await
     }
