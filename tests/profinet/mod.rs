@@ -58,7 +58,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
             "0",
             &["Connect answered: done", "ApplicationReady", "WI 0501 # versions", "Release answered: done"],
         ),
-        ("--yes yrcx info servo", "0", &["motor power"]),
+        ("--yes yrcx info servo", "0", &["1 brake", "alarm 12.571"]),
         ("yrcx status", "3", &["open a session"]),
         ("--yes session open --background", "0", &["held by process"]),
         ("yrcx io get", "0", &["CPU_OK"]),
