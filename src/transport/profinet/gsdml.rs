@@ -205,7 +205,7 @@ impl Head {
         };
         let mut choices = Vec::new();
         for fitting in &self.modules {
-            let Some(slot) = first(fitting, None) else { continue };
+            let Some(slot) = first(fitting, None).filter(|slot| !fitting.fixed.contains(slot)) else { continue };
             if fits(&[(slot, fitting)]) {
                 choices.push(vec![(slot, fitting)]);
             }

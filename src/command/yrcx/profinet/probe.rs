@@ -233,9 +233,9 @@ impl Report for Probed {
             }
             view = view.and(Section::Table(table));
         }
-        let mut table = Table::new(&["layout", "answer"], "no layout is possible");
+        let mut table = Table::new(&["layout that is possible", "answer"], "no layout is possible");
         for attempt in &self.layouts {
-            let answer = Cell::from(attempt.answer.as_deref().unwrap_or("not tried"));
+            let answer = Cell::maybe(attempt.answer.as_deref());
             let tone = match attempt.fits {
                 Some(true) => Tone::Good,
                 Some(false) => Tone::Bad,

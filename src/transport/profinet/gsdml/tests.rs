@@ -80,6 +80,24 @@ fn fixed_modules_parameters_and_names_are_read() {
     assert_eq!(Gsdml::parse(&latin).unwrap(), gsdml);
 }
 
+/// A module that is there anyway is no choice, alone or beside another.
+#[test]
+fn a_module_that_is_always_there_is_chosen_once() {
+    let two = OWN.replace(
+        "<Output><DataItem DataType=\"Unsigned16\"/><DataItem DataType=\"OctetString\" Length=\"46\"/></Output>",
+        "",
+    );
+    let two = two.replace(
+        "<VirtualSubmoduleList/>",
+        "<VirtualSubmoduleList><VirtualSubmoduleItem ID=\"NS\" SubmoduleIdentNumber=\"1\"><IOData><Output>\
+         <DataItem DataType=\"OctetString\" Length=\"48\"/></Output></IOData></VirtualSubmoduleItem></VirtualSubmoduleList>",
+    );
+    let gsdml = Gsdml::parse(two.as_bytes()).unwrap();
+    let head = &gsdml.heads[0];
+    let layout = head.layout(&head.choose(48, 48).unwrap()).unwrap();
+    assert_eq!(layout.size(Direction::Output), 48);
+}
+
 #[test]
 fn mistakes_are_named_with_line_and_element() {
     let cases = [
