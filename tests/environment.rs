@@ -97,6 +97,32 @@ fn tables_fit_terminals_of_any_width() {
 }
 
 #[test]
+fn a_long_text_goes_through_the_pager_on_a_terminal() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shown = |line: &str| {
+        let mut command = armctl(line, folder.path());
+        command.env("PAGER", "sed 's/^/| /'").env("PATH", std::env::var_os("PATH").unwrap_or_default());
+        Terminal::new(80).run(command)
+    };
+    for line in ["yrcx -h", "yerc move joint -h", "help safety", "yerc help"] {
+        assert!(shown(line).lines().all(|line| line.starts_with("| ")), "{line}: {}", shown(line));
+    }
+    for line in ["yerc job select -h", "yrcx -h --no-pager", "--no-pager help safety", "--sim yerc alarm history"] {
+        assert!(!shown(line).contains("| "), "{line}: {}", shown(line));
+    }
+    let mut command = armctl("yrcx -h", folder.path());
+    command.env("PAGER", "no-such-pager");
+    assert!(Terminal::new(80).run(command).contains("Usage: armctl yrcx"));
+}
+
+#[test]
+fn a_mistake_is_told_in_lines_that_end_between_words() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shown = Terminal::new(80).run(armctl("--sim yrcx param get TOEL --axis 1", folder.path()));
+    assert!(shown.lines().all(|line| line.chars().count() <= 80) && shown.contains("did you mean TOLE?"), "{shown}");
+}
+
+#[test]
 fn a_watch_stays_in_its_place_on_a_terminal_that_can() {
     let home = tempfile::tempdir().expect("a folder");
     let watch = |term: &str| {

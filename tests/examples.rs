@@ -15,6 +15,11 @@ fn run(example: &str) -> String {
 }
 
 #[test]
+fn toyo_reads_and_moves() {
+    assert_eq!(run("toyo"), "");
+}
+
+#[test]
 fn yerc_reads_fetches_and_moves() {
     assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS stands at 5000 pulses\n");
 }

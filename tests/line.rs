@@ -6,5 +6,7 @@ mod faults;
 mod peers;
 #[cfg(unix)]
 mod profibus;
+#[cfg(target_os = "linux")]
+mod profinet;
 mod toyo_faults;
 mod toyo_peers;

@@ -139,8 +139,12 @@ impl Drop for Running {
 
 /// A simulator on this address, or on one of its own; its target is the first thing that it says.
 fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
-    let words = format!("sim {family} --bind {address} --jq .data.target");
-    let mut simulator = Running::start(desk.command(&words), true);
+    serving(desk, &format!("{family} --bind {address}"))
+}
+
+/// A simulator that is started like this.
+fn serving(desk: &Desk, words: &str) -> Running {
+    let mut simulator = Running::start(desk.command(&format!("sim {words} --jq .data.target")), true);
     if !simulator.first.contains("://") {
         let mut said = String::new();
         simulator.stderr.read_to_string(&mut said).unwrap();
@@ -353,6 +357,29 @@ fn a_lost_link_is_opened_again() {
     let listed = desk.until(|session| session["link"] == "up");
     assert_eq!(listed["reopenings"], 1);
     assert!(desk.run("-r cell yrcx info servo").status.success());
+}
+
+#[test]
+fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
+    // As patient as each can be: a busy machine is late.
+    for (words, patience, alarm) in
+        [("--bus devicenet", "&rate=10s", "12.541"), ("--bus profibus", "&watchdog=60s&slot=500ms", "12.561")]
+    {
+        let simulator = serving(&Desk::new(&[]), &format!("yrcx {words}"));
+        let target = simulator.first.split("&slot=").next().unwrap();
+        let desk = Desk::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
+        let session = Running::session(&desk, "cell");
+        desk.data("-r cell yrcx io set 20=on");
+        assert_eq!(desk.data("-r cell yrcx io get SI20")["signals"][0]["on"], true, "{target}");
+        assert!(desk.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(), "{target}");
+        desk.data("session close cell");
+        assert_eq!(session.end().0, Some(0), "{target}");
+        let _session = Running::session(&desk, "cell");
+        assert_eq!(desk.data("-r cell yrcx info alarm --history 1")["code"], alarm);
+        fails(&desk.run("-r cell yrcx move --to 200,0,0,0 --yes"), 3, alarm);
+        assert!(desk.run("-r cell yrcx recover --yes").status.success(), "{target}");
+        assert!(desk.run("-r cell yrcx move --to 200,0,0,0 --yes").status.success(), "{target}");
+    }
 }
 
 #[test]

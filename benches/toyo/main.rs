@@ -64,9 +64,9 @@ fn points(effort: &Effort) -> anyhow::Result<Table> {
         runtime.block_on(async {
             for row in 1..=effort.points {
                 let request = Request::read_parameter(table, Some(row))?;
-                let answer = link.read(&request).await?;
-                // With `@`, CR and LF; while the last LF of a request travels, the controller may answer already.
-                characters += request.text().len() + 1 + answer.written().len() + 3;
+                let answer = link.raw(&request).await?;
+                // With CR and LF; while the last LF of a request travels, the controller may answer already.
+                characters += request.text().len() + 1 + answer.text().len() + 2;
             }
             anyhow::Ok(())
         })
@@ -75,7 +75,7 @@ fn points(effort: &Effort) -> anyhow::Result<Table> {
     let busy = least.as_secs_f64() / elapsed.as_secs_f64();
     let mut table = Table::new(format!("{} points over a line of {BAUD} baud", effort.points));
     table.row(Row::new("the characters alone, 11 bits each", format!("{:.1} s", least.as_secs_f64())));
-    let row = Row::new("armctl, Link::read", format!("{:.1} s", elapsed.as_secs_f64()));
+    let row = Row::new("armctl, Link::raw", format!("{:.1} s", elapsed.as_secs_f64()));
     table.row(row.against(busy, Goal::AtLeast(0.95)));
     Ok(table)
 }

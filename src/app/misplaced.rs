@@ -28,7 +28,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
             place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
         }
         ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
-        ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| decimal_point(&why.to_string())),
+        ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| number(&why.to_string())),
         _ => None,
     };
     if let Some(tip) = tip {
@@ -104,6 +104,15 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         let quote = if values.concat().contains('\'') { '"' } else { '\'' };
         format!("a value with blanks stands in quotes: {quote}{}{quote}", values.join(" "))
     })
+}
+
+/// Which number to type instead of one that is refused.
+fn number(why: &str) -> Option<String> {
+    if let Some((least, most)) = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..=")) {
+        return Some(format!("write a number from {least} to {most}"));
+    }
+    let is_std = ["invalid digit found", "number too large", "number too small"].iter().any(|it| why.starts_with(it));
+    decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
 }
 
 /// What can stand where a value is missing.
@@ -328,6 +337,8 @@ mod tests {
             ("armctl yerc move relative --z 2,5 --speed 1mm/s", "use a decimal point: 2.5"),
             ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
+            ("armctl --count 1,5 yerc status", "write a whole number"),
+            ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }

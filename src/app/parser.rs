@@ -60,7 +60,9 @@ impl Refusal {
                         path.pop();
                     }
                 }
-                Self::Text(page(whole, &path, is_long))
+                let mut whole = whole.clone();
+                whole.build();
+                Self::Text(page(&whole, &path, is_long))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
                 let command = path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
@@ -78,9 +80,10 @@ impl Refusal {
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
             Self::Mistake(error) => {
                 let text = error.render().to_string();
-                let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+                let message: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
+                let message = message.join(" ");
                 let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
-                Failure::usage(message).hint(tip)
+                Failure::usage(message.trim_start_matches("error: ")).hint(tip)
             }
         }
     }

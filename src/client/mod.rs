@@ -17,6 +17,7 @@
 
 mod grant;
 mod plan;
+pub mod toyo;
 mod watcher;
 pub mod yerc;
 pub mod yrcx;

@@ -5,6 +5,7 @@ use std::process::Command;
 
 use dialoguer::console::Term;
 
+use super::wrap::wrapped;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
@@ -15,9 +16,11 @@ impl Screen {
     /// Writes a text to read: through a pager where it is longer than the terminal.
     pub fn read(&self, text: &str) -> Result<(), Failure> {
         let (rows, _) = Term::stdout().size();
+        let is_terminal = self.is_stdout_terminal();
+        let text = if is_terminal { wrapped(text, self.width().into()) } else { text.into() };
         let is_long = text.lines().count() >= rows.into() && text.len() < MOST;
-        let can_page = self.pager && is_long && self.is_stdout_terminal() && self.can_interrupt() && !is_dumb();
-        if can_page && show(text) { Ok(()) } else { self.data(text) }
+        let can_page = self.pager && is_long && is_terminal && self.can_interrupt() && !is_dumb();
+        if can_page && show(&text) { Ok(()) } else { self.data(&text) }
     }
 }
 

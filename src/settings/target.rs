@@ -6,6 +6,8 @@ pub mod bus;
 pub mod devicenet;
 pub mod eip;
 pub mod profibus;
+#[cfg(target_os = "linux")]
+pub mod profinet;
 mod url;
 
 use std::fmt;
@@ -312,7 +314,7 @@ fn hint(scheme: &str) -> String {
         None => format!(
             "write udp://HOST, {}, serial:///dev/ttyUSB0, serial://COM3 or tcp://HOST:PORT for a controller, or sim: for the \
              simulator; `armctl help targets` explains them",
-            BUSES.each_ref().map(|bus| bus.shortest).join(", ")
+            BUSES.iter().map(|bus| bus.shortest).collect::<Vec<_>>().join(", ")
         ),
     }
 }
@@ -461,7 +463,7 @@ mod tests {
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),
             ("sim:?axes=5", "axes is a number from 1 to 4"),
-            ("sim:?bus=can", "devicenet-compact or profibus, not 'can'"),
+            ("sim:?bus=can", "devicenet-compact or profibus or profinet, not 'can'"),
             ("sim:?baud=fast", "50 to 4000000"),
             ("serial:COM3", "slashes"),
             ("serial://", "port is missing"),

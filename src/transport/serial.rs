@@ -7,7 +7,8 @@
 use std::io;
 use std::time::Duration;
 
-use serialport::{ClearBuffer, DataBits, ErrorKind, FlowControl, Parity, SerialPort, StopBits};
+use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort};
+pub use serialport::{DataBits, Parity, StopBits};
 use thiserror::Error;
 use tokio::time::Instant;
 

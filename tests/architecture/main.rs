@@ -136,7 +136,7 @@ const LINKS: [&str; 40] = [
     "command/frame/trace.rs",
     "command/toyo/decode/capture.rs",
     "command/toyo/face.rs",
-    "command/toyo/link.rs",
+    "command/toyo/link/onlooker.rs",
     "command/toyo/ports.rs",
     "command/toyo/connect.rs",
     "command/toyo/serve.rs",

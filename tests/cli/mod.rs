@@ -32,6 +32,7 @@ transcripts! {
     exit_codes
     explain
     files
+    finding
     fleet_backups
     fleets
     help
@@ -69,6 +70,7 @@ transcripts! {
     yrcx_jog
     yrcx_motion
     yrcx_profibus
+    yrcx_profinet
     yrcx_programs
 }
 

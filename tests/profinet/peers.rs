@@ -4,7 +4,6 @@
 
 #![cfg(target_os = "linux")]
 
-use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use armctl_transport::image::tap::Tap;
@@ -28,51 +27,37 @@ use pnio::data::FieldType;
 use pnio::device::RtOptions;
 use pnio::diag::{ChannelError, Severity};
 
-/// Both namespaces; the two programs are this one, told by the name of the test which end it is.
-const SCRIPT: &str = r#"
-set -e
-mount -t sysfs none /sys
-ip link set lo up
-ip link add pc0 type veth peer name pd0
-unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 60' & P=$!
-until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
-ip link set pd0 netns $P
-ip addr add 192.168.79.1/24 dev pc0
-ip link set pc0 up
-nsenter -t $P -n -m sh -c 'ip link set lo up; ip addr add 192.168.79.2/24 dev pd0; ip link set pd0 up'
-ROLE=end nsenter -t $P -n -m "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
-ROLE=end "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture; R=$?
-kill $D $P
+mod namespaces;
+
+/// The two programs are this one, told by the name of the test which end it is.
+const ENDS: &str = r#"
+export ROLE=end
+$THERE "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
+"$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture
+R=$?
+kill $D
 exit $R
 "#;
 
 #[test]
 fn our_controller_runs_a_device_that_others_wrote() {
     if !run("others") {
-        println!("{SKIPPED}");
+        println!("{}", namespaces::SKIPPED);
     }
 }
 
 #[test]
 fn our_controller_finds_asks_and_runs_our_device() {
     if !run("our") {
-        println!("{SKIPPED}");
+        println!("{}", namespaces::SKIPPED);
     }
 }
 
-const SKIPPED: &str = "skipped: there are no user namespaces here";
-
 /// Runs the two ends of this name, and wants the controller's to come to its end; false where that cannot be.
 fn run(name: &str) -> bool {
-    let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
-    if !can.is_ok_and(|status| status.success()) {
-        return false;
-    }
     let program = std::env::current_exe().expect("this program has a path");
-    let mut command = Command::new("unshare");
-    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("PROGRAM", program).env("NAME", name);
-    let output = command.output().expect("unshare can be started");
-    let text = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    let program = program.to_str().expect("the path is UTF-8");
+    let Some(text) = namespaces::run(ENDS, &[("PROGRAM", program), ("NAME", name)]) else { return false };
     assert!(text.contains("the controller has seen all"), "{text}");
     true
 }
@@ -262,7 +247,7 @@ fn our_controller() {
     };
     let all = commission::stations(&interface, Duration::from_secs(2)).unwrap();
     assert_eq!(all.iter().map(|found| found.mac).collect::<Vec<_>>(), [found.mac]);
-    let identity = commission::identity(interface.ip.unwrap().address, &found).unwrap();
+    let identity = commission::identity(&interface, &found).unwrap();
     assert_eq!(identity.im0.unwrap().order_id, "RCX340");
     assert_eq!(identity.modules.unwrap()[1].ident, 0x101);
     commission::change(&interface, found.mac, "DCP signal", &Block::signal()).unwrap();

@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(completed(&["yerc"], "serv"), ["servo "]);
         assert_eq!(completed(&["yerc"], "rob"), ["robots "]);
         assert_eq!(completed(&["yerc"], "servo o"), ["servo on", "servo off"]);
-        assert_eq!(completed(&["yerc"], "toyo ho"), ["toyo home", "toyo host"]);
+        assert_eq!(completed(&["yerc"], "toyo ho"), ["toyo host", "toyo home"]);
         assert_eq!(completed(&[], "expl"), ["explain "]);
         assert!(completed(&["yerc"], "servo 'x y").is_empty());
     }

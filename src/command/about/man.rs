@@ -72,7 +72,7 @@ fn verbs(command: &Command) -> impl Iterator<Item = &Command> {
 fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
     let everywhere = page::everywhere(root);
     let mut own = command.clone().name(name_of(path)).mut_args(|argument| {
-        let is_own = path.is_empty() || !everywhere.contains(argument.get_id().as_str());
+        let is_own = path.is_empty() || !argument.is_global_set() || !everywhere.contains(argument.get_id().as_str());
         // What a short help leaves out belongs here.
         argument.hide_short_help(false).hide(!is_own)
     });

@@ -110,7 +110,7 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo position", Read),
     ("toyo position --watch 500ms", Read),
     ("toyo program list", Read),
-    ("toyo program list --used", Read),
+    ("toyo program list --used", Write),
     ("toyo program get", Read),
     ("toyo program get pick.toyo --explain", Read),
     ("toyo program put pick.toyo", Destroy),

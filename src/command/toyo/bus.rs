@@ -29,9 +29,9 @@ impl Command for Bus {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<CcLink, Failure> {
         let page = |form| Request::in_form(table::Command::Mbus, form, Vec::new()).map_err(|error| wrong(&error));
         let (settings, errors) = (page(0)?, page(1)?);
-        context.link.dry_run(&[settings.clone(), errors.clone()])?;
-        let settings = context.link.read(&settings).await?;
-        let errors = context.link.read(&errors).await?;
+        context.link.plan_all(&[settings.clone(), errors.clone()])?;
+        let settings = context.link.ask(&settings).await?;
+        let errors = context.link.ask(&errors).await?;
         let hex = |name| format!("{:02X}", errors.byte(name).unwrap_or(0));
         Ok(CcLink {
             station: small(&settings, "station"),

@@ -79,7 +79,7 @@ impl Command for Write {
 
 async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> Result<Transferred, Failure> {
     let link = context.link;
-    link.order(&Request::bare(work.order)).await?;
+    link.ask(&Request::bare(work.order)).await?;
     if no_wait {
         return Ok(Transferred { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }

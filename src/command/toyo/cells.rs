@@ -57,7 +57,7 @@ impl Link {
     /// Stores one cell, unless it holds that already. A dry run notes the question and the order, and goes on.
     ///
     /// # Errors
-    /// As those of [`Link::order`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
+    /// As those of [`Link::ask`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
     /// something else is there afterwards.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         if self.is_dry() {
@@ -84,7 +84,7 @@ impl Link {
     /// # Errors
     /// As those of [`Link::store`].
     pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
-        self.order(&cell.write).await?;
+        self.ask(&cell.write).await?;
         if let Some(warning) = self.wear.written(cell.read.text().trim_start_matches('@')) {
             screen.note(&format!("warning: {warning}"));
         }
@@ -105,7 +105,7 @@ impl Link {
 
     /// Whether a cell holds what it should.
     async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
-        Ok(cell.is(&self.read_content(&cell.read).await?))
+        Ok(cell.is(&self.ask(&cell.read).await?))
     }
 }
 

@@ -81,7 +81,7 @@ impl Command for Set {
         let Self { x, y, z, r, task, speed } = self;
         let values = [task, x, y, z, r, speed].map(Clone::clone).into();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
-        context.link.order(&request).await?;
+        context.link.ask(&request).await?;
         Ok(Done::new(format!("task {} has {}", field("task").meaning(task), self.aim())))
     }
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::cells::{Cells, is_blank};
 use super::link::Link;
-use super::numbers::read_contents;
+use super::numbers::ask_all;
 use super::refusal;
 use super::values::{Shown, in_a_line, shown};
 use crate::command::Report;
@@ -57,16 +57,16 @@ impl Copy {
             }
             return Err(unknown());
         }
-        let wanted = read_contents(link, screen, "reading what is copied", &source).await?;
-        let found = read_contents(link, screen, "reading what it replaces", &target).await?;
+        let wanted = ask_all(link, screen, "reading what is copied", &source).await?;
+        let found = ask_all(link, screen, "reading what it replaces", &target).await?;
         let differing = differences(&wanted, &found);
         let all = u32::try_from(wanted.len()).unwrap_or(u32::MAX);
         if differing == 0 {
             return Ok(Copied { what, from, to, cells: Cells { cells_written: 0, cells_unchanged: all } });
         }
         authority.confirm(&replacing(what, (from, to), &target, (&wanted, &found))).await?;
-        link.order(&order).await?;
-        let found = read_contents(link, screen, "reading it back", &target).await.map_err(|failure| {
+        link.ask(&order).await?;
+        let found = ask_all(link, screen, "reading it back", &target).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
         })?;

@@ -77,7 +77,7 @@ impl Command for Set {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
         let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
-        link.order(&order).await?;
+        link.ask(&order).await?;
         let read = Request::of(table::Command::Mcnt, [Value::Number(counter)]);
         let found = read_back(link, &order, &read).await?.number("count");
         if found.is_some_and(|found| found != value) {

@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use super::link::Moving;
+use crate::client::toyo::Moving;
 use crate::command::frame::local::state_folder;
 use crate::files;
 
@@ -130,6 +130,11 @@ impl Debts {
             file.set_len(text.len() as u64)?;
         }
         Ok(())
+    }
+
+    /// What is changed now.
+    pub fn owed(&self) -> &Owed {
+        &self.owed
     }
 
     /// What others have left behind on the same robot.

@@ -126,11 +126,11 @@ impl Command for History {
         let mut entries = Vec::new();
         for number in 1..=self.limit {
             progress.say(&format!("error history {number} of {} at most", self.limit));
-            let record = match link.try_read(&question(number)).await? {
+            let record = match link.try_ask(&question(number)).await? {
                 Ok(record) => record,
                 // A controller without history refuses the first entry; one with a short history, one beyond its end.
                 Err(_) if number > 1 => break,
-                Err(_) => link.read(&question(number)).await?,
+                Err(_) => link.ask(&question(number)).await?,
             };
             match Entry::of(number, &record) {
                 Some(entry) => entries.push(entry),
@@ -213,7 +213,7 @@ impl Command for Cancel {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;
-        link.order(&Request::bare(table::Command::Cerr)).await?;
+        link.ask(&Request::bare(table::Command::Cerr)).await?;
         if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
             return Ok(Cancelled { left: None });
         }
@@ -254,7 +254,7 @@ impl Command for Point {
     const ID: &'static str = "toyo.error.point";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport, Failure> {
-        let record = context.link.read(&Request::bare(table::Command::Merp)).await?;
+        let record = context.link.ask(&Request::bare(table::Command::Merp)).await?;
         let point = record.text("point").map(str::trim).filter(|point| !point.is_empty());
         Ok(PointReport { point: point.map(ToOwned::to_owned) })
     }

@@ -60,7 +60,7 @@ impl Command for Home {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Homed, Failure> {
         let link = context.link;
         let (order, accepted) = self.order();
-        link.order(&order).await?;
+        link.ask(&order).await?;
         if self.no_wait {
             return Ok(Homed { accepted: true, position: None, elapsed_ms: None });
         }

@@ -33,7 +33,7 @@ impl Command for Host {
             Switch::On => (table::Command::Hson, true, "the host commands; the start input does not"),
             Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),
         };
-        context.link.order(&Request::bare(command)).await?;
+        context.link.ask(&Request::bare(command)).await?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
             return Ok(Done::new(done));

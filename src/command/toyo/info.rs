@@ -35,11 +35,11 @@ impl Command for Info {
         let (task, speed) = (Request::bare(table::Command::Mtsk), Request::bare(table::Command::Rovr));
         let versions = STATIONS.map(version);
         let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
-        link.dry_run(&all)?;
+        link.plan_all(&all)?;
         // Every controller has this one; of the rest, each may be refused.
-        let mut about = About::of(&link.read(&system).await?);
+        let mut about = About::of(&link.ask(&system).await?);
         for request in &all[1..] {
-            match link.try_read(request).await? {
+            match link.try_ask(request).await? {
                 Ok(answer) => about.learn(request, &answer),
                 Err(_) => about.refused.push(request.text()),
             }
@@ -50,7 +50,7 @@ impl Command for Info {
 
 /// The version of the controller.
 pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
-    Ok(meaning(&link.read(&Request::bare(table::Command::Sysp)).await?, "version"))
+    Ok(meaning(&link.ask(&Request::bare(table::Command::Sysp)).await?, "version"))
 }
 
 /// What a controller says of itself.

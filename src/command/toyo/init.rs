@@ -90,7 +90,7 @@ impl Command for Init {
         let (name, number, words) = self.what.row();
         let clear = Request::of(table::Command::Mint, [Value::Word(number)]);
         let task = task::current(link).await.known()?;
-        link.order(&clear).await?;
+        link.ask(&clear).await?;
         let status = settled(link, screen).await.map_err(accepted)?;
         Ok(Cleared { cleared: name, about: words, task, needs_power_cycle: status.needs_power_cycle() })
     }

@@ -175,7 +175,7 @@ async fn read(
         }
         return Err(unknown());
     }
-    link.dry_run(requests)?;
+    link.plan_all(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Answers::with_capacity(requests.len());
     let mut silence: Option<Failure> = None;
@@ -219,13 +219,13 @@ pub fn plan_twice(link: &mut Link, request: &Request) {
 /// The answer to one question, or why there is none. What ends all the work is a failure.
 async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
     for _ in 1..times {
-        match link.try_read_content(request).await {
+        match link.try_ask(request).await {
             Ok(Err(_)) => {}
             Ok(Ok(record)) => return Ok(Ok(record)),
             Err(failure) => return of_one(failure),
         }
     }
-    match link.try_read_content(request).await {
+    match link.try_ask(request).await {
         Ok(Ok(record)) => Ok(Ok(record)),
         Ok(Err(Refusal(request))) => Ok(Err(refusal::of_question(&request))),
         Err(failure) => of_one(failure),

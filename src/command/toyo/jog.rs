@@ -10,12 +10,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
-use super::letters::Letters;
 use super::link::Toyo;
 use super::link::{Link, Moving, jog};
 use super::position::{Place, titled};
 use super::refusal;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
+use crate::client::toyo::Letters;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::interrupt::abandoned;
 use crate::command::{Command, Context, Report};
@@ -243,7 +243,7 @@ impl Jog {
         is_accepted: &mut bool,
     ) -> Result<Infallible, Cut> {
         let began = Instant::now();
-        link.try_order(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
+        link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         *is_accepted = true;
         // A look is two questions.
         let mut longest = 2 * began.elapsed();
@@ -278,7 +278,7 @@ impl Jog {
 
     /// Moves by one small step; where the axis then stands.
     async fn step(&self, link: &mut Link, axis: &Known, start: Place) -> Result<Place, Cut> {
-        link.try_order(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
+        link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         let (mut last, began) = (start, Instant::now());
         loop {
             let (is_busy, here) = look(link).await?;
@@ -342,12 +342,12 @@ impl Command for Jog {
         let index = self.axis.place(&letters)?;
         let axis = Known { index, letter: letters.of(index).to_owned() };
         authority.confirm(&Change::new(self.in_words(&format!("{} ({})", index + 1, axis.letter)))).await?;
-        link.order(&jog("RS", None)).await?;
+        link.ask(&jog("RS", None)).await?;
         if link.is_dry() {
             self.plan(link);
             link.stop(Moving::Jog).await?;
         }
-        let start = Place::of(&link.read(&position()).await?);
+        let start = Place::of(&link.ask(&position()).await?);
         let live = Live::new(screen);
         let began = Instant::now();
         let gone = tokio::select! {

@@ -20,6 +20,7 @@ mod easy;
 mod error;
 mod explain;
 pub mod face;
+mod failure;
 mod files;
 #[cfg(test)]
 mod gate;
@@ -30,7 +31,6 @@ mod init;
 mod io;
 mod items;
 mod jog;
-mod letters;
 pub mod link;
 mod mvm;
 mod numbers;

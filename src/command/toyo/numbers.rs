@@ -57,11 +57,11 @@ pub async fn ask_all(
     what: &str,
     requests: &[Request],
 ) -> Result<Vec<Record>, Failure> {
-    link.dry_run(requests)?;
+    link.plan_all(requests)?;
     let mut progress = (requests.len() > 1).then(|| screen.items_progress(what, requests.len() as u64));
     let mut answers = Vec::with_capacity(requests.len());
     for request in requests {
-        answers.push(link.read(request).await?);
+        answers.push(link.ask(request).await?);
         if let Some(progress) = &mut progress {
             progress.advance(1);
         }
@@ -71,7 +71,7 @@ pub async fn ask_all(
 
 /// Reads back what was ordered. In a dry run the question is noted.
 pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
-    link.read(read).await.map_err(|failure| {
+    link.ask(read).await.map_err(|failure| {
         let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
         Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
     })
@@ -80,22 +80,6 @@ pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Resu
 /// What was read back is something else.
 pub fn not_held(order: &Request, found: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {found}", order.text()))
-}
-
-/// Asks for what is stored, one after the other, as [`ask_all`] does; returns what is in the answers.
-pub async fn read_contents(
-    link: &mut Link,
-    screen: &Screen,
-    what: &str,
-    requests: &[Request],
-) -> Result<Vec<Record>, Failure> {
-    let answers = ask_all(link, screen, what, requests).await?;
-    let content = |(request, answer): (&Request, &Record)| {
-        let content = request.answered(answer);
-        let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
-        Ok(content.unwrap_or_else(|| answer.clone()))
-    };
-    requests.iter().zip(&answers).map(content).collect()
 }
 
 #[cfg(test)]

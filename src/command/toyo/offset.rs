@@ -19,7 +19,7 @@ impl Command for Offset {
     const ID: &'static str = "toyo.offset";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Place, Failure> {
-        let record = context.link.read(&Request::bare(table::Command::Moff)).await?;
+        let record = context.link.ask(&Request::bare(table::Command::Moff)).await?;
         Ok(Place::of(&record))
     }
 }

@@ -44,7 +44,7 @@ impl Command for Servo {
             Switch::On => (table::Command::Svon, true),
             Switch::Off => (table::Command::Svof, false),
         };
-        link.order(&Request::bare(command)).await?;
+        link.ask(&Request::bare(command)).await?;
         let done = becomes(link, (3, "whether it is"), |status| status.servo_on() == is_on).await?;
         link.has_ended();
         match (done, is_on) {
@@ -122,7 +122,7 @@ impl Command for Mode {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, mode) = (context.link, self.mode);
-        link.order(&Request::bare(mode.command())).await?;
+        link.ask(&Request::bare(mode.command())).await?;
         if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
             return Ok(Done::new(mode.in_force()));
         }
@@ -146,7 +146,7 @@ impl Command for Reset {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        context.link.order(&Request::bare(table::Command::Rest)).await?;
+        context.link.ask(&Request::bare(table::Command::Rest)).await?;
         Ok(Done::new("the controller was reset; errors are cancelled by `toyo error cancel`"))
     }
 }

@@ -57,7 +57,7 @@ impl Command for Get {
     const ID: &'static str = "toyo.override.get";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Percent, Failure> {
-        let answer = context.link.read(&Request::bare(table::Command::Rovr)).await?;
+        let answer = context.link.ask(&Request::bare(table::Command::Rovr)).await?;
         Ok(Percent { override_percent: small(&answer, field().name) })
     }
 }

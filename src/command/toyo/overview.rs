@@ -11,7 +11,7 @@ use crate::failure::Failure;
 /// Asks for status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 2, 3]).await?;
-    let place = Place::of(&link.read(&Request::bare(Command::Mpst)).await?);
+    let place = Place::of(&link.ask(&Request::bare(Command::Mpst)).await?);
     Ok(report(status, Some(place)))
 }
 

@@ -24,7 +24,7 @@ impl Command for Position {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stands, Failure> {
         let link = context.link;
         let letters = link.letters().await?;
-        let record = link.read(&Request::bare(table::Command::Mpst)).await?;
+        let record = link.ask(&Request::bare(table::Command::Mpst)).await?;
         Ok(Stands { place: Place::of(&record), axes: letters.all() })
     }
 }

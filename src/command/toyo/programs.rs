@@ -84,7 +84,7 @@ impl<K: Kind> Command for Select<K> {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
-        link.order(&order).await?;
+        link.ask(&order).await?;
         let found = read_back(link, &order, &Request::bare(K::COMMANDS[2])).await?.number("program");
         if let Some(found) = found.filter(|found| *found != self.program) {
             return Err(

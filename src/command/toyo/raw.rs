@@ -82,17 +82,13 @@ impl Command for Raw {
         let link = context.link;
         let answer = match &self.block {
             Block::Known(request) => {
-                if request.risk() > Risk::Read && !is_stop(request) {
-                    link.fence().await?;
-                }
-                link.dry_run(std::slice::from_ref(request))?;
-                let answer = link.exchange(request).await?;
+                let answer = link.raw(request).await?;
                 if answer == Answer::Done {
                     chosen(link, request);
                 }
                 answer.text()
             }
-            Block::Unknown(text) => link.raw(text).await?,
+            Block::Unknown(text) => link.raw_text(text).await?,
         };
         Ok(Exchange::of(&self.block, answer))
     }
@@ -105,15 +101,6 @@ fn chosen(link: &mut Link, request: &Request) {
         table::Command::Hsof => link.choose_host(false),
         table::Command::Ctsk => link.choose_task(small(request.record(), "task")),
         _ => {}
-    }
-}
-
-/// Whether it stops what moves: that waits for nothing.
-fn is_stop(request: &Request) -> bool {
-    match request.command() {
-        table::Command::Stop => true,
-        table::Command::Jgst => request.risk() < Risk::Motion,
-        _ => false,
     }
 }
 

@@ -54,7 +54,7 @@ impl Command for RobotType {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<InForce, Failure> {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
-        let Some(answer) = context.link.order_for(&order).await.known()? else {
+        let Some(answer) = context.link.ask(&order).await.known()? else {
             // Notes what follows, and ends.
             context.link.status_of(&[0]).await?;
             return Err(unknown());

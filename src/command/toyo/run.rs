@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::link::Link;
 use super::link::Toyo;
 use super::position::Place;
+use super::program::steps;
 use super::waiting::{Accepted, End, Work, step};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
@@ -157,7 +158,7 @@ fn chosen(kind: &str, program: Option<i32>) -> String {
 
 async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) -> Result<(), Failure> {
     match program {
-        Some(number) => link.order(&Request::of(command, [Value::Number(number)])).await,
+        Some(number) => link.ask(&Request::of(command, [Value::Number(number)])).await.map(|_| ()),
         None => Ok(()),
     }
 }
@@ -165,7 +166,7 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
 /// Starts, and unless told otherwise waits for the end.
 async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool) -> Result<Ran, Failure> {
     let link = context.link;
-    link.order(start).await?;
+    link.ask(start).await?;
     if no_wait {
         return Ok(Ran {
             accepted: true,
@@ -214,9 +215,9 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
     }
-    let Some((step, _)) = last.filter(|(step, _)| *step > 1) else { return Ok(false) };
-    let read = Request::of(table::Command::Rstx, [Value::Number(step - 1)]);
-    let Ok(record) = link.try_read(&read).await? else { return Ok(false) };
+    let before = last.and_then(|(step, _)| u16::try_from(step - 1).ok()).filter(|before| *before > 0);
+    let Some(before) = before else { return Ok(false) };
+    let Ok(record) = steps::numbered(link, before).await? else { return Ok(false) };
     Ok(record.text("text") == Some("STOP"))
 }
 

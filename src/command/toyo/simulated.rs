@@ -1,15 +1,14 @@
-//! The simulated controller at the end of a line: in this process, or served to others.
+//! How a simulated controller starts.
 
 use std::path::Path;
-use std::time::Duration;
 
 use anyhow::Context as _;
 
-use crate::controller::toyo::simulator::{Simulator, Start};
+pub use crate::client::toyo::Simulated;
+use crate::controller::toyo::simulator::Start;
 use crate::failure::Failure;
 use crate::files;
 use crate::transport::fault::LineFaultSpec;
-use crate::transport::sim::Peer;
 
 /// The start state: a file's, or the built-in one with so many axes; busy as often as the faults say.
 pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
@@ -33,33 +32,4 @@ fn load(path: &Path) -> Result<Start, Failure> {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")
     })
-}
-
-/// A simulated controller.
-#[derive(Debug)]
-pub struct Simulated(pub Simulator);
-
-impl Simulated {
-    /// In its start state.
-    pub fn new(start: Start) -> Self {
-        Self(Simulator::new(start))
-    }
-}
-
-impl Peer for Simulated {
-    fn receive(&mut self, now: Duration, _channel: usize, bytes: &[u8]) {
-        self.0.receive(now, bytes);
-    }
-
-    fn damaged(&mut self, now: Duration, _channel: usize) {
-        self.0.damaged(now);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
-        self.0.transmit(now).map(|bytes| (0, bytes))
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.0.wake()
-    }
 }

@@ -158,7 +158,7 @@ async fn found(link: &mut Link, store: &Store) -> Result<Found, Failure> {
     if store.is_optional {
         return Ok(link.read_if_there(&store.cell.read).await?.map_or(Found::NotThere, Found::This));
     }
-    Ok(Found::This(link.read_content(&store.cell.read).await?))
+    Ok(Found::This(link.ask(&store.cell.read).await?))
 }
 
 /// The block that writes a parameter, or a row of a table; `?` stands for values that are kept.
@@ -208,7 +208,7 @@ impl Link {
     /// is busy refuses, too.
     pub async fn read_if_there(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
         for _ in 0..2 {
-            if let Ok(content) = self.try_read_content(request).await? {
+            if let Ok(content) = self.try_ask(request).await? {
                 return Ok(Some(content));
             }
         }

@@ -44,7 +44,7 @@ fn field() -> &'static Field {
 
 /// The current task.
 pub async fn current(link: &mut Link) -> Result<u8, Failure> {
-    let answer = link.read(&Request::bare(table::Command::Mtsk)).await?;
+    let answer = link.ask(&Request::bare(table::Command::Mtsk)).await?;
     Ok(small(&answer, field().name))
 }
 
@@ -66,7 +66,7 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
-        link.order(&order).await?;
+        link.ask(&order).await?;
         let chosen = u8::try_from(self.task).unwrap_or(u8::MAX);
         link.choose_task(chosen);
         let found = read_back(link, &order, &Request::bare(table::Command::Mtsk)).await?.number(field().name);

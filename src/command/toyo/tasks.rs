@@ -16,7 +16,7 @@ pub async fn choose(link: &mut Link, wanted: Option<u8>) -> Result<u8, Failure> 
         }
         return Ok(wanted.unwrap_or(1));
     }
-    let answer = link.read(&Request::bare(Command::Mtsk)).await?;
+    let answer = link.ask(&Request::bare(Command::Mtsk)).await?;
     let found = answer.number("task").and_then(|task| u8::try_from(task).ok()).filter(|task| (1..=4).contains(task));
     let found = found.ok_or_else(|| link.malformed(&answer.written(), "there are tasks 1 to 4"))?;
     match wanted.filter(|wanted| *wanted != found) {

@@ -1,19 +1,19 @@
 //! For tests: what a command line would send, and what becomes of it on a simulator in virtual time.
 
-use std::cell::RefCell;
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
-use std::rc::Rc;
+use std::sync::{Arc, RwLock, RwLockReadGuard, RwLockWriteGuard};
 use std::time::Duration;
 
 use clap::Parser as _;
 use serde_json::Value;
 
+use super::connect;
 use super::link::Link;
 use super::link::Toyo;
-use super::link::fence::FENCE;
 use super::simulated::Simulated;
 use crate::cli::{Cli, FamilyWord, Top};
+use crate::client::toyo::{Client, FENCE};
 use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::testing::{self, QUIET, context, everything, frames, planned};
@@ -25,8 +25,9 @@ use crate::gate::{Gate, Grant, Intent};
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::target::Family as Name;
 use crate::settings::{Robot, Selection, Sources};
-use crate::transport::line::Pace;
+use crate::transport::line::{InProcessLine, Pace};
 use crate::transport::sim::Peer;
+use crate::transport::stream::Stream;
 
 /// What the parser of the command line objects to.
 pub(super) fn objection(words: &[&str]) -> String {
@@ -92,7 +93,18 @@ pub(super) enum Fault {
 }
 
 /// Blocks that arrived at the end of the line, or were lost before it, in their order.
-pub(super) type ReceivedBlocks = Rc<RefCell<Vec<String>>>;
+#[derive(Debug, Clone, Default)]
+pub(super) struct ReceivedBlocks(Arc<RwLock<Vec<String>>>);
+
+impl ReceivedBlocks {
+    pub(super) fn borrow(&self) -> RwLockReadGuard<'_, Vec<String>> {
+        self.0.read().expect("no test has panicked with it")
+    }
+
+    pub(super) fn borrow_mut(&self) -> RwLockWriteGuard<'_, Vec<String>> {
+        self.0.write().expect("no test has panicked with it")
+    }
+}
 
 /// A simulated controller behind a line that loses what a test wants to be lost.
 struct FaultyLine<F> {
@@ -111,7 +123,7 @@ impl<F> fmt::Debug for FaultyLine<F> {
     }
 }
 
-impl<F: FnMut(&str, usize) -> Fault> Peer for FaultyLine<F> {
+impl<F: FnMut(&str, usize) -> Fault + Send> Peer for FaultyLine<F> {
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
         for byte in bytes {
             self.coming.push(*byte);
@@ -153,7 +165,7 @@ impl Bench {
     /// A simulator in a start state (TOML), behind a line with faults; and the blocks that it receives.
     pub(super) fn with_faults(
         state: &str,
-        fault: impl FnMut(&str, usize) -> Fault + 'static,
+        fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
     ) -> (Self, ReceivedBlocks) {
         let controller = Simulated::new(Start::parse(state).expect("a start state"));
         let heard = ReceivedBlocks::default();
@@ -163,7 +175,13 @@ impl Bench {
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let runtime = runtime();
         let link = runtime
-            .block_on(async { Link::to(peer, &robot, &everything(), &quiet(), Pace::new(9600, 11)) })
+            .block_on(async {
+                let (pace, access) = (Pace::new(9600, 11), everything());
+                let line =
+                    Stream::InProcess(Box::new(InProcessLine::new(peer as Box<dyn Peer + Send>, Some(pace), None)));
+                let client = Client::over(line, pace.time(1), connect::options(&robot, &access));
+                Link::of(client, &robot, &access, &quiet())
+            })
             .expect("a link");
         (Self { runtime, robot, link }, heard)
     }

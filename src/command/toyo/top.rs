@@ -43,7 +43,7 @@ impl declared::Poller for Poller {
             (Detail::Summary, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
-        let place = self.link.try_read(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
+        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
         let whole = match detail {
             Detail::Summary => None,
             Detail::Full => Some(self.whole(status, place).await?),
@@ -70,7 +70,7 @@ impl Poller {
 
     /// The first screen of ports of the controller itself.
     async fn bank(&mut self, name: &'static str, ports: Ports) -> Result<Bank, Failure> {
-        let groups = match self.link.try_read(&ports.request(0, 1)).await? {
+        let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => {
                 ports_of(&record).iter().map(|port| SignalByte::falling(port.name.clone(), port.byte())).collect()
             }
@@ -92,7 +92,7 @@ async fn limits(link: &mut Link) -> Result<Limits, Failure> {
 async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure> {
     let request = Parameter::named(id).and_then(|parameter| Request::read_parameter(parameter, None).ok());
     let request = request.ok_or_else(|| Failure::local(format!("there is no parameter {id}")))?;
-    Ok(link.try_read_content(&request).await?.ok())
+    Ok(link.try_ask(&request).await?.ok())
 }
 
 fn alarms(status: Status) -> Vec<Alarm> {

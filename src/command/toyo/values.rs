@@ -206,7 +206,7 @@ impl Changes {
         read: &Request,
         sketch: impl FnOnce(&[Option<Value>]) -> String,
     ) -> Result<(Vec<Value>, Option<Record>), Failure> {
-        let found = link.read_content(read).await.known()?;
+        let found = link.ask(read).await.known()?;
         match (self.whole(), &found) {
             (Some(values), _) => Ok((values, found)),
             (None, Some(there)) => Ok((self.over(there)?, found)),

@@ -6,10 +6,11 @@ use tokio::time::Instant;
 
 use super::link::Link;
 use super::position::Place;
+use super::program::steps;
 use super::refusal;
+pub(super) use crate::client::toyo::status_page;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::toyo::errors;
-use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::Status;
@@ -142,7 +143,7 @@ impl Accepted {
         }
         if self.work == Work::Program {
             let about = Reason::about("now and then until it has ended: whether it waits for an input, and which step");
-            for request in [status_page(4), current_step()] {
+            for request in [status_page(4), steps::read_request(0)] {
                 link.plan_depending(&request.text(), about.depending_on("how long it takes"));
             }
         }
@@ -206,8 +207,7 @@ async fn resting_place(link: &mut Link, seen: Option<Place>) -> Option<Place> {
 
 /// The current step with its number, unless the controller does not tell.
 pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>, Failure> {
-    let request = current_step();
-    let Ok(record) = link.try_read(&request).await? else { return Ok(None) };
+    let Ok(record) = steps::numbered(link, 0).await? else { return Ok(None) };
     let text = record.text("text").unwrap_or_default().to_owned();
     Ok(record.number("step").map(|number| (number, text)))
 }
@@ -240,14 +240,6 @@ pub(super) async fn becomes(
 
 pub(super) fn position() -> Request {
     Request::bare(Command::Mpst)
-}
-
-pub(super) fn status_page(page: u8) -> Request {
-    Request::of(Command::Stas, [Value::Number(page.into())])
-}
-
-fn current_step() -> Request {
-    Request::of(Command::Rstx, [Value::Number(0)])
 }
 
 /// Says how it goes: all the time on a terminal, elsewhere when it comes to a halt.
@@ -349,6 +341,7 @@ impl Watch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::controller::toyo::field::Value;
 
     const IDLE: u8 = 0x30;
     const RUNS: u8 = 0x32;

@@ -9,9 +9,17 @@ use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
 use super::profibus::bus as profibus;
+#[cfg(target_os = "linux")]
+use super::profinet::bus as profinet;
 
 /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
-pub const BUSES: [&dyn Fieldbus; 3] = [&eip::EtherNetIp, &devicenet::DeviceNet, &profibus::ProfibusDp];
+pub const BUSES: &[&dyn Fieldbus] = &[
+    &eip::EtherNetIp,
+    &devicenet::DeviceNet,
+    &profibus::ProfibusDp,
+    #[cfg(target_os = "linux")]
+    &profinet::ProfinetIo,
+];
 
 /// How each is searched by `robots discover`: arguments of the command line.
 #[derive(Debug, Args)]
@@ -46,15 +54,20 @@ pub struct Servers {
     devicenet: devicenet::ServeArgs,
     #[command(flatten)]
     profibus: profibus::ServeArgs,
+    #[cfg(target_os = "linux")]
+    #[command(flatten)]
+    profinet: profinet::ServeArgs,
 }
 
 impl Servers {
     /// Each with its fieldbus.
-    pub fn each(&self) -> [(&'static dyn Fieldbus, &dyn Serve); 3] {
-        [
+    pub fn each(&self) -> Vec<(&'static dyn Fieldbus, &dyn Serve)> {
+        vec![
             (&eip::EtherNetIp, &self.eip),
             (&devicenet::DeviceNet, &self.devicenet),
             (&profibus::ProfibusDp, &self.profibus),
+            #[cfg(target_os = "linux")]
+            (&profinet::ProfinetIo, &self.profinet),
         ]
     }
 }
@@ -70,7 +83,7 @@ pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
 
 /// The fieldbus of this name.
 pub fn by_name(name: &str) -> Option<&'static dyn Fieldbus> {
-    BUSES.into_iter().find(|bus| bus.name() == name)
+    BUSES.iter().copied().find(|bus| bus.name() == name)
 }
 
 #[cfg(test)]
@@ -80,11 +93,11 @@ mod tests {
 
     #[test]
     fn every_scheme_has_a_fieldbus_and_an_alarm_of_its_own() {
-        for scheme in &target::BUSES {
+        for scheme in target::BUSES {
             assert!(by_name(scheme.bus).is_some(), "{scheme:?}");
         }
         let mut alarms = Vec::new();
-        for bus in BUSES {
+        for bus in BUSES.iter().copied() {
             assert!(target::BUSES.iter().any(|scheme| scheme.bus == bus.name()), "{bus:?}");
             assert!(target::bus::simulators().any(|(_, name)| name == bus.name()), "{bus:?}");
             assert!(bus.link_alarm().known().is_some() && !alarms.contains(&bus.link_alarm()), "{bus:?}");

@@ -95,7 +95,7 @@ commands! {
         Var(Subcommands<var::Var>),
         /// Parameters of robots and axes
         Param(Subcommands<param::Param>),
-        /// Save points, pallets, shifts, hands, variables and parameters to a folder
+        /// Save points, data, variables and parameters to a folder
         Backup(backup::Backup),
         /// Restore a backup
         Restore(backup::Restore),
@@ -107,9 +107,9 @@ commands! {
         "Link":
         /// Diagnose the network board: identity, assemblies, attributes
         Eip(Subcommands<eip::Eip>),
-        /// The bus of a controller on DeviceNet: who is there, sizes, owner (diagnosis)
+        /// Diagnose DeviceNet: nodes of the bus, sizes, owner
         Devicenet(Subcommands<devicenet::DeviceNet>),
-        /// The line and the stations of PROFIBUS, without owning any
+        /// Diagnose PROFIBUS: stations of the line, without owning any
         Profibus(Subcommands<profibus::Profibus>),
         /// Reset the remote command status
         StatusReset(orders::StatusReset),

@@ -34,7 +34,8 @@ pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
         },
         Place::Sim(sim) => Ok(Endpoint::Sim(sim)),
         Place::Udp(_) | Place::Serial(_) | Place::Tcp(_) => {
-            let schemes = target::BUSES.each_ref().map(|scheme| format!("{}://", scheme.name)).join(", ");
+            let schemes: Vec<String> = target::BUSES.iter().map(|scheme| format!("{}://", scheme.name)).collect();
+            let schemes = schemes.join(", ");
             Err(Failure::usage(format!("yrcx is not reached over {}:", robot.target.value.scheme()))
                 .hint(format!("use {schemes} or sim:")))
         }

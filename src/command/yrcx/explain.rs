@@ -1,9 +1,11 @@
-//! `armctl explain yrcx`: alarms in words.
+//! `armctl explain yrcx`: alarms, and what devices of a fieldbus say no with, in words.
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::buses::BUSES;
+use super::fieldbus::Explained;
 use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
@@ -11,17 +13,27 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::target::Family;
 
-/// Alarm number of a YRCX
+/// Alarm number of a YRCX, or error of a PROFINET device
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Group and category, as in 12.600
-    #[arg(value_parser = alarm, add = ValueKind::Code(Family::Yrcx))]
-    code: Alarm,
+    /// Group and category, as in 12.600; or four bytes of PROFINET, as in 0xDB810209 or 'CF 81 FD 05'
+    #[arg(value_parser = code, add = ValueKind::Code(Family::Yrcx))]
+    code: Code,
 }
 
-/// Group and category.
-fn alarm(text: &str) -> Result<Alarm, String> {
-    text.parse().map_err(|error| format!("{error}"))
+/// What is explained.
+#[derive(Debug, Clone)]
+enum Code {
+    Alarm(Alarm),
+    Bus(Explained),
+}
+
+/// Group and category, or what a fieldbus knows.
+fn code(text: &str) -> Result<Code, String> {
+    if let Some(explained) = BUSES.iter().find_map(|bus| bus.explain(text)) {
+        return Ok(Code::Bus(explained));
+    }
+    text.parse().map(Code::Alarm).map_err(|error| format!("{error}"))
 }
 
 impl OfflineCommand for Explain {
@@ -29,20 +41,23 @@ impl OfflineCommand for Explain {
     const ID: &'static str = "explain.yrcx";
 
     fn run(&self, _screen: &Screen) -> Result<YrcxAlarm, Failure> {
-        Ok(YrcxAlarm::from(self.code))
+        Ok(match self.code.clone() {
+            Code::Alarm(alarm) => alarm.into(),
+            Code::Bus(explained) => explained.into(),
+        })
     }
 }
 
-/// An alarm of a YRCX in words.
+/// An alarm of a YRCX, or an error of a PROFINET device, in words.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct YrcxAlarm {
-    /// `12.600`.
+    /// `12.600`, `0xdb810209`.
     code: String,
     /// Whether anything is known beyond its group.
     known: bool,
     /// What it says.
-    name: &'static str,
-    /// What its group is about; null for an unknown group.
+    name: String,
+    /// What its group is about, or what was refused; null for an unknown group.
     group: Option<&'static str>,
     /// What usually causes it.
     causes: &'static [&'static str],
@@ -56,7 +71,7 @@ impl From<Alarm> for YrcxAlarm {
         Self {
             code: alarm.to_string(),
             known: known.is_some(),
-            name: alarm.text(),
+            name: alarm.text().to_owned(),
             group: alarm.group_text(),
             causes: known.map_or(&[], |known| known.causes),
             remedies: known.map_or(
@@ -67,12 +82,26 @@ impl From<Alarm> for YrcxAlarm {
     }
 }
 
+impl From<Explained> for YrcxAlarm {
+    fn from(explained: Explained) -> Self {
+        let Explained { code, meaning, refused, remedies } = explained;
+        Self {
+            code,
+            known: meaning.is_some(),
+            name: meaning.unwrap_or_else(|| "an error without words".to_owned()),
+            group: Some(refused),
+            causes: &[],
+            remedies,
+        }
+    }
+}
+
 impl Report for YrcxAlarm {
     fn view(&self) -> View {
         let listed = |lines: &[&str]| if lines.is_empty() { "-".to_owned() } else { lines.join("; ") };
         View::fields([
-            ("alarm", self.code.as_str().into()),
-            ("meaning", self.name.into()),
+            (if self.code.starts_with("0x") { "error" } else { "alarm" }, self.code.as_str().into()),
+            ("meaning", self.name.as_str().into()),
             ("group", self.group.unwrap_or("-").into()),
             ("cause", listed(self.causes).into()),
             ("what to do", listed(self.remedies).into()),

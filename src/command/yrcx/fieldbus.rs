@@ -41,14 +41,32 @@ pub trait Fieldbus: fmt::Debug + Sync {
     /// Opens what can be asked of the device without a link for images.
     fn board<'a>(&'a self, at: At<'a>) -> LocalBoxFuture<'a, Result<Box<dyn Board>, LinkError>>;
 
+    /// What a code means that its devices say no with; `None` for what is no such code.
+    fn explain(&self, _code: &str) -> Option<Explained> {
+        None
+    }
+
     /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
     fn layers(&self) -> &'static [&'static str];
 
     /// What finds its images in captures.
     fn decoder(&self) -> Box<dyn BusDecoder>;
 
-    /// Starts a simulated controller on it, as the URL of a simulator says.
+    /// Starts a simulated controller on it, with what the URL of a simulator wants to go wrong.
     fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure>;
+}
+
+/// What a device says no with, in words.
+#[derive(Debug, Clone)]
+pub struct Explained {
+    /// The code, however it was written.
+    pub code: String,
+    /// What it means; `None` for one without words.
+    pub meaning: Option<String>,
+    /// What was refused.
+    pub refused: &'static str,
+    /// What to do.
+    pub remedies: &'static [&'static str],
 }
 
 /// Where a controller is on a fieldbus.

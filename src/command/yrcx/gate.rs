@@ -64,6 +64,7 @@ const READS: &[&str] = &[
     "devicenet probe",
     "profibus scan",
     "profibus probe",
+    "profibus diag",
 ];
 
 const WRITES: &[&str] = &[

@@ -51,6 +51,8 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
+#[cfg(target_os = "linux")]
+pub mod profinet;
 mod program;
 mod raw;
 mod refusal;

@@ -29,3 +29,12 @@ pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
             .hint("`armctl help simulator` shows the form of the file")
     })
 }
+
+/// What goes wrong, by its name.
+pub fn fault_by_name<T: Copy>(known: &[(&'static str, T)], text: &str) -> Result<T, String> {
+    let found = known.iter().find(|(name, _)| *name == text);
+    found.map(|(_, fault)| *fault).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        format!("there are {}", names.join(", "))
+    })
+}

@@ -6,13 +6,22 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
+#[cfg(target_os = "linux")]
+use super::profinet;
 use super::{Address, Query, devicenet, eip, profibus};
 
 /// The one that hints name first.
 pub const USUAL: Scheme = eip::SCHEME;
 
 /// All of them.
-pub static BUSES: [Scheme; 4] = [eip::SCHEME, devicenet::SLCAN, devicenet::CAN, profibus::SCHEME];
+pub static BUSES: &[Scheme] = &[
+    eip::SCHEME,
+    devicenet::SLCAN,
+    devicenet::CAN,
+    profibus::SCHEME,
+    #[cfg(target_os = "linux")]
+    profinet::SCHEME,
+];
 
 /// What `bus=` of a `sim:` URL may be, with the fieldbus that it names.
 pub fn simulators() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -110,7 +119,7 @@ mod tests {
 
     #[test]
     fn every_scheme_says_how_its_urls_look() {
-        for scheme in &BUSES {
+        for scheme in BUSES {
             assert!(scheme.shortest.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");
             assert!(scheme.form.starts_with(&format!("{}:", scheme.name)), "{scheme:?}");
             let target: Target = scheme.shortest.to_lowercase().parse().unwrap();

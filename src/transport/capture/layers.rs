@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use etherparse::{EtherType, LaxNetSlice, LaxSlicedPacket, TransportSlice};
 
+use crate::profinet::wire::frame::Frame;
 use crate::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
 /// What is in a packet.
@@ -61,7 +62,8 @@ pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     let content = match link_type {
         // Loopback of BSD: the address family, in the byte order of the host. IP tells itself which it is.
         0 | 108 => packet.get(4..).and_then(ip),
-        1 => ethernet(packet, 12..14),
+        super::LINKTYPE_ETHERNET if Frame::parse(packet).is_ok() => Some(PacketContent::Frame),
+        super::LINKTYPE_ETHERNET => ethernet(packet, 12..14),
         // Raw IP, as numbered by several systems.
         12 | 14 | 101 | 228 | 229 => ip(packet),
         // Linux cooked, both versions.

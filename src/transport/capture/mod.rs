@@ -74,6 +74,9 @@ pub enum Carrier {
 /// `LINKTYPE_CAN_SOCKETCAN`: frames of CAN.
 pub const LINKTYPE_CAN: u16 = 227;
 
+/// `LINKTYPE_ETHERNET`: whole frames, of which only those of PROFINET are handed over as such.
+pub const LINKTYPE_ETHERNET: u16 = 1;
+
 impl Carrier {
     /// Sender and receiver, where they have addresses.
     pub const fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {

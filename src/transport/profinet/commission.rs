@@ -2,16 +2,14 @@
 //!
 //! Each call blocks for as long as it says.
 
-use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
-use std::time::{Duration, Instant};
-
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use socket2::Socket;
+use std::net::SocketAddrV4;
+use std::time::Duration;
 
 use super::controller::client::{Client, Outcome, Step};
 use super::error::ProfinetError;
 use super::interface::Interface;
+use super::port::{Calls, Frames};
+use super::settings;
 use super::wire::block::BlockType;
 use super::wire::dcp::{self, Block, Dcp, Kind, Service, Station};
 use super::wire::frame::{Frame, id};
@@ -26,8 +24,6 @@ const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
 /// Stations that are told of; a network has a few hundred.
 const MOST: usize = 4096;
-/// Room for a frame or a datagram.
-const BUFFER: usize = 65_536;
 /// Room for a record.
 const ROOM: u32 = 4000;
 
@@ -45,14 +41,12 @@ pub struct Found {
 /// # Errors
 /// When the interface cannot be used.
 pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
-    interface.check()?;
-    let socket = interface.raw_socket()?;
+    let frames = Frames::open(interface)?;
     let xid = fastrand::u32(1..);
     let request = Dcp::identify_all(xid, SPREAD);
-    send(&socket, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &request)?;
+    send(&frames, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &request)?;
     let mut found: Vec<Found> = Vec::new();
-    let until = Instant::now() + wait;
-    hear(&socket, until, |frame| {
+    frames.hear(frames.now() + wait, |frame| {
         let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| dcp.service == Service::Identify && dcp.xid == xid)?;
         let station =
             dcp.station().ok().filter(|_| frame.destination == interface.mac && dcp.kind == Kind::Response)?;
@@ -70,18 +64,36 @@ pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, Pro
 /// # Errors
 /// When the interface cannot be used, nobody has the name, or two have.
 pub fn by_name(interface: &Interface, name: &str) -> Result<Found, ProfinetError> {
-    interface.check()?;
-    let station = format!("station '{name}'");
-    dcp::check_name(name).map_err(|why| ProfinetError::Impossible(format!("'{name}' is not a name: {why}")))?;
-    let socket = interface.raw_socket()?;
+    find(interface, &settings::Station::Name(name.to_owned()))
+}
+
+/// A station, by its name or its card.
+///
+/// # Errors
+/// When the interface cannot be used, it does not answer, or two have its name.
+pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
+    if let settings::Station::Name(name) = wanted {
+        dcp::check_name(name).map_err(|why| ProfinetError::Impossible(format!("'{name}' is not a name: {why}")))?;
+    }
+    let frames = Frames::open(interface)?;
     let mut found: Option<Found> = None;
     for _ in 0..TRIES {
         let xid = fastrand::u32(1..);
-        send(&socket, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &Dcp::identify(xid, name))?;
-        let twin = hear(&socket, Instant::now() + PATIENCE, |frame| {
+        let question = match wanted {
+            settings::Station::Name(name) => Dcp::identify(xid, name),
+            settings::Station::Mac(_) => Dcp::identify_all(xid, 1),
+        };
+        send(&frames, interface.mac, Mac::DCP_IDENTIFY, id::DCP_IDENTIFY, &question)?;
+        let twin = frames.hear(frames.now() + PATIENCE, |frame| {
             let dcp =
                 Dcp::parse(frame.payload).ok().filter(|dcp| dcp.service == Service::Identify && dcp.xid == xid)?;
-            let said = dcp.station().ok().filter(|said| said.name == name && frame.destination == interface.mac)?;
+            let said = dcp.station().ok().filter(|said| {
+                frame.destination == interface.mac
+                    && match wanted {
+                        settings::Station::Name(name) => said.name == *name,
+                        settings::Station::Mac(mac) => frame.source == *mac,
+                    }
+            })?;
             match &found {
                 Some(first) if first.mac != frame.source => return Some((first.mac, frame.source)),
                 Some(_) => {}
@@ -90,13 +102,13 @@ pub fn by_name(interface: &Interface, name: &str) -> Result<Found, ProfinetError
             None
         })?;
         if let Some(cards) = twin {
-            return Err(ProfinetError::Duplicate { station, cards });
+            return Err(ProfinetError::Duplicate { station: wanted.to_string(), cards });
         }
         if let Some(found) = found {
             return Ok(found);
         }
     }
-    Err(ProfinetError::NotFound { station, after: PATIENCE * TRIES })
+    Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
 /// Sets something at a station: its name, its address, that it blinks. The same goes out three times at most, which does
@@ -105,12 +117,11 @@ pub fn by_name(interface: &Interface, name: &str) -> Result<Found, ProfinetError
 /// # Errors
 /// When the interface cannot be used, the station does not answer, or refuses.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
-    interface.check()?;
-    let socket = interface.raw_socket()?;
+    let frames = Frames::open(interface)?;
     let request = Dcp::change(fastrand::u32(1..), vec![block.clone()]);
     for _ in 0..TRIES {
-        send(&socket, interface.mac, mac, id::DCP_GET_SET, &request)?;
-        let answer = hear(&socket, Instant::now() + PATIENCE, |frame| {
+        send(&frames, interface.mac, mac, id::DCP_GET_SET, &request)?;
+        let answer = frames.hear(frames.now() + PATIENCE, |frame| {
             let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
             // Some stations do not copy the Xid.
             let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| is_its && dcp.service == Service::Set)?;
@@ -144,16 +155,14 @@ pub struct Identity {
 ///
 /// # Errors
 /// When no socket can be had. That a record is refused or not answered stands in its place.
-pub fn identity(here: Ipv4Addr, found: &Found) -> Result<Identity, ProfinetError> {
+pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;
-    let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);
-    let socket = UdpSocket::bind((here, 0)).map_err(|error| failed(&error))?;
+    let calls = Calls::open(interface, found.mac, SocketAddrV4::new(address, rpc::PORT))?;
     let (vendor, device) = found.station.id.unwrap_or_default();
     let object = rpc::object(found.station.instance.unwrap_or(1), device, vendor);
     let mut client = Client::new(object, Uuid::random());
-    let target = SocketAddrV4::new(address, rpc::PORT);
-    let mut ask = |what, index| read(&socket, target, &mut client, what, index);
+    let mut ask = |what, index| read(&calls, &mut client, what, index);
     let malformed = |what| move |error| ProfinetError::Malformed { what, error };
     let (im0, real) = ("Read of I&M0", "Read of the modules");
     Ok(Identity {
@@ -163,87 +172,34 @@ pub fn identity(here: Ipv4Addr, found: &Found) -> Result<Identity, ProfinetError
     })
 }
 
-fn read(
-    socket: &UdpSocket,
-    target: SocketAddrV4,
-    client: &mut Client,
-    what: &'static str,
-    index: u16,
-) -> Result<Vec<u8>, ProfinetError> {
+fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> Result<Vec<u8>, ProfinetError> {
     let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: ROOM };
     let blocks = asked.emit(BlockType::READ, 0, &[]);
-    let blocks = exchange(socket, target, client, &blocks)?.blocks(what)?;
+    let blocks = exchange(calls, client, &blocks)?.blocks(what)?;
     let (_, record) = Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
     Ok(record.to_vec())
 }
 
 /// Calls, and waits for what comes of it.
-fn exchange(
-    socket: &UdpSocket,
-    target: SocketAddrV4,
-    client: &mut Client,
-    blocks: &[u8],
-) -> Result<Outcome, ProfinetError> {
-    let failed = |error: &io::Error| ProfinetError::local("calling the device", error);
-    let start = Instant::now();
-    let first = client.call(start.elapsed(), operation::READ_IMPLICIT, blocks, TRIES);
-    socket.send_to(&first, target).map_err(|error| failed(&error))?;
-    let mut buffer = vec![0; BUFFER];
+fn exchange(calls: &Calls, client: &mut Client, blocks: &[u8]) -> Result<Outcome, ProfinetError> {
+    calls.send(&client.call(calls.now(), operation::READ_IMPLICIT, blocks, TRIES))?;
     loop {
-        let mut step = client.poll(start.elapsed());
-        if step.is_none() {
-            let wake = client.wake().unwrap_or_default().saturating_sub(start.elapsed());
-            socket.set_read_timeout(Some(wake.max(Duration::from_millis(1)))).map_err(|error| failed(&error))?;
-            // Nothing, or somebody else, or an interruption: the clock goes on.
-            if let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer)
-                && from.ip() == target.ip()
-            {
-                let datagram = Datagram::parse(&buffer[..length]).ok();
-                step = datagram.and_then(|datagram| client.handle(start.elapsed(), &datagram));
-            }
+        let mut step = client.poll(calls.now());
+        if step.is_none()
+            && let Some(bytes) = calls.hear(client.wake().unwrap_or_default())?
+        {
+            let datagram = Datagram::parse(&bytes).ok();
+            step = datagram.and_then(|datagram| client.handle(calls.now(), &datagram));
         }
         match step {
             Some(Step::Done(outcome)) => return Ok(outcome),
-            Some(Step::Send(bytes)) => {
-                socket.send_to(&bytes, target).map_err(|error| failed(&error))?;
-            }
+            Some(Step::Send(bytes)) => calls.send(&bytes)?,
             None => {}
         }
     }
 }
 
-fn send(socket: &Socket, source: Mac, destination: Mac, id: u16, dcp: &Dcp) -> Result<(), ProfinetError> {
+fn send(frames: &Frames, source: Mac, destination: Mac, id: u16, dcp: &Dcp) -> Result<(), ProfinetError> {
     let payload = dcp.emit();
-    let frame = Frame { destination, source, tag: None, id, payload: &payload };
-    let mut socket = socket;
-    socket.write_all(&frame.emit()).map_err(|error| ProfinetError::local("sending a frame", &error))
-}
-
-/// Hands on each frame that comes until something is made of one, or time is over.
-fn hear<T>(
-    socket: &Socket,
-    until: Instant,
-    mut take: impl FnMut(&Frame<'_>) -> Option<T>,
-) -> Result<Option<T>, ProfinetError> {
-    let mut buffer = vec![0; BUFFER];
-    loop {
-        let left = until.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Ok(None);
-        }
-        let wait = Timespec::try_from(left).ok();
-        // An interruption is like a time that was shorter.
-        let _ = poll(&mut [PollFd::new(socket, PollFlags::IN)], wait.as_ref());
-        let mut source = socket;
-        match source.read(&mut buffer) {
-            Ok(length) => {
-                let frame = Frame::parse(&buffer[..length]).ok();
-                if let Some(made) = frame.and_then(|frame| take(&frame)) {
-                    return Ok(Some(made));
-                }
-            }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-            Err(error) => return Err(ProfinetError::local("hearing frames", &error)),
-        }
-    }
+    frames.send(&Frame { destination, source, tag: None, id, payload: &payload })
 }

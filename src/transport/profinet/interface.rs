@@ -8,10 +8,13 @@ use nix::net::if_::InterfaceFlags;
 use nix::sys::socket::{LinkAddr, SockaddrIn};
 use socket2::{Domain, Protocol, Socket, Type};
 
+use super::controller::Here;
 use super::error::ProfinetError;
+use super::simulated;
 use super::wire::Mac;
 use super::wire::dcp::IpSuite;
 use super::wire::frame::ETHER_TYPE;
+use crate::image::tap::Tap;
 
 /// An Ethernet interface.
 #[derive(Debug, Clone)]
@@ -26,7 +29,18 @@ pub struct Interface {
     pub is_up: bool,
     /// Whether a cable with something at its other end is plugged in.
     pub has_carrier: bool,
-    link: LinkAddr,
+    /// Who records what passes outside of connections.
+    pub tap: Tap,
+    card: Card,
+}
+
+/// What is behind an interface.
+#[derive(Debug, Clone)]
+enum Card {
+    /// A card of this machine.
+    Real(LinkAddr),
+    /// A network in this process.
+    Simulated(simulated::Network),
 }
 
 /// The Ethernet interfaces of this machine.
@@ -45,7 +59,8 @@ pub fn all() -> io::Result<Vec<Interface>> {
             ip: None,
             is_up: entry.flags.contains(InterfaceFlags::IFF_UP),
             has_carrier: entry.flags.contains(InterfaceFlags::IFF_RUNNING),
-            link,
+            tap: Tap::default(),
+            card: Card::Real(link),
         });
     }
     for entry in &entries {
@@ -67,10 +82,26 @@ impl Interface {
     /// # Errors
     /// When there is none, with those that there are.
     pub fn find(name: &str) -> Result<Self, ProfinetError> {
+        if let Some(network) = simulated::Network::find(name) {
+            return Ok(network.interface());
+        }
         let all = all().map_err(|error| ProfinetError::local("list of network interfaces", &error))?;
         let present = all.iter().map(|interface| interface.name.clone()).collect();
         let found = all.into_iter().find(|interface| interface.name == name);
         found.ok_or(ProfinetError::NoInterface { name: name.to_owned(), present })
+    }
+
+    pub(super) fn simulated(name: String, here: Here, network: simulated::Network) -> Self {
+        let (mac, ip, card) = (here.mac, Some(here.ip), Card::Simulated(network));
+        Self { name, mac, ip, is_up: true, has_carrier: true, tap: Tap::default(), card }
+    }
+
+    /// The network in this process that it leads to, if it is none of a card.
+    pub const fn network(&self) -> Option<&simulated::Network> {
+        match &self.card {
+            Card::Real(_) => None,
+            Card::Simulated(network) => Some(network),
+        }
     }
 
     /// Whether frames can pass.
@@ -104,9 +135,10 @@ impl Interface {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,
             _ => ProfinetError::local("raw Ethernet socket", error),
         };
+        let Card::Real(link) = &self.card else { return Err(ProfinetError::Ended) };
         let protocol = Protocol::from(i32::from(ETHER_TYPE.to_be()));
         let socket = Socket::new(Domain::PACKET, Type::RAW, Some(protocol)).map_err(|error| failed(&error))?;
-        nix::sys::socket::bind(socket.as_raw_fd(), &self.link).map_err(|error| failed(&error.into()))?;
+        nix::sys::socket::bind(socket.as_raw_fd(), link).map_err(|error| failed(&error.into()))?;
         socket.set_nonblocking(true).map_err(|error| failed(&error))?;
         Ok(socket)
     }

@@ -115,7 +115,11 @@ impl From<ProfinetError> for LinkError {
             E::Silent { .. } | E::Aborted(_) | E::Plugged { .. } | E::AlarmUnanswered => {
                 Self::Silent(cause.options(TIMES))
             }
-            E::Impossible(_) | E::NoInterface { .. } => Self::Settings(cause),
+            E::Impossible(_) => Self::Settings(cause),
+            E::NoInterface { present, .. } if present.is_empty() => {
+                Self::Settings(cause.advice("there are no Ethernet interfaces here"))
+            }
+            E::NoInterface { present, .. } => Self::Settings(cause.advice(format!("there are {}", present.join(", ")))),
             E::Privilege => Self::Local(cause.advice(PRIVILEGE)),
             E::Interface { .. } => Self::Local(cause.advice("check the cable and the settings of the interface")),
             E::PortTaken { .. } => {

@@ -17,7 +17,11 @@ pub mod layout;
 pub mod link;
 #[cfg(target_os = "linux")]
 pub mod network;
+#[cfg(target_os = "linux")]
+mod port;
 pub mod settings;
+#[cfg(target_os = "linux")]
+pub mod simulated;
 #[cfg(target_os = "linux")]
 mod sockets;
 #[cfg(test)]

@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
+use etherparse::PacketBuilder;
 use tokio::sync::watch;
 
 use super::Now;
@@ -20,6 +21,7 @@ use super::error::ProfinetError;
 use super::interface::Interface;
 use super::settings::Settings;
 use super::sockets::{BUFFER, Sockets};
+use super::wire::Mac;
 use super::wire::alarm::Notification;
 use super::wire::rpc;
 use crate::image::tap::{Passed, Tap};
@@ -218,8 +220,8 @@ impl Inner {
                 }
                 Action::Datagram(to, bytes) => {
                     let from = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
-                    let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.clone() };
-                    slot.tap.pass(passed);
+                    let card = slot.core.card().unwrap_or_default();
+                    slot.tap.pass(|| Passed::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
                         slot.core.failed(ProfinetError::local("sending a call", &error));
                     }
@@ -246,10 +248,22 @@ impl Inner {
         let to = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
         for slot in self.slots().values_mut() {
             if slot.core.address() == Some(*from.ip()) {
-                let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.to_vec() };
-                slot.tap.pass(passed);
+                let card = slot.core.card().unwrap_or_default();
+                slot.tap.pass(|| Passed::Frame(in_frame(card, self.here.mac, from, to, bytes)));
             }
             slot.core.datagram(now, from, bytes);
         }
     }
+}
+
+/// A datagram in the frame that carries it, as records have it: who reads one finds a connection's frames by its cards.
+pub(super) fn in_frame(source: Mac, destination: Mac, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) -> Vec<u8> {
+    const HOPS: u8 = 64;
+    let headers = PacketBuilder::ethernet2(source.0, destination.0)
+        .ipv4(from.ip().octets(), to.ip().octets(), HOPS)
+        .udp(from.port(), to.port());
+    let mut frame = Vec::with_capacity(headers.size(bytes.len()));
+    // No datagram is longer than a packet.
+    let _ = headers.write(&mut frame, bytes);
+    frame
 }

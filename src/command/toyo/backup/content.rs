@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::manifest::Controller;
 use super::parts::Part;
+use crate::client::toyo::letters_request;
 use crate::command::backup::manifest::LeftOut;
 use crate::command::toyo::cells::Cell;
 use crate::command::toyo::items::{Answers, read_each};
-use crate::command::toyo::letters::letters_request;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::{steps, text};
 use crate::command::toyo::stores::{Store, Work};
@@ -42,7 +42,7 @@ pub enum Content {
 
 /// Asks what kind of controller it is.
 pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
-    let system = link.read(&Request::bare(Command::Sysp)).await?;
+    let system = link.ask(&Request::bare(Command::Sysp)).await?;
     let shown = |name: &str, show: fn(&Field, &Value) -> String| {
         system
             .pairs()
@@ -50,9 +50,9 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
             .map(|(field, value)| show(field, value))
             .unwrap_or_default()
     };
-    let axes = link.read_content(&task_axes()).await?;
-    let letters = link.try_read_content(&letters_request()).await?.ok();
-    let speed = link.try_read(&Request::bare(Command::Rovr)).await?.ok();
+    let axes = link.ask(&task_axes()).await?;
+    let letters = link.try_ask(&letters_request()).await?.ok();
+    let speed = link.try_ask(&Request::bare(Command::Rovr)).await?.ok();
     Ok(Controller {
         robot_type: shown("robot_type", Field::written),
         version: shown("version", |field, value| field.meaning(value).into_owned()),

@@ -413,7 +413,7 @@ async fn store(
 /// A step that the manual does not list is not written. Where something else is in its place, the program would be another
 /// one, and none of it is written.
 async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Failure> {
-    let found = link.read_content(&steps::read_request(step)).await?.written();
+    let found = link.ask(&steps::read_request(step)).await?.written();
     if found == text {
         return Ok(());
     }

@@ -21,7 +21,7 @@ impl Command for Progress {
     const ID: &'static str = "toyo.easy.progress";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Far, Failure> {
-        let answer = context.link.read(&Request::bare(table::Command::Resd)).await?;
+        let answer = context.link.ask(&Request::bare(table::Command::Resd)).await?;
         let number = |name| answer.number(name).unwrap_or_default();
         Ok(Far {
             program: number("program"),

@@ -112,14 +112,14 @@ impl Bank {
             None => 1..=self.screen(station, last),
         };
         let request = |screen: u8| self.request(station, screen);
-        link.dry_run(&screens.clone().map(request).collect::<Vec<_>>())?;
+        link.plan_all(&screens.clone().map(request).collect::<Vec<_>>())?;
         let (mut ports, mut refused, mut failed) = (Vec::new(), Vec::new(), Vec::new());
         for screen in screens {
             // That there is nothing at all is a refusal like others; a controller with fewer ports is none.
             if ports.is_empty() {
-                ports.extend(ports_of(&link.read(&request(screen)).await?));
+                ports.extend(ports_of(&link.ask(&request(screen)).await?));
             } else {
-                match link.try_read(&request(screen)).await {
+                match link.try_ask(&request(screen)).await {
                     Ok(Ok(record)) => ports.extend(ports_of(&record)),
                     Ok(Err(_)) => refused.extend(self.ports(station, screen).map(name)),
                     Err(error) if matches!(error.kind, Kind::NoAnswer | Kind::Malformed) => {

@@ -135,7 +135,7 @@ impl Assignment {
     /// Sets it, and reads it back where that can be.
     async fn set(&self, link: &mut Link, station: u8) -> Result<Output, Failure> {
         let order = self.order(station)?;
-        link.order(&order).await?;
+        link.ask(&order).await?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
             return Ok(Output::new(self, None));
         };
@@ -195,7 +195,7 @@ impl Command for Direct {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
-        context.link.order(&request).await?;
+        context.link.ask(&request).await?;
         Ok(Done::new(format!("direct output F{}", self.number)))
     }
 }

@@ -1,5 +1,5 @@
-use std::cell::Cell as Flag;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::*;
 use crate::command::toyo::testing::{Bench, Fault, ReceivedBlocks, all_blocks, blocks, intent, objection};
@@ -101,7 +101,7 @@ fn small_steps_are_done_one_by_one() {
 /// What becomes of `LOW` if blocks have this fate; the stop comes, and the axis stands.
 #[track_caller]
 fn with_faults(
-    fate: impl FnMut(&str, usize) -> Fault + 'static,
+    fate: impl FnMut(&str, usize) -> Fault + Send + 'static,
 ) -> (Result<serde_json::Value, Failure>, ReceivedBlocks, f64) {
     let (mut bench, heard) = Bench::with_faults(READY, fate);
     let outcome = bench.run(&LOW).map(|(data, _)| data);
@@ -154,11 +154,11 @@ fn a_stop_that_is_lost_is_repeated() {
 
 #[test]
 fn a_dead_line_says_what_to_do() {
-    let dead = Rc::new(Flag::new(false));
-    let is_dead = dead.clone();
+    let dead = Arc::new(AtomicBool::new(false));
+    let is_dead = Arc::clone(&dead);
     let (mut bench, heard) = Bench::with_faults(READY, move |block, _| {
-        let fate = if is_dead.get() { Fault::Lost } else { Fault::None };
-        is_dead.set(is_dead.get() || block == GO);
+        let fate = if is_dead.load(Relaxed) { Fault::Lost } else { Fault::None };
+        is_dead.fetch_or(block == GO, Relaxed);
         fate
     });
     let failure = bench.run(&LOW).unwrap_err();
@@ -169,7 +169,7 @@ fn a_dead_line_says_what_to_do() {
     assert!(count(&heard, STOP) > 10);
     ends_with_a_stop(&heard);
     // Once the line is back.
-    dead.set(false);
+    dead.store(false, Relaxed);
     assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 40.0);
     assert_eq!(bench.data(&["status"])["executing"], false);
 }

@@ -1,17 +1,17 @@
 //! What a command that was killed has left behind, told by the next one.
 
-use super::{Link, status_page};
+use super::Link;
+use crate::client::toyo::{Error, status_page};
 use crate::command::toyo::debts::Left;
 use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::commands::Command;
-use crate::failure::Failure;
 
 impl Link {
     /// Looks whether what others left behind is still so, and says how to undo it: before anything but a stop, and after
     /// that.
     pub(super) async fn tell_what_is_left(&mut self) {
-        if self.is_dry() || self.is_gone {
+        if self.is_dry() || self.is_gone() {
             return;
         }
         for left in std::mem::take(&mut self.left) {
@@ -31,11 +31,11 @@ impl Link {
     }
 
     /// What of it is still so, each with how to undo it.
-    async fn still_so(&mut self, left: &Left) -> Result<Vec<String>, Failure> {
+    async fn still_so(&mut self, left: &Left) -> Result<Vec<String>, Error> {
         let mut told = Vec::new();
         let mut status = Status::default();
         for page in [0, 2] {
-            if let Answer::Data(record) = Box::pin(self.converse(&status_page(page), true)).await? {
+            if let Answer::Data(record) = self.client.raw(&status_page(page)).await? {
                 status = status.with(page, record.byte("st1").unwrap_or_default());
             }
         }
@@ -49,7 +49,7 @@ impl Link {
             let Ok(back) = Request::parse(block) else { continue };
             told.extend(match back.command() {
                 Command::Ctsk => {
-                    let asked = Box::pin(self.converse(&Request::bare(Command::Mtsk), true)).await?;
+                    let asked = self.client.raw(&Request::bare(Command::Mtsk)).await?;
                     let Answer::Data(found) = asked else { continue };
                     let (found, before) = (found.number("task"), back.record().number("task"));
                     let (now, before) = (found.unwrap_or_default(), before.unwrap_or_default());

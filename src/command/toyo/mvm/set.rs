@@ -9,7 +9,7 @@ use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::cells::{Cells, THERE};
 use crate::command::toyo::link;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::numbers::{number, read_contents};
+use crate::command::toyo::numbers::{ask_all, number};
 use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{assignment, word};
 use crate::command::{Command, Context, Report};
@@ -66,7 +66,7 @@ impl Command for Set {
             }
             return Err(unknown());
         }
-        let mut sheets = read_contents(link, screen, "reading sheets", &reads).await?;
+        let mut sheets = ask_all(link, screen, "reading sheets", &reads).await?;
         let mut stores = Vec::new();
         for (index, changes) in changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some)) {
             let found = sheets[index].values().get(1..).unwrap_or_default();

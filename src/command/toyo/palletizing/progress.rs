@@ -22,7 +22,7 @@ impl Command for Progress {
     const ID: &'static str = "toyo.palletizing.progress";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Far, Failure> {
-        Ok(Far::of(&context.link.read(&Request::bare(table::Command::Rpld)).await?))
+        Ok(Far::of(&context.link.ask(&Request::bare(table::Command::Rpld)).await?))
     }
 }
 

@@ -141,7 +141,7 @@ impl Copy {
             lost.map(|(step, (wanted, found))| [format!("step {step}"), found.written(), wanted.written()]).collect();
         authority.confirm(&overwriting(["a step", "steps"], &lost, &format!(" of task {target}"))).await?;
         steps::open(link).await?;
-        link.order(&self.order(source, target)).await?;
+        link.ask(&self.order(source, target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;
         let different = (self.at..).zip(wanted.iter().zip(&found)).find(|(_, (wanted, found))| wanted != found);
         match different {

@@ -95,13 +95,13 @@ impl Delete {
         let room = steps::room(link, task, last).await?;
         let deleted = steps::read_all(link, screen, self.step..=last).await?;
         let behind = match last {
-            last if last < room => link.read_content(&steps::read_request(last + 1)).await?,
+            last if last < room => link.ask(&steps::read_request(last + 1)).await?,
             _ => steps::nop(),
         };
         authority.confirm(&self.change(&deleted, task)).await?;
         steps::open(link).await?;
-        link.order(&self.order(last)).await?;
-        let found = link.read_content(&steps::read_request(self.step)).await?;
+        link.ask(&self.order(last)).await?;
+        let found = link.ask(&steps::read_request(self.step)).await?;
         if found != behind {
             return Err(moved_wrong(self.step, &behind, &found));
         }
@@ -120,7 +120,7 @@ impl Delete {
         link.plan_if(&behind, "whether there is one behind");
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
-        link.order(&self.order(last)).await?;
+        link.ask(&self.order(last)).await?;
         link.plan(&steps::read_request(self.step), "what is there now");
         link.put_back().await?;
         Err(unknown())

@@ -156,11 +156,7 @@ async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
     for (id, row) in program::uses(steps) {
         let parameter = Parameter::named(id).ok_or_else(|| Failure::local(format!("there is no table {id}")))?;
         let request = Request::read_parameter(parameter, Some(row)).map_err(|error| misuse(&error.into()))?;
-        if let Ok(answer) = link.try_read(&request).await? {
-            let content = request.answered(&answer);
-            let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
-            rows.extend(content.map(|content| ((id, row), content)));
-        }
+        rows.extend(link.try_ask(&request).await?.ok().map(|content| ((id, row), content)));
     }
     Ok(rows)
 }

@@ -93,8 +93,8 @@ impl Insert {
         let step = self.step;
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, step).await?;
-        let before = link.read_content(&steps::read_request(step)).await?;
-        let last = link.read_content(&steps::read_request(room)).await?;
+        let before = link.ask(&steps::read_request(step)).await?;
+        let last = link.ask(&steps::read_request(room)).await?;
         if last != steps::nop() {
             let message = format!("step {room}, the last of task {task}, would fall out: {}", last.written());
             return Err(Failure::new(Kind::Rejected, message)
@@ -102,9 +102,9 @@ impl Insert {
         }
         authority.confirm(&Change::nothing()).await?;
         steps::open(link).await?;
-        link.order(&self.order()).await?;
+        link.ask(&self.order()).await?;
         if step < room {
-            let behind = link.read_content(&steps::read_request(step + 1)).await?;
+            let behind = link.ask(&steps::read_request(step + 1)).await?;
             if behind != before {
                 return Err(moved_wrong(step + 1, &before, &behind));
             }
@@ -127,7 +127,7 @@ impl Insert {
         link.plan_depending("@RSTX ?", last);
         authority.confirm(&Change::nothing()).await?;
         steps::plan_open(link).await?;
-        link.order(&self.order()).await?;
+        link.ask(&self.order()).await?;
         if self.step < 5000 {
             link.plan_if(&steps::read_request(self.step + 1), "whether it is the last one");
         }

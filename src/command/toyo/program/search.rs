@@ -5,9 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
+use crate::client::toyo::Refusal;
 use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
+use crate::command::toyo::refusal;
 use crate::command::toyo::tasks;
 use crate::command::toyo::waiting::status_page;
 use crate::command::{Command, Context, Report};
@@ -42,7 +44,7 @@ impl Command for Search {
         if link.is_dry() {
             tasks::choose(link, self.task).await?;
             link.plan(&status_page(0), "whether a program runs");
-            link.order(&self.order()).await?;
+            link.ask(&self.order()).await?;
             link.plan(&steps::read_request(0), "at which step it is");
             link.put_back().await?;
             return Err(unknown());
@@ -67,7 +69,7 @@ impl Search {
             )
             .hint("`toyo program get` tells all tags"));
         }
-        if link.try_order(&self.order()).await?.is_err() {
+        if link.try_ask(&self.order()).await?.is_err() {
             let (tag, task) = (self.number, task);
             return Err(Failure::new(Kind::Refused, format!("there is no tag {tag:03} in task {task} (@NG)"))
                 .hint(
@@ -75,9 +77,8 @@ impl Search {
                 )
                 .code("NG"));
         }
-        let request = steps::read_request(0);
-        let answer = link.read(&request).await?;
-        let content = request.answered(&answer);
+        let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
+        let content = steps::read_request(0).answered(&answer);
         let content = content.map_err(|error| link.malformed(&answer.written(), &error.to_string()))?;
         let is_tag = content.is_some_and(|content| {
             content.layout() == Op::Tag.row().layout && content.number("tag") == Some(self.number.into())

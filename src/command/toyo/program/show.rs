@@ -5,8 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
+use crate::client::toyo::Refusal;
 use crate::command::frame::dry_run::unknown;
 use crate::command::toyo::link::Toyo;
+use crate::command::toyo::refusal;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
@@ -30,8 +32,8 @@ impl Command for Show {
             link.plan(&request, "its current step");
             return Err(unknown());
         }
-        let which = link.read(&which).await?;
-        let answer = link.read(&request).await?;
+        let which = link.ask(&which).await?;
+        let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
         Ok(Current {
             task: which.number("task").unwrap_or_default(),
             step: answer.number("step").unwrap_or_default(),

@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use crate::command::toyo::cells::Cell;
 use crate::command::toyo::items::{Answers, read_until};
-use crate::command::toyo::link::{Link, misuse};
+use crate::command::toyo::link::{Link, Refusal, misuse};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::Request;
+use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table::{Command, Op, Parameter};
 use crate::failure::{Failure, Kind};
@@ -17,7 +17,7 @@ const READING: &str = "reading steps";
 
 /// How many steps each task has (TO 2-4, E22).
 pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
-    let record = link.read_content(&rooms_request()).await?;
+    let record = link.ask(&rooms_request()).await?;
     let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();
     Ok(["task1", "task2", "task3", "task4"].map(room))
 }
@@ -44,6 +44,15 @@ pub fn read_request(step: u16) -> Request {
     Request::read_step(step.into()).expect("steps are at most 5000")
 }
 
+/// A step with its number, as it stands on the line; a refusal is an answer. Step 0 is the current one.
+pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refusal>, Failure> {
+    let request = read_request(step);
+    Ok(match link.raw(&request).await? {
+        Answer::Data(record) => Ok(record),
+        Answer::Done | Answer::Refused => Err(Refusal(request)),
+    })
+}
+
 /// Reads steps up to the first for which `is_last` holds; each answers for itself.
 pub async fn read_each(
     link: &mut Link,
@@ -60,7 +69,7 @@ pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u1
     let mut read = Vec::with_capacity(steps.len());
     let mut progress = screen.items_progress(READING, steps.len() as u64);
     for step in steps {
-        read.push(link.read_content(&read_request(step)).await?);
+        read.push(link.ask(&read_request(step)).await?);
         progress.advance(1);
     }
     Ok(read)

@@ -3,7 +3,6 @@
 use super::images::{BusDecoder, Images};
 use crate::command::decode::capture::{CaptureDecoder, DecodedCapture};
 use crate::command::yrcx::buses::BUSES;
-use crate::command::yrcx::fieldbus::Fieldbus;
 use crate::controller::yrcx::describe::FieldNote;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};
@@ -19,7 +18,7 @@ impl ImageDecoder {
     /// Begins; `all` lists every image.
     pub fn new(all: bool) -> Self {
         let images = Images::new(all);
-        Self { images, buses: BUSES.into_iter().map(Fieldbus::decoder).collect() }
+        Self { images, buses: BUSES.iter().map(|bus| bus.decoder()).collect() }
     }
 }
 

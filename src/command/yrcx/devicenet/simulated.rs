@@ -8,7 +8,7 @@ use anyhow::Context as _;
 
 use super::bus::DeviceNet;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -96,11 +96,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What a slave does wrong, by its name.
 pub fn fault(text: &str) -> Result<DeviceFault, String> {
-    let found = DeviceFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = DeviceFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&DeviceFault::ALL, text)
 }
 
 /// A simulated controller behind its node.

@@ -8,7 +8,7 @@ use anyhow::Context as _;
 
 use super::bus::EtherNetIp;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -79,11 +79,7 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
 
 /// What an adapter does wrong, by its name.
 pub fn mischief(text: &str) -> Result<AdapterFault, String> {
-    let found = AdapterFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, mischief)| *mischief).ok_or_else(|| {
-        let names = AdapterFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&AdapterFault::ALL, text)
 }
 
 /// A simulated controller behind its adapter.

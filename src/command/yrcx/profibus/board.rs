@@ -11,7 +11,7 @@ use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text::hex;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::Cell;
 use crate::settings::target::Bus;
 use crate::settings::target::profibus::{Profibus, SCHEME};
@@ -22,7 +22,7 @@ use crate::transport::profibus::error::ProfibusError;
 use crate::transport::profibus::link::record;
 use crate::transport::profibus::request::Requester;
 use crate::transport::profibus::survey::{Found, Survey, Unknown};
-use crate::transport::profibus::wire::{Configuration, Flag, MAX_STATION, Station as Kind};
+use crate::transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATION, Station as StationKind};
 
 /// A line that is asked when something is asked.
 #[derive(Debug)]
@@ -62,9 +62,36 @@ impl Board {
 
     /// The station of the URL; `None` if it does not answer.
     pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
+        Ok(self.found().await?.map(|found| (Station::from(&found), self.image(&found))))
+    }
+
+    /// How the station of the URL is doing.
+    pub async fn diagnosis(&self) -> Result<Diagnosis, Failure> {
+        let found = self.found().await?.ok_or_else(|| self.silent())?;
+        found.diagnosis.map_err(|why| match why {
+            Unknown::NoAnswer => self.silent(),
+            Unknown::NotAsked => {
+                Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
+                    .hint("check station of the URL: `yrcx profibus scan` lists the slaves")
+            }
+            why => Failure::new(Kind::Malformed, format!("{}: Slave_Diag: {}", self.name(), unknown(&why)))
+                .hint("check that this is a slave of PROFIBUS DP"),
+        })
+    }
+
+    /// That the station of the URL does not answer.
+    pub fn silent(&self) -> Failure {
+        Failure::new(Kind::NoAnswer, format!("{} does not answer", self.name()))
+            .hint("`yrcx profibus scan` lists who answers")
+    }
+
+    fn name(&self) -> String {
+        format!("{}: station {}", self.label, self.profibus.station)
+    }
+
+    async fn found(&self) -> Result<Option<Found>, Failure> {
         let retries = self.profibus.retries.unwrap_or(3);
-        let found = self.ask(vec![self.profibus.station], retries).await?;
-        Ok(found.first().map(|found| (Station::from(found), self.image(found))))
+        Ok(self.ask(vec![self.profibus.station], retries).await?.into_iter().next())
     }
 
     /// What the controller shows, where it exchanges data with somebody.
@@ -141,12 +168,7 @@ impl From<&Found> for Station {
         let sizes = configuration.and_then(|bytes| Configuration::parse(bytes).ok());
         Self {
             station: found.station,
-            kind: match found.kind {
-                Kind::Slave => "slave",
-                Kind::MasterNotReady => "master, not ready",
-                Kind::MasterReady => "master, ready",
-                Kind::MasterInRing => "master, in the ring",
-            },
+            kind: kind(found.kind),
             ident: diagnosis.map(|diagnosis| format!("{:#06x}", diagnosis.ident)),
             master: diagnosis.and_then(|diagnosis| diagnosis.master),
             diagnosis: match &found.diagnosis {
@@ -180,6 +202,15 @@ impl Station {
             ("from the controller", bytes(self.in_size)),
             ("to the controller", bytes(self.out_size)),
         ]
+    }
+}
+
+const fn kind(station: StationKind) -> &'static str {
+    match station {
+        StationKind::Slave => "slave",
+        StationKind::MasterNotReady => "master, not ready",
+        StationKind::MasterReady => "master, ready",
+        StationKind::MasterInRing => "master, in the ring",
     }
 }
 

@@ -5,6 +5,7 @@ pub mod bus;
 mod check;
 mod connect;
 mod decode;
+mod diag;
 mod discover;
 mod probe;
 mod scan;
@@ -32,5 +33,7 @@ commands! {
         Scan(scan::Scan),
         /// Show diagnosis, ident number and configuration of the station, without owning it
         Probe(probe::Probe),
+        /// Show the diagnosis of the station with its blocks in words, without owning it
+        Diag(diag::Diag),
     }
 }

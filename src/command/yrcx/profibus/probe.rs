@@ -26,10 +26,7 @@ impl Command for Probe {
         context.link.no_unit(NO_UNIT)?;
         context.link.then("telegrams that ask the station for its state, diagnosis and configuration");
         let board = board_of(context.link)?;
-        let Some((station, _)) = board.station().await? else {
-            let message = format!("{}: station {} does not answer", context.robot.label(), board.settings().station);
-            return Err(Failure::new(Kind::NoAnswer, message).hint("`yrcx profibus scan` lists who answers"));
-        };
+        let (station, _) = board.station().await?.ok_or_else(|| board.silent())?;
         Ok(Probed { station })
     }
 }

@@ -10,7 +10,7 @@ use tokio::sync::oneshot;
 
 use super::bus::ProfibusDp;
 use crate::command::yrcx::fieldbus::Fieldbus as _;
-use crate::command::yrcx::simulated::{Simulated, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -62,11 +62,7 @@ pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
 
 /// What a slave does wrong, by its name.
 pub fn mischief(text: &str) -> Result<SlaveFault, String> {
-    let found = SlaveFault::ALL.iter().find(|(name, _)| *name == text);
-    found.map(|(_, fault)| *fault).ok_or_else(|| {
-        let names = SlaveFault::ALL.map(|(name, _)| name).join(", ");
-        format!("there are {names}")
-    })
+    fault_by_name(&SlaveFault::ALL, text)
 }
 
 /// A slave that is served as long as this lives.

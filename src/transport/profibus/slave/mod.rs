@@ -9,8 +9,8 @@ use super::super::sim::Peer;
 use super::Now;
 use super::rates::Rate;
 use super::wire::{
-    BROADCAST, Control, Diagnosis, Flag, Frame, FrameCount, GlobalControl, Lock, Parameters, Piece, Service, Station,
-    Status, Stream, Telegram, sap,
+    BROADCAST, Block, Control, Diagnosis, Flag, Frame, FrameCount, GlobalControl, Lock, Parameters, Piece, Service,
+    Station, Status, Stream, Telegram, sap,
 };
 
 mod fault;
@@ -238,13 +238,19 @@ impl<P: ImagePeer> Slave<P> {
             flags.push(Flag::Watchdog);
         }
         self.has_news = self.fault == Some(SlaveFault::Diagnosis);
+        let mut blocks = Vec::new();
+        if self.has_news {
+            flags.push(Flag::Extended);
+            let channel = Block::Channel { module: 1, channel: 2, way: 2, size: 1, error: 1 };
+            blocks = vec![Block::Device(vec![0x12, 0x34]), Block::Modules(vec![1]), channel];
+        }
         let is_locked = self.fault == Some(SlaveFault::Locked);
         let is_other = self.fault == Some(SlaveFault::OtherIdent);
         Diagnosis {
             flags: Diagnosis::flags(&flags),
             master: if is_locked { Some(OTHER_MASTER) } else { self.owner },
             ident: if is_other { self.setup.ident ^ 1 } else { self.setup.ident },
-            blocks: Vec::new(),
+            blocks,
         }
     }
 

@@ -169,6 +169,12 @@ impl Diagnosis {
         FLAGS.iter().any(|row| row.0 == flag && self.flags[row.1] & row.2 != 0)
     }
 
+    /// The flags that are set, in words, but for the one that only tells of blocks.
+    pub fn words(&self) -> impl Iterator<Item = &'static str> {
+        let told = FLAGS.iter().filter(|row| row.0 != Flag::Extended && self.has(row.0));
+        told.map(|row| row.3)
+    }
+
     /// With these flags, and the bit that is always set.
     pub fn flags(flags: &[Flag]) -> [u8; 3] {
         let mut bytes = [0, ALWAYS, 0];
@@ -182,10 +188,8 @@ impl Diagnosis {
 impl fmt::Display for Diagnosis {
     /// In words: `not ready for data, wants parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (flag, _, _, text) in FLAGS {
-            if flag != Flag::Extended && self.has(flag) {
-                write!(f, "{text}, ")?;
-            }
+        for text in self.words() {
+            write!(f, "{text}, ")?;
         }
         match self.master {
             Some(master) => write!(f, "master {master}, ")?,

@@ -538,4 +538,9 @@ impl Controller {
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
     }
+
+    /// Its card.
+    pub fn card(&self) -> Option<Mac> {
+        self.device.as_ref().map(|device| device.mac)
+    }
 }

@@ -4,8 +4,8 @@ use std::net::SocketAddrV4;
 use std::time::Duration;
 
 use super::super::Now;
-use super::super::layout::Direction;
-use super::super::wire::alarm::Priority;
+use super::super::layout::{Direction, Submodule};
+use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::block::{BlockType, Control};
 use super::super::wire::connect::Iocr;
 use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
@@ -27,6 +27,14 @@ const ACTIVITY: u8 = 6;
 const ALARM_LOST: u8 = 8;
 const WRONG_FRAME: u8 = 0x0C;
 const READY_UNANSWERED: u8 = 0x18;
+const ABORTED: u8 = 0x0D;
+/// How long all is well before something goes wrong once.
+const TROUBLE: Duration = Duration::from_secs(1);
+/// A diagnosis of a channel: that a line is broken, of the submodule as a whole.
+const CHANNEL: u16 = 0x8000;
+const LINE_BREAK: [u8; 6] = [0x80, 0, 0x28, 0, 0, 6];
+/// The first alarm, with a diagnosis of the submodule.
+const APPEARS: u16 = 0xA800;
 
 /// How far it is.
 #[derive(Debug)]
@@ -54,6 +62,8 @@ pub(super) struct Ar {
     pub(super) activity_timeout: Duration,
     pub(super) due: Now,
     pub(super) counter: u16,
+    /// When something goes wrong that goes wrong once in a connection, if something is to.
+    pub(super) trouble: Option<Now>,
     /// The count and the moment of the last frame from the controller.
     pub(super) heard: Option<(u16, Now)>,
 }
@@ -79,7 +89,7 @@ impl Ar {
             Stage::Ready { due, .. } => Some(due),
             Stage::Running => None,
         };
-        [stage, self.alarms.wake(), self.watchdog()].into_iter().flatten().fold(self.due, Now::min)
+        [stage, self.alarms.wake(), self.watchdog(), self.trouble].into_iter().flatten().fold(self.due, Now::min)
     }
 }
 
@@ -98,11 +108,34 @@ impl<A: Application> Device<A> {
         }
         let Some(repeats) = ar.alarms.poll(now) else { return self.abort(now, ALARM_LOST) };
         let is_due = ar.due <= now;
+        let is_trouble = ar.trouble.take_if(|at| *at <= now).is_some();
         for (priority, payload) in repeats {
             self.send_alarm(priority, &payload);
         }
         if is_due {
             self.send_data(now);
+        }
+        if is_trouble {
+            self.make_trouble(now);
+        }
+    }
+
+    /// What goes wrong once in a connection.
+    fn make_trouble(&mut self, now: Now) {
+        match self.fault {
+            Some(Fault::Diagnosis) => {
+                let first = self.setup.layout.submodules().iter().find(|submodule| submodule.slot > 0).copied();
+                if let Some(Submodule { slot, subslot, module, ident: submodule, .. }) = first {
+                    let (priority, detail) = (Priority::Low, Some((CHANNEL, LINE_BREAK.to_vec())));
+                    let (api, specifier) = (0, APPEARS);
+                    let alarm =
+                        Notification { priority, kind: 1, api, slot, subslot, module, submodule, specifier, detail };
+                    self.raise(now, &alarm);
+                }
+            }
+            Some(Fault::Restart) => self.restart(now),
+            Some(Fault::Abort) => self.abort(now, ABORTED),
+            _ => {}
         }
     }
 
@@ -248,6 +281,7 @@ impl<A: Application> Device<A> {
         let done = Control::call(BlockType::APPLICATION_READY, ar.uuid, ar.session_key).answer();
         if reply.status == 0 && control == Some(Ok(done)) {
             ar.stage = Stage::Running;
+            ar.trouble = Some(now + TROUBLE);
             self.application.event(now, &Event::Ready);
         }
     }

@@ -135,6 +135,7 @@ impl<A: Application> Device<A> {
             activity_timeout,
             due: now,
             counter: 0,
+            trouble: None,
             heard: None,
         });
         self.application.event(now, &Event::Connected(*from.ip()));

@@ -31,11 +31,17 @@ pub enum Fault {
     Owned,
     /// Takes no address.
     KeepsAddress,
+    /// Raises a diagnosis after a while, in every connection.
+    Diagnosis,
+    /// Is switched off and on after a while, in every connection.
+    Restart,
+    /// Ends every connection after a while.
+    Abort,
 }
 
 impl Fault {
     /// All there are, with the names they are asked for by.
-    pub const ALL: [(&'static str, Self); 14] = [
+    pub const ALL: [(&'static str, Self); 17] = [
         ("never-ready", Self::NeverReady),
         ("wrong-module", Self::WrongModule),
         ("silent", Self::Silent),
@@ -50,5 +56,8 @@ impl Fault {
         ("foreign", Self::Foreign),
         ("owned", Self::Owned),
         ("keeps-address", Self::KeepsAddress),
+        ("diagnosis", Self::Diagnosis),
+        ("restart", Self::Restart),
+        ("abort", Self::Abort),
     ];
 }

@@ -2,5 +2,7 @@
 
 mod faults;
 mod opening;
+#[cfg(target_os = "linux")]
+mod simulated;
 mod tshark;
 mod world;

@@ -225,6 +225,23 @@ impl Status {
         }
     }
 
+    /// What to do about it, as far as that is known.
+    pub const fn remedies(self) -> &'static [&'static str] {
+        match self.parts() {
+            [_, 0x81, 0x40, 0x04] => &["end the other controller's connection, or wait until its watchdog ends it"],
+            [_, 0x81, 0x01 | 0x40, _] => &["connect again"],
+            [_, 0x81, 0x02, 0x07] => &["try startup=legacy in the target"],
+            [_, 0x81, 0x02, 0x08 | 0x16..=0x1C] | [_, 0x81, 0x03, _] => {
+                &["compare layout= or gsdml= of the target with what the device has"]
+            }
+            [_, 0x81, 0x02, 0x0A..=0x10] => &["set a longer cycle= or another watchdog= in the target"],
+            [0xCF, 0x81, 0xFD, 0x05 | 0x06] => &["set a longer watchdog= or cycle= in the target", "check the cable"],
+            [0xCF, 0x81, 0xFD, 0x18] => &["let UDP port 34964 in through the firewall of this machine"],
+            [0xCF, 0x81, 0xFD, 0x1F | 0x20] => &["look the station up again: its name or address was changed"],
+            _ => &[],
+        }
+    }
+
     /// What it means, without the four bytes; `None` for one that has no words.
     pub fn meaning(self) -> Option<String> {
         let [_, decode, code1, code2] = self.parts();

@@ -371,12 +371,12 @@ async fn datagram(own: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
 }
 
 /// A stream that was opened, or why not.
-pub type Opened = Result<Stream<Box<dyn Peer>>, String>;
+pub type Opened = Result<Stream<Box<dyn Peer + Send>>, String>;
 type Opening = Pin<Box<dyn Future<Output = Opened>>>;
 
 /// A byte stream, which is opened again when it is gone.
 pub struct Line {
-    stream: Option<Stream<Box<dyn Peer>>>,
+    stream: Option<Stream<Box<dyn Peer + Send>>>,
     open: Box<dyn Fn() -> Opening>,
     opening: Option<Opening>,
     /// When to try again, and how often that was in vain.
@@ -387,7 +387,7 @@ pub struct Line {
 
 impl Line {
     /// An open stream, and how it is opened again.
-    pub fn new(stream: Stream<Box<dyn Peer>>, open: impl Fn() -> Opening + 'static) -> Self {
+    pub fn new(stream: Stream<Box<dyn Peer + Send>>, open: impl Fn() -> Opening + 'static) -> Self {
         Self { stream: Some(stream), open: Box::new(open), opening: None, due: Instant::now(), tries: 0, down: None }
     }
 

@@ -4,20 +4,18 @@
 //! another client of a device server. A controller answers one block after the other. So once it has answered a question,
 //! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
 
-use super::{Link, Transport, status_page};
-use crate::command::frame::dry_run::Reason;
-use crate::command::toyo::connect;
-use crate::controller::Risk;
-use crate::failure::{Failure, Kind};
+use armctl_controller::Risk;
 
 use super::borrowed::Host;
+use super::{Client, Error, Event, Transport, status_page};
+use crate::Reason;
 
 /// What it is about.
 pub const FENCE: &str = "whether the line is at peace";
 
-impl Link {
+impl Client {
     /// Asks something harmless before an order, unless an answered question was the last on the line.
-    pub(in crate::command::toyo) async fn fence(&mut self) -> Result<(), Failure> {
+    pub(super) async fn fence(&mut self) -> Result<(), Error> {
         if self.is_fenced {
             return Ok(());
         }
@@ -25,10 +23,7 @@ impl Link {
             self.plan_fence();
             return Ok(());
         }
-        Box::pin(self.converse(&status_page(0), true)).await.map(|_| ()).map_err(|failure| {
-            let message = format!("the order was not sent: {}", failure.message);
-            Failure { message, ..failure }
-        })
+        Box::pin(self.converse(&status_page(0))).await.map(|_| ()).map_err(|error| Error::NotSent(Box::new(error)))
     }
 
     /// Notes it in a dry run. Behind an order that is sent or not, so is this.
@@ -43,24 +38,24 @@ impl Link {
     }
 
     /// Opens a line again that is gone, for what only reads: after a re-plug, or a device server that was started anew.
-    /// What this link has changed is left to the hints that tell how to undo it.
-    pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Failure> {
+    /// What this client has changed is left to the hints that tell how to undo it.
+    pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Error> {
         let owes = self.moving.is_some() || self.host == Host::Taken || !self.borrowed.is_empty();
         if !self.is_gone || risk > Risk::Read || owes {
             return Ok(());
         }
-        let Some((robot, access)) = self.again.clone() else { return Ok(()) };
-        let opened = Box::pin(connect::open(&robot, &access, &self.screen)).await;
-        // Whatever is in the way, such as rights that a port gets a moment after it is there: it may pass.
-        let stream = opened.map_err(|failure| Failure { kind: Kind::NoAnswer, ..failure })?;
-        self.transport = Transport::Stream(Box::new(stream));
-        self.line.renew();
+        let Some(opener) = &self.opener else { return Ok(()) };
+        let opening = (opener.0)();
+        let line = opening.await.map_err(|error| Error::NotReopened(Box::new(error)))?;
+        self.transport = Transport::Line(Box::new(line));
+        self.ends = self.transport.ends();
+        self.session.renew();
         self.is_gone = false;
         self.host = Host::Unknown;
         self.is_fenced = false;
         // It may be another machine now.
         self.letters = None;
-        self.screen.detail(1, "the line is there again");
+        self.watcher.event(Event::Reopened);
         Ok(())
     }
 }

@@ -1,12 +1,11 @@
-//! What a link changes for a while, and puts back as it was found: who commands, and modes.
+//! What a client changes for a while, and puts back as it was found: who commands, and modes.
 
-use super::{Link, Refusal, Transport, status_page};
-use crate::command::frame::dry_run::Reason;
-use crate::command::toyo::refusal;
-use crate::controller::Risk;
-use crate::controller::toyo::request::{Answer, Request};
-use crate::controller::toyo::table::commands::Command;
-use crate::failure::{Failure, Kind};
+use armctl_controller::Risk;
+use armctl_controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::table::commands::Command;
+
+use super::{Client, Error, Event, HOST_PAGE, status_page};
+use crate::{Grant, Reason};
 
 /// Who commands the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,7 +14,7 @@ pub(super) enum Host {
     Unknown,
     /// The host was ON before.
     Found,
-    /// This link switched it ON, and gives it back.
+    /// This client switched it ON, and gives it back.
     Taken,
     /// In a dry run: it was asked, and switched ON, if an answer before wants that.
     Perhaps,
@@ -24,29 +23,40 @@ pub(super) enum Host {
 /// What decides whether the host is switched.
 const HOST: &str = "whether the host was ON";
 
-impl Link {
+impl Client {
     /// Makes sure that the host commands, and remembers who did before.
-    pub async fn take_host(&mut self) -> Result<(), Failure> {
-        if let Transport::Notes(_) = self.transport {
+    ///
+    /// # Errors
+    /// [`Error::PendantOn`] if the teach pendant does.
+    pub async fn take_host(&mut self) -> Result<(), Error> {
+        let granted = self.granted.clone();
+        self.take_host_by(&granted).await
+    }
+
+    /// The same as far as this lets it.
+    pub(super) async fn take_host_by(&mut self, granted: &Grant) -> Result<(), Error> {
+        if self.is_dry() {
             self.plan_to_take_host(None);
             return Ok(());
         }
         if self.host != Host::Unknown {
             return Ok(());
         }
-        let status = self.status_of(&[2]).await?;
+        let status = self.status_of(&[HOST_PAGE]).await?;
         if status.host_on() {
             self.host = Host::Found;
             return Ok(());
         }
         if status.pendant_on() {
-            return Err(refusal::pendant());
+            return Err(Error::PendantOn);
         }
-        self.debts.host(true);
-        match self.converse(&Request::bare(Command::Hson), false).await? {
+        let order = Request::bare(Command::Hson);
+        granted.check(order.risk(), &order.text())?;
+        self.watcher.event(Event::TakesHost(true));
+        match self.transact(&order, false).await? {
             Answer::Refused => {
-                self.debts.host(false);
-                Err(refusal::pendant())
+                self.watcher.event(Event::TakesHost(false));
+                Err(Error::PendantOn)
             }
             Answer::Done | Answer::Data(_) => {
                 self.host = Host::Taken;
@@ -64,13 +74,13 @@ impl Link {
             (Host::Perhaps, None) => asked.depending_on("whether it was asked before"),
             (Host::Unknown, None) => asked,
         };
-        self.note(&status_page(2), asked);
+        self.note(&status_page(HOST_PAGE), asked);
         self.note(&Request::bare(Command::Hson), Reason::default().depending_on(HOST));
         self.host = if on.is_some() { Host::Perhaps } else { Host::Taken };
     }
 
     /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
-    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
+    pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Error> {
         self.plan_to_take_host(Some(on));
         self.fence().await?;
         self.plan_if(change, on);
@@ -78,75 +88,68 @@ impl Link {
         Ok(())
     }
 
-    /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends.
-    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
+    /// Changes something for a while: `back` makes it as it was, in [`Client::put_back`] or when the client ends.
+    pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Error> {
         // Before it is sent: if the answer is lost, it may have been done.
-        self.debts.push(&back.text());
+        self.watcher.event(Event::Borrows(back.clone()));
         self.borrowed.push(back);
-        match self.try_order(change).await? {
-            Ok(()) => Ok(()),
-            Err(Refusal(request)) => {
+        match self.try_ask(change).await? {
+            Ok(_) => Ok(()),
+            Err(refusal) => {
                 if let Some(back) = self.borrowed.pop() {
-                    self.debts.pop(&back.text());
+                    self.watcher.event(Event::PutBack(back));
                 }
-                Err(refusal::explained(self, &request).await)
+                Err(refusal.into())
             }
         }
     }
 
-    /// Makes everything as it was before [`Link::borrow`]. All of it is tried; the first failure counts.
-    pub async fn put_back(&mut self) -> Result<(), Failure> {
+    /// Makes everything as it was before [`Client::borrow`]. All of it is tried; the first error counts.
+    ///
+    /// # Errors
+    /// [`Error::NotPutBack`].
+    pub async fn put_back(&mut self) -> Result<(), Error> {
         self.plan_put_back();
         let mut outcome = Ok(());
         while let Some(back) = self.borrowed.pop() {
-            let text = back.text();
-            let kept = |why: String| {
-                Failure::new(Kind::Refused, format!("what was changed for a while was not put back by {text}: {why}"))
-                    .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands")
-            };
             if self.is_gone {
-                self.screen.note(&kept("the line is gone".to_owned()).message);
+                self.watcher.event(Event::NotPutBack(back));
                 continue;
             }
             // A line that is still out of order shows in what follows.
             self.fence().await.unwrap_or_default();
-            let failure = match self.converse(&back, true).await {
-                Ok(Answer::Refused) => kept("@NG".to_owned()),
-                Ok(_) => {
-                    self.debts.pop(&back.text());
-                    continue;
-                }
-                Err(failure) => Failure { kind: failure.kind, ..kept(failure.message) },
-            };
-            outcome = outcome.and(Err(failure));
+            let block = back.text();
+            match undone(self.put_back_by(&back).await) {
+                Ok(()) => self.watcher.event(Event::PutBack(back)),
+                Err(cause) => outcome = outcome.and(Err(Error::NotPutBack { block, cause })),
+            }
         }
         outcome
     }
 
-    /// The host stays as it is when the link ends: somebody asked for that.
+    async fn put_back_by(&mut self, back: &Request) -> Result<Answer, Error> {
+        self.authorize(back.risk(), &back.text())?;
+        self.transact(back, true).await
+    }
+
+    /// The host stays as it is when the client ends: somebody asked for that.
     pub fn keep_host(&mut self) {
         self.host = Host::Found;
     }
 
     /// Gives the host back as it was found.
-    pub(in crate::command::toyo) async fn give_back(&mut self) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// [`Error::HostKept`].
+    pub async fn give_back(&mut self) -> Result<(), Error> {
         if self.host != Host::Taken || self.is_dry() || self.is_gone {
             return Ok(());
         }
         self.host = Host::Unknown;
-        let kept = |why: String| {
-            Failure::new(Kind::Refused, format!("the host was switched ON and could not be switched OFF again: {why}"))
-                .hint("`toyo host off` gives the start input back")
-        };
         self.fence().await.unwrap_or_default();
-        match self.converse(&Request::bare(Command::Hsof), false).await {
-            Ok(Answer::Refused) => Err(kept("@NG".to_owned())),
-            Ok(_) => {
-                self.debts.host(false);
-                Ok(())
-            }
-            Err(failure) => Err(Failure { kind: failure.kind, ..kept(failure.message) }),
-        }
+        undone(self.converse(&Request::bare(Command::Hsof)).await).map_err(Error::HostKept)?;
+        self.watcher.event(Event::TakesHost(false));
+        Ok(())
     }
 
     /// Notes in a dry run what puts things back.
@@ -158,7 +161,7 @@ impl Link {
         }
     }
 
-    /// Notes in a dry run what is sent when the link ends.
+    /// Notes in a dry run what is sent when the client ends.
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
         if !self.is_dry() || !matches!(self.host, Host::Taken | Host::Perhaps) {
@@ -167,6 +170,15 @@ impl Link {
         self.host = Host::Unknown;
         self.plan_fence();
         self.note(&Request::bare(Command::Hsof), Reason::default().depending_on(HOST));
+    }
+}
+
+/// Whether what undoes something was done; if not, why, and `None` where it was refused.
+fn undone(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
+    match answer {
+        Ok(Answer::Refused) => Err(None),
+        Ok(Answer::Done | Answer::Data(_)) => Ok(()),
+        Err(error) => Err(Some(Box::new(error))),
     }
 }
 

@@ -1,10 +1,10 @@
 //! The letters of the axes, as the teach pendant shows them (E01): axis 2 may be Y on one machine and Z on another.
 
-use super::link::Link;
-use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::request::Request;
-use crate::controller::toyo::table::{Command, Parameter};
-use crate::failure::{Failure, Kind};
+use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::{Command, Parameter};
+
+use super::{Client, Error, Refusal};
 
 /// A letter for each axis, in their order.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,11 +45,11 @@ impl Default for Letters {
     }
 }
 
-impl Link {
+impl Client {
     /// Asks for the letters of the axes, once. A controller that does not tell has those that are usual. A dry run notes
     /// the question.
-    pub async fn letters(&mut self) -> Result<Letters, Failure> {
-        if let Some(letters) = self.known_letters() {
+    pub async fn letters(&mut self) -> Result<Letters, Error> {
+        if let Some(letters) = &self.letters {
             return Ok(letters.clone());
         }
         let system = Request::bare(Command::Sysp);
@@ -58,14 +58,14 @@ impl Link {
             self.plan_if(&letters_request(), "whether that is refused");
             return Ok(Letters::default());
         }
-        let letters = match unless_malformed(self.try_read(&system).await)? {
+        let letters = match unless_malformed(self.try_ask(&system).await)? {
             Some(record) => Letters::from(&record, ["arm1", "arm2", "arm3", "arm4"]),
-            None => match unless_malformed(self.try_read_content(&letters_request()).await)? {
+            None => match unless_malformed(self.try_ask(&letters_request()).await)? {
                 Some(record) => Letters::from(&record, ["ax1", "ax2", "ax3", "ax4"]),
                 None => Letters::default(),
             },
         };
-        self.know_letters(letters.clone());
+        self.letters = Some(letters.clone());
         Ok(letters)
     }
 }
@@ -77,10 +77,10 @@ pub fn letters_request() -> Request {
 }
 
 /// A refusal, and an answer that makes no sense, tell no letters.
-fn unless_malformed<R>(asked: Result<Result<Record, R>, Failure>) -> Result<Option<Record>, Failure> {
+fn unless_malformed(asked: Result<Result<Record, Refusal>, Error>) -> Result<Option<Record>, Error> {
     match asked {
         Ok(answer) => Ok(answer.ok()),
-        Err(failure) if failure.kind == Kind::Malformed => Ok(None),
-        Err(failure) => Err(failure),
+        Err(error) if error.is_malformed() => Ok(None),
+        Err(error) => Err(error),
     }
 }

@@ -1,0 +1,36 @@
+//! Asks a Toyo controller how it is, reads a point and moves an axis by a small step: `cargo run --example toyo`.
+//!
+//! The controller is a simulator in this process; `Endpoint::serial("/dev/ttyUSB0")` is one at a serial port.
+#![expect(clippy::print_stdout, reason = "an example tells what it does")]
+
+use std::error::Error;
+use std::time::Duration;
+
+use armctl::client::toyo::{Client, Endpoint, Moving, Options, jog};
+use armctl::controller::Risk;
+use armctl::controller::toyo::bulk::points;
+use armctl::controller::toyo::request::Request;
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> Result<(), Box<dyn Error>> {
+    // Without a grant a client reads.
+    let options = Options::default().granting(Risk::Motion);
+    let mut robot = Client::connect(Endpoint::simulator(), options).await?;
+
+    let status = robot.status().await?;
+    println!("servo on: {}, host on: {}", status.servo_on(), status.host_on());
+
+    let point = robot.ask(&Request::read_parameter(points::table(), Some(1))?).await?;
+    println!("point 1: {}", point.written());
+
+    // The host is switched ON for it, and OFF again at the end.
+    robot.ask(&jog("+C", Some(0))).await?;
+    while robot.status_of(&[0]).await?.executing() {
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    // Until it is told to stop, an axis may move.
+    let place = robot.stop(Moving::Jog).await?;
+    println!("the axes stand at {}", place.written());
+    let (_, closed) = robot.close().await;
+    Ok(closed?)
+}

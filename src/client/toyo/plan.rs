@@ -1,0 +1,79 @@
+//! What a dry run notes instead of sending it.
+
+use armctl_controller::Risk;
+use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::table::commands::Row;
+use serde_json::json;
+
+use super::{Client, Error, Transport};
+use crate::{Plan, Reason};
+
+impl Client {
+    /// Whether nothing is sent, only noted.
+    pub fn is_dry(&self) -> bool {
+        matches!(self.transport, Transport::Notes(_))
+    }
+
+    /// What was noted in a dry run so far, and what is sent when the client ends.
+    pub fn take_plan(&mut self) -> Plan {
+        self.plan_end();
+        self.transport.notes().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// In a dry run, notes all the questions, whose answers are not known then.
+    pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Error> {
+        if !self.is_dry() || requests.is_empty() {
+            return Ok(());
+        }
+        for request in requests {
+            self.note(request, Reason::default());
+        }
+        Err(Error::NotKnown)
+    }
+
+    /// Notes in a dry run a request that is sent for a reason.
+    pub fn plan(&mut self, request: &Request, about: &str) {
+        self.note(request, Reason::about(about));
+    }
+
+    /// Notes in a dry run a request that an answer before it decides about.
+    pub fn plan_if(&mut self, request: &Request, on: &str) {
+        self.note(request, Reason::default().depending_on(on));
+    }
+
+    /// Notes in a dry run a block of which an answer before it decides a part, that stands as `?`, or whether it is sent.
+    pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
+        if !self.is_dry() {
+            return;
+        }
+        self.note_text(text, reason);
+        let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
+        self.is_fenced = Row::named(word).is_some_and(|row| row.risk == Risk::Read);
+        self.hangs_on = reason.depends_on.map(ToOwned::to_owned);
+    }
+
+    /// Notes in a dry run an order that an answer before it decides about, behind what goes before every order.
+    pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Error> {
+        self.take_host().await?;
+        self.fence().await?;
+        self.plan_depending(text, Reason::default().depending_on(on));
+        Ok(())
+    }
+
+    /// Says in a dry run what follows that cannot be shown.
+    pub fn then(&mut self, what: &str) {
+        if let Some(plan) = self.transport.notes() {
+            plan.then(what);
+        }
+    }
+
+    pub(super) fn note(&mut self, request: &Request, reason: Reason<'_>) {
+        self.plan_depending(&request.text(), reason);
+    }
+
+    pub(super) fn note_text(&mut self, text: &str, reason: Reason<'_>) {
+        if let Some(plan) = self.transport.notes() {
+            plan.note(json!({ "text": text }), reason);
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! The client as a library, on simulators in virtual time.
+
+use std::sync::{Arc, Mutex};
+
+use armctl_controller::toyo::simulator::Start;
+
+use super::*;
+
+/// To a simulator in this start state, behind a line with these faults.
+async fn connected(risk: Risk, state: &str, faults: Option<&str>) -> Client {
+    let faults = faults.map(|text| text.parse().unwrap());
+    let start = Box::new(Start::parse(state).unwrap());
+    let endpoint = Endpoint::Simulator { start, baud: Some(BAUD), faults };
+    Client::connect(endpoint, Options::default().granting(risk)).await.unwrap()
+}
+
+fn counter(number: i32, value: i32) -> Request {
+    Request::of(Command::Mcst, [Value::Number(number), Value::Number(value)])
+}
+
+#[test]
+fn clients_can_be_sent_to_other_threads() {
+    fn send(_: impl Send) {}
+    let mut client = Client::dry_run(Options::default());
+    send(client.status());
+    send(client.stop(Moving::Jog));
+    send(client);
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+    let mut client = connected(Risk::Read, "", None).await;
+    let denied = client.ask(&Request::bare(Command::Home)).await.unwrap_err();
+    assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Write), "{denied}: the host first");
+    assert!(client.raw_text("@XXXX").await.is_err() && client.moving().is_none());
+    client.stop(Moving::Program).await.unwrap();
+    client.stop(Moving::Jog).await.unwrap();
+    let asked = client.session.counters().sent;
+    let denied = client.ask(&Request::bare(Command::Hson)).await.unwrap_err();
+    assert!(matches!(denied, Error::NotAuthorized(_)), "a stop grants nothing");
+    assert_eq!(client.session.counters().sent, asked, "the stop has left the line at peace");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_refusal_is_an_answer_or_an_error() {
+    let mut client = connected(Risk::Motion, "host = true\nservo = false\n", None).await;
+    let home = Request::bare(Command::Home);
+    assert_eq!(client.try_ask(&home).await.unwrap(), Err(Refusal(home.clone())));
+    let refused = client.ask(&home).await.unwrap_err();
+    assert_eq!(refused.to_string(), "the controller refused HOME (@NG)");
+    assert_eq!(client.raw(&home).await.unwrap(), Answer::Refused);
+    let point = client.ask(&letters_request()).await.unwrap();
+    assert_eq!(point.word("ax1"), Some("X"), "the content, not the block");
+}
+
+#[tokio::test(start_paused = true)]
+async fn silence_after_an_order_is_not_silence_after_a_question() {
+    let mut client = connected(Risk::Motion, "", Some("drop=100%")).await;
+    let silent = client.place().await.unwrap_err();
+    assert!(matches!(&silent, Error::NoAnswer(silent) if silent.counters.sent == 4), "{silent}");
+    let unsent = client.ask(&counter(1, 2)).await.unwrap_err();
+    assert!(matches!(unsent, Error::NoAnswer(_)), "whether the host is ON was not told: {unsent}");
+    client.keep_host();
+    client.is_fenced = true;
+    let unknown = client.ask(&counter(1, 2)).await.unwrap_err();
+    assert!(matches!(&unknown, Error::OutcomeUnknown(open) if open.request == Some(counter(1, 2))), "{unknown}");
+    assert!(matches!(client.stop(Moving::Program).await, Err(Error::StandUnseen(_))));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_dry_run_notes_orders_and_knows_no_answers() {
+    let mut client = Client::dry_run(Options::default().granting(Risk::Motion));
+    client.ask(&counter(1, 2)).await.unwrap();
+    assert!(matches!(client.status_of(&[3]).await, Err(Error::NotKnown)));
+    let plan = client.take_plan();
+    let blocks: Vec<_> = plan.frames.iter().filter_map(|frame| frame["text"].as_str()).collect();
+    assert_eq!(blocks, ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@MCST CN01=0002", "@STAS SNO=3", "@HSOF"]);
+}
+
+/// Keeps what it is told.
+#[derive(Debug, Default)]
+struct Keeper(Arc<Mutex<(String, Vec<Event>)>>);
+
+impl Watcher<Event> for Keeper {
+    fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
+        if direction == Direction::Sent {
+            self.0.lock().unwrap().0.push_str(&String::from_utf8_lossy(bytes));
+        }
+    }
+
+    fn event(&mut self, event: Event) {
+        self.0.lock().unwrap().1.push(event);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back() {
+    let mut client = connected(Risk::Write, "", None).await;
+    let told = Arc::<Mutex<(String, Vec<Event>)>>::default();
+    client.watch(Keeper(Arc::clone(&told)));
+    let task = |number| Request::of(Command::Ctsk, [Value::Number(number)]);
+    client.borrow(&task(2), task(1)).await.unwrap();
+    let (totals, closed) = client.close().await;
+    closed.unwrap();
+    let (sent, events) = &*told.lock().unwrap();
+    assert_eq!(
+        sent,
+        "@STAS SNO=2\r\n@HSON\r\n@STAS SNO=0\r\n@CTSK TASK=02\r\n@STAS SNO=0\r\n@CTSK TASK=01\r\n@STAS SNO=0\r\n@HSOF\r\n"
+    );
+    assert_eq!(totals.counters.sent, 8);
+    let events: Vec<_> = events.iter().filter(|event| !matches!(event, Event::Host { .. })).collect();
+    let [Event::Borrows(back), Event::TakesHost(true), Event::PutBack(again), Event::TakesHost(false)] = &events[..]
+    else {
+        panic!("{events:?}")
+    };
+    assert_eq!((back, again), (&task(1), &task(1)));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_jog_is_seen_to_move_and_to_stand() {
+    let mut client = connected(Risk::Motion, "", None).await;
+    let before = client.place().await.unwrap();
+    client.ask(&jog("+L", Some(0))).await.unwrap();
+    assert_eq!(client.moving(), Some(Moving::Jog));
+    tokio::time::sleep(Duration::from_secs(1)).await;
+    let after = client.stop(Moving::Jog).await.unwrap();
+    assert!(after.number("x") > before.number("x") && client.moving().is_none());
+    assert_eq!(client.place().await.unwrap(), after);
+}

@@ -1,0 +1,147 @@
+//! The layers of a device for `armctl robots check`: from the interface to what the controller shows. Nobody is connected,
+//! except to a simulator: a connection that ends stops a controller.
+
+use std::time::Duration;
+
+use super::board::Board;
+use super::connect;
+use crate::command::face::layers::Layers;
+use crate::controller::yrcx::image::Image;
+use crate::failure::Failure;
+use crate::transport::image::{Event, ImageLink};
+use crate::transport::profinet::commission::Found;
+use crate::transport::profinet::error::{Misfit, ProfinetError};
+use crate::transport::profinet::layout::Layout;
+use crate::transport::profinet::simulated::Network;
+use crate::transport::profinet::wire::record::RealModule;
+
+/// In the order in which they are looked at.
+pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station", "IP", "RPC", "modules", "data"];
+
+/// Looks at them; what the controller shows, where it could be seen.
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+    match asked(board, layers).await {
+        Ok(image) => image,
+        Err((layer, failure)) => {
+            layers.fail(layer, &failure);
+            None
+        }
+    }
+}
+
+async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'static str, Failure)> {
+    let profinet = board.settings().clone();
+    layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
+    let interface = board.interface().map_err(|failure| ("interface", failure))?;
+    let usable = interface.check().and_then(|()| interface.address());
+    let here = usable.map_err(|error| ("interface", board.failure(error)))?;
+    layers.ok("interface", format!("{} is up with a carrier, {} at {}", interface.name, here.address, interface.mac));
+    if interface.network().is_none() {
+        interface.raw_socket().map_err(|error| ("privilege", board.failure(error)))?;
+    }
+    layers.ok("privilege", "raw Ethernet is allowed");
+    let found = board.station().await.map_err(|failure| ("station", failure))?;
+    let kind = &found.station.kind;
+    layers.ok("station", format!("'{}' at {}, {kind}, is there once", found.station.name, found.mac));
+    let address = match (found.station.address(), profinet.ip) {
+        (None, None) => {
+            let station = profinet.station.to_string();
+            return Err(("IP", board.failure(ProfinetError::NoAddress { station })));
+        }
+        (has, Some(wanted)) if has != Some(wanted.address) => {
+            let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());
+            let found = format!("it has {has}, the target says {}", wanted.address);
+            layers.warn("IP", found, "connecting sets it until the device is switched off");
+            return Ok(None);
+        }
+        (None, Some(wanted)) => wanted.address,
+        (Some(address), _) => address,
+    };
+    if !here.reaches(address) {
+        let (station, here) = (profinet.station.to_string(), here.address);
+        return Err(("IP", board.failure(ProfinetError::OtherNetwork { station, device: address, here })));
+    }
+    layers.ok("IP", format!("{address}, in the network of {}", here.address));
+    records(board, &found, layers).await?;
+    if let Some(network) = Network::find(&profinet.interface) {
+        return data(board, &network, layers).await.map_err(|failure| ("data", failure));
+    }
+    layers.warn(
+        "data",
+        "a device shows its data only to the controller it is connected to",
+        "`armctl session open` connects; then `yrcx status` shows its signals",
+    );
+    Ok(None)
+}
+
+/// What the device answers to calls.
+async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<(), (&'static str, Failure)> {
+    let identity = board.identity(found.clone()).await.map_err(|failure| ("RPC", failure))?;
+    match identity.im0 {
+        Ok(im0) => layers.ok("RPC", format!("it answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),
+        Err(ProfinetError::Refused { status, .. }) => {
+            layers.ok("RPC", format!("it answers, though not who it is: {status}"));
+        }
+        Err(error) => return Err(("RPC", board.failure(error))),
+    }
+    let settings = match connect::settings(board.settings(), Duration::ZERO) {
+        Ok(settings) => Some(settings),
+        Err(error) => {
+            let advice = error.cause().advice.clone().unwrap_or_default();
+            let has = identity.modules.as_ref().map_or_else(|_| String::new(), |modules| listed(modules));
+            layers.wrong("modules", format!("{error}{has}"), advice);
+            None
+        }
+    };
+    let Some(settings) = settings else { return Ok(()) };
+    match identity.modules {
+        Ok(real) => {
+            let misfits = misfits(&settings.layout, &real);
+            if misfits.is_empty() {
+                layers.ok("modules", format!("as the target says: {}", settings.layout));
+            } else {
+                layers.fail("modules", &board.failure(ProfinetError::Modules(misfits)));
+            }
+        }
+        Err(error) => {
+            layers.warn("modules", format!("it does not tell them: {error}"), "connecting tells whether they fit")
+        }
+    }
+    Ok(())
+}
+
+/// `; it has 0:0x1,1:0x101`.
+fn listed(modules: &[RealModule]) -> String {
+    let all: Vec<String> = modules.iter().map(|module| format!("{}:{:#x}", module.slot, module.ident)).collect();
+    format!("; it has {}", all.join(","))
+}
+
+/// What of the real modules is not as in the layout.
+fn misfits(layout: &Layout, real: &[RealModule]) -> Vec<Misfit> {
+    let expected = layout.expected();
+    let differs = expected.iter().filter_map(|module| {
+        let found = real.iter().find(|real| real.slot == module.slot).map(|real| real.ident);
+        let expected = Some(module.ident);
+        (found != expected).then_some(Misfit { slot: module.slot, subslot: None, found, expected })
+    });
+    differs.collect()
+}
+
+/// Connects to a simulator, for the first image.
+async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>, Failure> {
+    let settings = connect::settings(board.settings(), Duration::ZERO);
+    let Ok(settings) = settings else { return Ok(None) };
+    let link = network.open(settings).map_err(|error| board.failure(error))?;
+    let mut link = ImageLink::in_process(Box::new(link));
+    let until = tokio::time::Instant::now() + Duration::from_secs(3);
+    let event = link.next(until).await;
+    let _ = link.close().await;
+    match event {
+        Event::Image(image) => {
+            layers.ok("data", "it flows both ways");
+            Ok(Image::from_link(&image))
+        }
+        Event::Lost(error) => Err(board.failure_of(&error)),
+        _ => Err(board.failure(ProfinetError::Ended)),
+    }
+}

@@ -1,0 +1,177 @@
+//! Links over PROFINET, as a URL wants them.
+
+use std::path::Path;
+use std::time::Duration;
+
+use crate::command::yrcx::fieldbus::{At, Purpose};
+use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
+use crate::controller::yrcx::signal::resting;
+use crate::files;
+use crate::settings::target::profinet::Profinet;
+use crate::transport::image::{Cause, ImageLink, LinkError};
+use crate::transport::profinet::gsdml::{Gsdml, Head};
+use crate::transport::profinet::layout::{Direction, Layout};
+use crate::transport::profinet::link::Link;
+use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup};
+use crate::transport::profinet::simulated::Network;
+use crate::transport::profinet::wire::record::Parameter;
+
+/// Opens a link.
+pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+    let profinet = options(&at)?;
+    if purpose == Purpose::Look {
+        // A connection that only looks and ends is one whose loss stops the controller.
+        let cause = Cause::new("a device of PROFINET shows its signals only to the controller it is connected to");
+        return Err(LinkError::Refused(cause.advice("open a session, `armctl session open`, and look through that")));
+    }
+    let settings = settings(profinet, at.bus.calm)?;
+    if let Some(network) = Network::find(&profinet.interface) {
+        return Ok(ImageLink::in_process(Box::new(network.open(settings)?)));
+    }
+    Ok(ImageLink::over(Link::open(&profinet.interface, settings, at.tap).await?))
+}
+
+/// What the URL says.
+pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profinet, LinkError> {
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of PROFINET", at.bus))))
+}
+
+/// The settings of the link. Whoever only looks now and then needs no images in shorter intervals than `calm`.
+pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, LinkError> {
+    let Modules { layout, parameters, shortest, startup } = modules(profinet)?;
+    let sizes = (layout.size(Direction::Input), layout.size(Direction::Output));
+    let fits = sizes.0 == sizes.1 && [Image::BYTES, Image::SIGNAL_BYTES].contains(&sizes.0);
+    if !fits {
+        let (input, output) = sizes;
+        let cause = Cause::new(format!(
+            "the modules have {input} bytes from the controller and {output} to it, not {} each way",
+            Image::BYTES
+        ));
+        return Err(LinkError::Settings(cause.advice("correct layout= in the URL; `yrcx profinet probe` finds it")));
+    }
+    if profinet.cycle < shortest {
+        let cause =
+            Cause::new(format!("the device wants a cycle of at least {} ms", shortest.as_micros().div_ceil(1000)));
+        return Err(LinkError::Settings(cause.advice("set a longer cycle= in the URL")));
+    }
+    let cycle = profinet.cycle.max(whole(calm));
+    let watchdog = profinet.watchdog.max(cycle * 3).min(LONGEST_WATCHDOG);
+    let legacy = profinet.startup == Startup::Legacy;
+    let resting = resting().to_link(sizes.1);
+    let settings = Settings {
+        ip: profinet.ip,
+        startup: if legacy { Startup::Legacy } else { startup },
+        cycle,
+        watchdog,
+        parameters,
+        resting,
+        swapped: if profinet.is_big_endian && sizes.0 == Image::BYTES { 2 * COMMAND_WORDS } else { 0 },
+        ..Settings::new(profinet.station.clone(), layout)
+    };
+    settings.check()?;
+    Ok(settings)
+}
+
+/// The next cycle that there is.
+fn whole(time: Duration) -> Duration {
+    const LONGEST: u64 = 512;
+    let millis = u64::try_from(time.as_millis()).unwrap_or(LONGEST).clamp(1, LONGEST);
+    Duration::from_millis(millis.next_power_of_two())
+}
+
+/// What a device has, as far as it was told.
+struct Modules {
+    layout: Layout,
+    parameters: Vec<Parameter>,
+    /// Shortest cycle.
+    shortest: Duration,
+    startup: Startup,
+}
+
+fn modules(profinet: &Profinet) -> Result<Modules, LinkError> {
+    match (&profinet.layout, &profinet.gsdml) {
+        (Some(layout), _) => Ok(Modules {
+            layout: layout.clone(),
+            parameters: Vec::new(),
+            shortest: Duration::ZERO,
+            startup: Startup::Advanced,
+        }),
+        (None, Some(path)) => file(path),
+        (None, None) => {
+            let cause = Cause::new("the URL does not tell the modules of the device");
+            Err(LinkError::Settings(
+                cause.advice("set gsdml=FILE to the maker's file, or layout= to what `yrcx profinet probe` finds"),
+            ))
+        }
+    }
+}
+
+/// The modules of a file of the maker that alone make images of the controller's size.
+fn file(path: &Path) -> Result<Modules, LinkError> {
+    /// A unit of the shortest cycle.
+    const UNIT: Duration = Duration::from_nanos(31_250);
+    let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
+    let gsdml = read(path)?;
+    let chosen = |head: &Head| -> Option<Modules> {
+        let chosen = head.choose(Image::BYTES, Image::BYTES)?;
+        Some(Modules {
+            layout: head.layout(&chosen).ok()?,
+            parameters: head.parameters(&chosen).ok()?,
+            shortest: UNIT * u32::from(head.shortest),
+            startup: if head.startup == (false, true) { Startup::Legacy } else { Startup::Advanced },
+        })
+    };
+    let mut found = gsdml.heads.iter().filter_map(chosen);
+    match (found.next(), found.next()) {
+        (Some(only), None) => Ok(only),
+        _ => {
+            let size = Image::BYTES;
+            let cause = wrong(format!("not exactly one choice of its modules has {size} bytes each way"));
+            Err(LinkError::Settings(
+                cause.advice("set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules"),
+            ))
+        }
+    }
+}
+
+/// Reads a file of the maker.
+pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
+    const MOST: u64 = 16 << 20;
+    let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
+    let bytes = files::read(path, MOST).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
+    Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::yrcx::fieldbus::bus_of;
+    use crate::settings::target::profinet::Profinet;
+
+    const LAYOUT: &str = "layout=0:1,1:0x101:i48,2:0x102:o48";
+
+    fn of(url: &str, calm: Duration) -> Result<Settings, LinkError> {
+        settings(bus_of(url).unwrap().options::<Profinet>().unwrap(), calm)
+    }
+
+    #[test]
+    fn what_the_url_says_becomes_settings() {
+        let ms = Duration::from_millis;
+        let usual = of(&format!("profinet://robot@eth0?{LAYOUT}"), Duration::ZERO).unwrap();
+        assert_eq!((usual.cycle, usual.watchdog, usual.swapped), (ms(16), ms(320), 0));
+        assert_eq!(usual.resting, resting().to_link(48));
+        assert_eq!(usual.resting[32], 0x41, "SI(00) and SI(06)");
+        let big = of(&format!("profinet://robot@eth0?{LAYOUT}&words=be&startup=legacy"), Duration::ZERO).unwrap();
+        assert_eq!((big.swapped, big.startup), (32, Startup::Legacy));
+        let calm = of(&format!("profinet://robot@eth0?{LAYOUT}&cycle=8ms"), ms(200)).unwrap();
+        assert_eq!((calm.cycle, calm.watchdog), (ms(256), ms(768)));
+    }
+
+    #[test]
+    fn settings_that_cannot_be_say_what_to_set() {
+        let error = of("profinet://robot@eth0", Duration::ZERO).unwrap_err();
+        assert!(error.cause().advice.as_ref().unwrap().contains("gsdml=FILE"), "{error:?}");
+        let error = of("profinet://robot@eth0?layout=1:1:i48,2:2:o32", Duration::ZERO).unwrap_err();
+        assert!(error.to_string().contains("48 bytes from the controller and 32 to it"), "{error}");
+    }
+}

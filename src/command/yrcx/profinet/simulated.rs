@@ -1,0 +1,102 @@
+//! The simulated controller as an IO device.
+
+use std::time::Duration;
+
+use super::bus::ProfinetIo;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
+use crate::controller::yrcx::simulator::{Simulator, Start};
+use crate::failure::Failure;
+use crate::settings::target::Sim;
+use crate::settings::target::profinet::SCHEME;
+use crate::transport::image::ImagePeer;
+use crate::transport::profinet::device::{Application, Device, Event, Fault, Setup};
+use crate::transport::profinet::layout::Layout;
+use crate::transport::profinet::simulated::Network;
+use crate::transport::profinet::wire::Mac;
+use crate::transport::profinet::wire::record::Im0;
+
+/// The name of a simulated station, unless another is given.
+pub(super) const NAME: &str = "yrcx-sim";
+/// Modules of a simulated device, 48 bytes each way. The numbers are stand-ins: the maker's are not public.
+const MODULES: (u32, u32) = (0x101, 0x102);
+
+/// A network in this process with a simulator on it, with what the URL wants to go wrong.
+pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
+    let hint = "`armctl help simulator` lists faults";
+    if sim.fault.is_some() {
+        return Err(Failure::usage(
+            "fault: nothing gets lost on PROFINET in one process; mischief= says what goes wrong",
+        )
+        .hint(hint));
+    }
+    let fault = sim.mischief.as_deref().map(fault).transpose();
+    let fault = fault.map_err(|why| Failure::usage(format!("mischief: {why}")).hint(hint))?;
+    let controller = controller(start(sim.state.as_deref())?);
+    Ok(Network::new(|mac, ip| {
+        let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
+        let mut device = Device::new(setup, controller);
+        device.set_fault(fault);
+        device
+    }))
+}
+
+/// The URL of a simulated station behind an interface.
+pub fn target(interface: &str) -> String {
+    format!("{}://{NAME}@{interface}?layout={}", SCHEME.name, layout())
+}
+
+/// The modules of a simulated device.
+pub fn layout() -> Layout {
+    Layout::two_modules(MODULES.0, MODULES.1)
+}
+
+/// What a simulated device says of itself; vendor and device are numbers that nobody has.
+pub fn setup(name: &str, layout: Layout) -> Setup {
+    let id = (0xFFFF, 1);
+    Setup {
+        mac: Mac::default(),
+        name: name.to_owned(),
+        kind: "YRCX simulator".to_owned(),
+        id,
+        instance: 1,
+        ip: None,
+        takes_ip: false,
+        layout,
+        shortest: 32,
+        im0: Im0 {
+            vendor: id.0,
+            order_id: "YRCX simulator".to_owned(),
+            serial: "1".to_owned(),
+            software: ('V', 1, 0, 0),
+            ..Im0::default()
+        },
+    }
+}
+
+/// A device with a controller behind it.
+pub fn controller(start: Start) -> Controller {
+    Controller(Simulated(Simulator::new(start).with_link_alarm(ProfinetIo.link_alarm())))
+}
+
+/// What a device does wrong, by its name.
+pub fn fault(text: &str) -> Result<Fault, String> {
+    fault_by_name(&Fault::ALL, text)
+}
+
+/// A simulated controller behind its device.
+#[derive(Debug)]
+pub struct Controller(pub Simulated);
+
+impl Application for Controller {
+    fn image_out(&mut self, now: Duration, image: Option<&[u8]>) {
+        self.0.input(now, image);
+    }
+
+    fn image_in(&mut self, now: Duration, image: &mut [u8]) {
+        self.0.0.advance(now);
+        image.copy_from_slice(&self.0.0.output().to_link(image.len()));
+    }
+
+    fn event(&mut self, _now: Duration, _event: &Event) {}
+}

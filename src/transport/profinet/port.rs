@@ -1,0 +1,189 @@
+//! Frames and calls outside of connections: through a card, or to a simulated device.
+
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use socket2::Socket;
+
+use super::error::ProfinetError;
+use super::interface::Interface;
+use super::network::in_frame;
+use super::simulated::Network;
+use super::wire::frame::Frame;
+use super::wire::{Mac, rpc};
+use super::{Now, simulated};
+use crate::image::tap::{Passed, Tap};
+
+/// Room for a frame or a datagram.
+const BUFFER: usize = 65_536;
+
+/// Sends and hears frames.
+#[derive(Debug)]
+pub(super) struct Frames {
+    end: End<Socket>,
+    tap: Tap,
+}
+
+/// Sends and hears datagrams of one device.
+#[derive(Debug)]
+pub(super) struct Calls {
+    end: End<UdpSocket>,
+    tap: Tap,
+    cards: (Mac, Mac),
+    target: SocketAddrV4,
+}
+
+#[derive(Debug)]
+enum End<S> {
+    Socket(S, Instant),
+    Simulated(Network),
+}
+
+impl<S> End<S> {
+    fn now(&self) -> Now {
+        match self {
+            Self::Socket(_, start) => start.elapsed(),
+            Self::Simulated(network) => network.now(),
+        }
+    }
+}
+
+impl Frames {
+    /// Of an interface that can be used.
+    pub(super) fn open(interface: &Interface) -> Result<Self, ProfinetError> {
+        interface.check()?;
+        let end = match interface.network() {
+            Some(network) => End::Simulated(network.clone()),
+            None => End::Socket(interface.raw_socket()?, Instant::now()),
+        };
+        Ok(Self { end, tap: interface.tap.clone() })
+    }
+
+    pub(super) fn now(&self) -> Now {
+        self.end.now()
+    }
+
+    pub(super) fn send(&self, frame: &Frame<'_>) -> Result<(), ProfinetError> {
+        let bytes = frame.emit();
+        self.tap.pass(|| Passed::Frame(bytes.clone()));
+        match &self.end {
+            End::Simulated(network) => network.send_frame(&bytes),
+            End::Socket(socket, _) => {
+                let mut socket = socket;
+                socket.write_all(&bytes).map_err(|error| ProfinetError::local("sending a frame", &error))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Hands on each frame that comes until something is made of one, or time is over.
+    pub(super) fn hear<T>(
+        &self,
+        until: Now,
+        mut take: impl FnMut(&Frame<'_>) -> Option<T>,
+    ) -> Result<Option<T>, ProfinetError> {
+        while let Some(bytes) = self.next(until)? {
+            if let Ok(frame) = Frame::parse(&bytes) {
+                self.tap.pass(|| Passed::Frame(bytes.clone()));
+                let made = take(&frame);
+                if made.is_some() {
+                    return Ok(made);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
+        let (mut source, start) = match &self.end {
+            End::Simulated(network) => return Ok(network.hear_frame(until)),
+            End::Socket(socket, start) => (socket, start),
+        };
+        let mut buffer = vec![0; BUFFER];
+        loop {
+            let left = until.saturating_sub(start.elapsed());
+            if left.is_zero() {
+                return Ok(None);
+            }
+            let wait = Timespec::try_from(left).ok();
+            // An interruption is like a time that was shorter.
+            let _ = poll(&mut [PollFd::new(source, PollFlags::IN)], wait.as_ref());
+            match source.read(&mut buffer) {
+                Ok(length) => {
+                    buffer.truncate(length);
+                    return Ok(Some(buffer));
+                }
+                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
+                Err(error) => return Err(ProfinetError::local("hearing frames", &error)),
+            }
+        }
+    }
+}
+
+impl Calls {
+    /// To the device with this card and address.
+    pub(super) fn open(interface: &Interface, mac: Mac, target: SocketAddrV4) -> Result<Self, ProfinetError> {
+        let end = match interface.network() {
+            Some(network) => End::Simulated(network.clone()),
+            None => {
+                let socket = UdpSocket::bind((interface.address()?.address, 0));
+                let socket = socket.map_err(|error| ProfinetError::local("UDP socket for calls", &error))?;
+                End::Socket(socket, Instant::now())
+            }
+        };
+        Ok(Self { end, tap: interface.tap.clone(), cards: (interface.mac, mac), target })
+    }
+
+    pub(super) fn now(&self) -> Now {
+        self.end.now()
+    }
+
+    pub(super) fn send(&self, bytes: &[u8]) -> Result<(), ProfinetError> {
+        self.tap.pass(|| Passed::Frame(in_frame(self.cards.0, self.cards.1, self.here(), self.target, bytes)));
+        match &self.end {
+            End::Simulated(network) => network.send_datagram(self.target, bytes),
+            End::Socket(socket, _) => {
+                let sent = socket.send_to(bytes, self.target);
+                sent.map_err(|error| ProfinetError::local("calling the device", &error))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The next datagram of the device that comes until then.
+    pub(super) fn hear(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
+        let (bytes, from) = match &self.end {
+            End::Simulated(network) => match network.hear_datagram(until) {
+                Some((from, bytes)) => (bytes, from),
+                None => return Ok(None),
+            },
+            End::Socket(socket, start) => {
+                let wait = until.saturating_sub(start.elapsed()).max(Duration::from_millis(1));
+                let timed = socket.set_read_timeout(Some(wait));
+                timed.map_err(|error| ProfinetError::local("calling the device", &error))?;
+                let mut buffer = vec![0; BUFFER];
+                // Nothing, or an interruption: the clock goes on.
+                let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };
+                buffer.truncate(length);
+                (buffer, from)
+            }
+        };
+        if from.ip() != self.target.ip() {
+            return Ok(None);
+        }
+        self.tap.pass(|| Passed::Frame(in_frame(self.cards.1, self.cards.0, from, self.here(), &bytes)));
+        Ok(Some(bytes))
+    }
+
+    fn here(&self) -> SocketAddrV4 {
+        match &self.end {
+            End::Simulated(_) => SocketAddrV4::new(simulated::HERE.ip.address, rpc::PORT),
+            End::Socket(socket, _) => match socket.local_addr() {
+                Ok(SocketAddr::V4(here)) => here,
+                _ => self.target,
+            },
+        }
+    }
+}

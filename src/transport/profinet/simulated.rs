@@ -1,0 +1,294 @@
+//! A network in this process: one device, this machine, and a clock of its own that never waits. What is asked of the
+//! device is answered at once; a connection that is open keeps to the clock of the program.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::net::{Ipv4Addr, SocketAddrV4};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
+
+use super::Now;
+use super::controller::numbers::Numbers;
+
+use super::controller::{Action, Controller, Here};
+use super::device::{Application, Device};
+use super::error::ProfinetError;
+use super::interface::Interface;
+use super::settings::Settings;
+use super::wire::Mac;
+use super::wire::dcp::IpSuite;
+use super::wire::rpc::PORT;
+use crate::image::ImagePeer;
+use crate::image::view::State;
+
+/// This machine on it.
+pub(super) const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
+/// The device on it.
+const THERE: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
+/// How long opening or closing may take at most, by its own clock.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Addresses that no network has (RFC 5737).
+const fn suite(host: u8) -> IpSuite {
+    let address = Ipv4Addr::new(192, 0, 2, host);
+    IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: Ipv4Addr::UNSPECIFIED }
+}
+
+/// What is at the other end of the cable.
+trait Station: Send {
+    fn frame(&mut self, now: Now, bytes: &[u8]);
+    fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]);
+    fn poll(&mut self, now: Now) -> Option<Action>;
+    fn wake(&self) -> Option<Now>;
+    /// Where it answers from, where that is not where it is called.
+    fn answers_from(&self) -> Option<Ipv4Addr>;
+}
+
+impl<A: Application + Send> Station for Device<A> {
+    fn frame(&mut self, now: Now, bytes: &[u8]) {
+        self.frame(now, bytes);
+    }
+
+    fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
+        self.datagram(now, from, bytes);
+    }
+
+    fn poll(&mut self, now: Now) -> Option<Action> {
+        self.poll(now)
+    }
+
+    fn wake(&self) -> Option<Now> {
+        self.wake()
+    }
+
+    fn answers_from(&self) -> Option<Ipv4Addr> {
+        self.answers_from()
+    }
+}
+
+/// A network that lives as long as this.
+#[derive(Debug, Clone)]
+pub struct Network {
+    name: String,
+    inner: Arc<Mutex<Inner>>,
+}
+
+struct Inner {
+    now: Now,
+    station: Box<dyn Station>,
+    /// What came from the station and was not taken yet.
+    frames: VecDeque<Vec<u8>>,
+    datagrams: VecDeque<(SocketAddrV4, Vec<u8>)>,
+}
+
+impl fmt::Debug for Inner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Inner").field("now", &self.now).finish_non_exhaustive()
+    }
+}
+
+/// All of this process, by the names of their interfaces.
+static ALL: Mutex<Vec<(String, Weak<Mutex<Inner>>)>> = Mutex::new(Vec::new());
+
+fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
+    ALL.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Network {
+    /// One with this device, which has its card and address there.
+    pub fn new<A: Application + Send + 'static>(device: impl FnOnce(Mac, IpSuite) -> Device<A>) -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(1);
+        // No interface of Linux has a colon in its name.
+        let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
+        let station = Box::new(device(THERE.0, THERE.1));
+        let inner = Inner { now: Now::ZERO, station, frames: VecDeque::new(), datagrams: VecDeque::new() };
+        let inner = Arc::new(Mutex::new(inner));
+        let mut all = all();
+        all.retain(|(_, other)| other.strong_count() > 0);
+        all.push((name.clone(), Arc::downgrade(&inner)));
+        Self { name, inner }
+    }
+
+    /// The one whose interface has this name.
+    pub fn find(name: &str) -> Option<Self> {
+        let inner = all().iter().find(|(other, _)| other == name).and_then(|(_, inner)| inner.upgrade())?;
+        Some(Self { name: name.to_owned(), inner })
+    }
+
+    /// The interface of this machine that leads to it.
+    pub fn interface(&self) -> Interface {
+        Interface::simulated(self.name.clone(), HERE, self.clone())
+    }
+
+    /// Opens a connection.
+    ///
+    /// # Errors
+    /// When the device is not there, does not answer, or refuses.
+    pub fn open(&self, settings: Settings) -> Result<Link, ProfinetError> {
+        let controller = Controller::new(HERE, settings, Arc::new(Numbers::random()))?;
+        let mut link = Link { controller, network: self.clone(), start: Now::ZERO };
+        link.run_until(|state| matches!(state, State::Open | State::Closed));
+        let view = link.controller.view();
+        match (view.state, view.trouble) {
+            (State::Open, _) => {
+                link.start = self.inner().now;
+                Ok(link)
+            }
+            (_, Some(error)) => Err(error),
+            (_, None) => Err(ProfinetError::Ended),
+        }
+    }
+
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn now(&self) -> Now {
+        self.inner().now
+    }
+
+    pub(super) fn send_frame(&self, bytes: &[u8]) {
+        let mut inner = self.inner();
+        let now = inner.now;
+        inner.station.frame(now, bytes);
+    }
+
+    pub(super) fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) {
+        let mut inner = self.inner();
+        let now = inner.now;
+        if to == SocketAddrV4::new(THERE.1.address, PORT) {
+            inner.station.datagram(now, SocketAddrV4::new(HERE.ip.address, PORT), bytes);
+        }
+    }
+
+    /// The next frame that comes until then.
+    pub(super) fn hear_frame(&self, until: Now) -> Option<Vec<u8>> {
+        self.inner().hear(until, |inner| inner.frames.pop_front())
+    }
+
+    /// The next datagram that comes until then.
+    pub(super) fn hear_datagram(&self, until: Now) -> Option<(SocketAddrV4, Vec<u8>)> {
+        self.inner().hear(until, |inner| inner.datagrams.pop_front())
+    }
+}
+
+impl Inner {
+    /// Lets the station do all that it has to do now.
+    fn settle(&mut self) {
+        while let Some(action) = self.station.poll(self.now) {
+            match action {
+                Action::Frame(bytes) => self.frames.push_back(bytes),
+                Action::Datagram(_, bytes) => {
+                    let from = self.station.answers_from().unwrap_or(THERE.1.address);
+                    self.datagrams.push_back((SocketAddrV4::new(from, PORT), bytes));
+                }
+            }
+        }
+    }
+
+    fn hear<T>(&mut self, until: Now, mut take: impl FnMut(&mut Self) -> Option<T>) -> Option<T> {
+        loop {
+            self.settle();
+            if let Some(taken) = take(self) {
+                return Some(taken);
+            }
+            match self.station.wake().filter(|wake| *wake < until) {
+                Some(wake) => self.now = self.now.max(wake),
+                None => {
+                    self.now = self.now.max(until);
+                    return None;
+                }
+            }
+        }
+    }
+}
+
+/// A connection to the device.
+#[derive(Debug)]
+pub struct Link {
+    controller: Controller,
+    network: Network,
+    /// Its time at the beginning of the program's.
+    start: Now,
+}
+
+impl Link {
+    /// Does what is due, and says when to do so again.
+    fn settle(&mut self, inner: &mut Inner) -> Option<Now> {
+        let (controller, here) = (&mut self.controller, SocketAddrV4::new(HERE.ip.address, PORT));
+        loop {
+            inner.settle();
+            if let Some(bytes) = inner.frames.pop_front() {
+                controller.frame(inner.now, &bytes);
+            } else if let Some((from, bytes)) = inner.datagrams.pop_front() {
+                controller.datagram(inner.now, from, &bytes);
+            } else if let Some(action) = controller.poll(inner.now) {
+                match action {
+                    Action::Frame(bytes) => inner.station.frame(inner.now, &bytes),
+                    Action::Datagram(to, bytes) if *to.ip() == THERE.1.address => {
+                        inner.station.datagram(inner.now, here, &bytes);
+                    }
+                    Action::Datagram(..) => {}
+                }
+            } else {
+                return controller.wake().into_iter().chain(inner.station.wake()).min();
+            }
+        }
+    }
+
+    /// Goes on until then, or until the condition holds.
+    fn run(&mut self, until: Now, is_enough: impl Fn(&Controller) -> bool) {
+        let network = self.network.clone();
+        let mut inner = network.inner();
+        loop {
+            let next = self.settle(&mut inner);
+            if is_enough(&self.controller) {
+                return;
+            }
+            match next.filter(|next| *next <= until) {
+                Some(next) => inner.now = inner.now.max(next),
+                None => {
+                    inner.now = inner.now.max(until);
+                    return;
+                }
+            }
+        }
+    }
+
+    fn run_until(&mut self, condition: impl Fn(State) -> bool) {
+        let until = self.network.now() + PATIENCE;
+        self.run(until, |controller| condition(controller.view().state));
+    }
+}
+
+impl ImagePeer for Link {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        let Some(image) = image else {
+            let now = self.network.now();
+            self.controller.close(now);
+            return self.run_until(|state| state == State::Closed);
+        };
+        self.run(self.start + now, |_| false);
+        let generation = self.controller.view().generation;
+        // What is meant for the time before a loss is not shown.
+        if let Ok(change) = self.controller.set_image(generation, image) {
+            // It has left when this returns, so its clock may be a cycle ahead.
+            let (before, until) = (self.network.now(), self.network.now() + self.controller.settings().watchdog);
+            self.run(until, |controller| controller.view().sent >= change || controller.view().state != State::Open);
+            self.start += self.network.now().saturating_sub(before);
+        }
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.run(self.start + now, |_| false);
+        let view = self.controller.view();
+        view.input.filter(|_| view.state == State::Open).map(|input| input.image.to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        let station = self.network.inner().station.wake();
+        let next = self.controller.wake().into_iter().chain(station).min()?;
+        Some(next.saturating_sub(self.start))
+    }
+}

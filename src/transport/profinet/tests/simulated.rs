@@ -1,0 +1,62 @@
+//! A network in this process: what is shown arrives, losses are seen, and its clock never waits.
+
+use std::time::Duration;
+
+use super::super::device::{Device, Fault, Setup};
+use super::super::error::ProfinetError;
+use super::super::interface::Interface;
+use super::super::simulated::{Link, Network};
+use super::world::{Mirror, resting, settings, setup, turned};
+use crate::image::ImagePeer as _;
+
+fn network(fault: Option<Fault>) -> Network {
+    Network::new(|mac, ip| {
+        let mut device = Device::new(Setup { mac, ip: Some(ip), ..setup() }, Mirror::default());
+        device.set_fault(fault);
+        device
+    })
+}
+
+/// Until the link is up, or down; this much later by the program's clock.
+fn until(link: &mut Link, is_up: bool) -> Duration {
+    (0..10_000).map(Duration::from_millis).find(|now| link.output(*now).is_some() == is_up).expect("it comes to that")
+}
+
+#[test]
+fn what_is_shown_arrives_and_the_device_answers() {
+    let network = network(None);
+    assert!(Network::find(&network.interface().name).is_some());
+    assert!(Interface::find(&network.interface().name).unwrap().network().is_some());
+    let mut link = network.open(settings()).unwrap();
+    let mut image = resting();
+    image[0] = 7;
+    link.input(Duration::from_millis(5), Some(&image));
+    let shown = link.output(Duration::from_millis(40)).unwrap();
+    assert_eq!(shown, turned(&image));
+    assert!(link.wake().is_some_and(|wake| wake > Duration::from_millis(40)));
+    link.input(Duration::from_millis(50), None);
+    assert_eq!(link.output(Duration::from_secs(9)), None);
+    // It was let go of: another can have it at once.
+    network.open(settings()).unwrap();
+}
+
+#[test]
+fn after_a_loss_the_device_is_shown_the_resting_image() {
+    let mut link = network(Some(Fault::Abort)).open(settings()).unwrap();
+    link.input(Duration::ZERO, Some(&[0xFF; 48]));
+    let lost = until(&mut link, false);
+    assert!((Duration::from_millis(900)..Duration::from_millis(1300)).contains(&lost), "{lost:?}");
+    until(&mut link, true);
+    let after = |ms| Duration::from_secs(3) + Duration::from_millis(ms);
+    assert!((0..2000).any(|ms| link.output(after(ms)) == Some(turned(&resting()))));
+}
+
+#[test]
+fn a_device_that_does_not_answer_takes_no_time() {
+    let error = network(Some(Fault::NeverReady)).open(settings()).unwrap_err();
+    assert!(matches!(error, ProfinetError::NeverReady { .. }), "{error}");
+    let one = network(None);
+    let name = one.interface().name;
+    drop(one);
+    assert!(Network::find(&name).is_none());
+}

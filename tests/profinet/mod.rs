@@ -1,0 +1,97 @@
+//! The binary as controller and as simulated device, each in a network namespace of its own: from finding the station up
+//! to remote commands, sessions and records. Where there are no user namespaces it says so and passes.
+
+mod namespaces;
+
+use std::process::Command;
+
+/// What is typed, each with what came of it behind.
+const TYPED: &str = r#"
+export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
+unset XDG_CONFIG_HOME ARMCTL_TARGET
+$THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
+until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
+MAC=$($THERE cat /sys/class/net/pd0/address)
+M='layout=0:1,0.0x8000:1/0x8000,0.0x8001:1/0x8001,1:0x101:i48,2:0x102:o48&watchdog=1900ms'
+typed() { echo "$ $1"; shift; "$@" 2>&1; echo "? $?"; }
+robot() { typed "$2" "$ARMCTL" -t "profinet://$1" $2; }
+robot "yrcx-sim@pc0?$M" 'robots check'
+robot "yrcx-sim@pc0?$M" "--yes --trace $FOLDER/trace.pcapng yrcx info version"
+typed decode "$ARMCTL" decode yrcx "$FOLDER/trace.pcapng"
+robot "$MAC@pc0?$M&cycle=8ms" '--yes yrcx info servo'
+robot "yrcx-sim@pc0?$M" 'yrcx status'
+robot "yrcx-sim@pc0?$M" '--yes session open --background'
+robot "yrcx-sim@pc0?$M" 'yrcx io get'
+robot "yrcx-sim@pc0?$M" 'yrcx info position'
+robot "other@pc0?$M" '--yes yrcx info system'
+robot "yrcx-sim@pc0?$M" 'session close'
+robot "other@pc0?$M" '--yes yrcx info tasks'
+robot "yrcx-sim@pc9?$M" '--yes yrcx info slots'
+robot 'yrcx-sim@pc0?layout=1:0x99:i48,2:0x102:o48' '--yes yrcx info speed'
+typed unprivileged setpriv --bounding-set -net_raw --inh-caps -net_raw "$ARMCTL" -t "profinet://yrcx-sim@pc0?$M" --yes yrcx info arm
+kill $D
+wait $D
+"#;
+
+#[test]
+fn the_binary_commands_a_simulated_device_on_another_network_card() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().to_str().expect("its path is UTF-8");
+    let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];
+    let Some(text) = namespaces::run(TYPED, &variables) else {
+        println!("{}", namespaces::SKIPPED);
+        return;
+    };
+    let said = |typed: &str| {
+        let part = text.split("$ ").find(|part| part.starts_with(&format!("{typed}\n"))).unwrap_or_else(|| {
+            panic!("'{typed}' was not typed: {text}");
+        });
+        let (said, exit) = part.rsplit_once("? ").expect("its exit code");
+        (said.split_whitespace().collect::<Vec<_>>().join(" "), exit.trim().to_owned())
+    };
+    let trace = format!("--yes --trace {place}/trace.pcapng yrcx info version");
+    for (typed, exit, parts) in [
+        ("robots check", "0", &["station ok 'yrcx-sim'", "RPC ok", "modules ok", "only to the controller it is"][..]),
+        (&trace, "0", &["host V1.08"]),
+        (
+            "decode",
+            "0",
+            &["Connect answered: done", "ApplicationReady", "WI 0501 # versions", "Release answered: done"],
+        ),
+        ("--yes yrcx info servo", "0", &["motor power"]),
+        ("yrcx status", "3", &["open a session"]),
+        ("--yes session open --background", "0", &["held by process"]),
+        ("yrcx io get", "0", &["CPU_OK"]),
+        ("yrcx info position", "0", &["mm"]),
+        ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
+        ("session close", "0", &["closed"]),
+        ("--yes yrcx info tasks", "4", &["station 'other' was not found"]),
+        ("--yes yrcx info slots", "2", &["no network interface 'pc9'", "there are pc0"]),
+        ("--yes yrcx info speed", "3", &["Connect was refused"]),
+        ("unprivileged", "1", &["CAP_NET_RAW", "setcap cap_net_raw+ep"]),
+    ] {
+        let (said, code) = said(typed);
+        assert_eq!(code, exit, "{typed}: {said}");
+        for part in parts {
+            assert!(said.contains(part), "{typed}: no '{part}' in: {said}");
+        }
+    }
+    well_recorded(&format!("{place}/trace.pcapng"));
+}
+
+/// A record that tshark reads whole, with cyclic data taken apart as Connect said, where it is installed.
+fn well_recorded(path: &str) {
+    let tshark = |arguments: &[&str]| {
+        let output = Command::new("tshark").args(["-r", path]).args(arguments).output().ok()?;
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let Some(wrong) = tshark(&["-Y", "_ws.malformed || _ws.expert.severity >= 0x600000"]) else {
+        println!("skipped: tshark is not here");
+        return;
+    };
+    assert_eq!(wrong, "");
+    let statuses = tshark(&["-Y", "pn_rt && pn_io.ioxs", "-T", "fields", "-e", "pn_io.ioxs"]).unwrap_or_default();
+    let good = statuses.lines().filter(|line| line.split(',').all(|status| status == "0x80")).count();
+    assert!(good > 2, "{statuses}");
+}

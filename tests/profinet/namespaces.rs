@@ -1,0 +1,38 @@
+//! Two network namespaces with a pair of virtual cards between them: `pc0` here with 192.168.79.1, `pd0` there with
+//! 192.168.79.2. Needs no rights, but user namespaces.
+
+use std::process::{Command, Stdio};
+
+/// What is said where there are none.
+pub const SKIPPED: &str = "skipped: there are no user namespaces here";
+
+/// Makes both and runs `$INSIDE` here; `$THERE COMMAND` runs there.
+const SCRIPT: &str = r#"
+set -e
+mount -t sysfs none /sys
+ip link set lo up
+ip link add pc0 type veth peer name pd0
+unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 300' & P=$!
+until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
+ip link set pd0 netns $P
+ip addr add 192.168.79.1/24 dev pc0
+ip link set pc0 up
+export THERE="nsenter -t $P -n -m"
+$THERE sh -c 'ip link set lo up; ip addr add 192.168.79.2/24 dev pd0; ip link set pd0 up'
+R=0
+sh -c "$INSIDE" || R=$?
+kill $P
+exit $R
+"#;
+
+/// Runs commands of a shell there, with these variables, and gives all that they said; `None` without user namespaces.
+pub fn run(inside: &str, variables: &[(&str, &str)]) -> Option<String> {
+    let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
+    if !can.is_ok_and(|status| status.success()) {
+        return None;
+    }
+    let mut command = Command::new("unshare");
+    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("INSIDE", inside).envs(variables.iter().copied());
+    let output = command.output().expect("unshare can be started");
+    Some(format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)))
+}
