@@ -32,7 +32,7 @@ fn help(rounds: &usize) -> anyhow::Result<Table> {
         *rounds,
         [
             ("true", Command::new("true"), None),
-            ("armctl --version", armctl(&["--version"]), None),
+            ("armctl --version", armctl(&["--version"]), Some(Goal::AtMost(3.0, "ms"))),
             ("armctl -h", armctl(&["-h"]), Some(GOAL)),
             ("armctl --help", armctl(&["--help"]), Some(GOAL)),
             ("armctl yerc --help", armctl(&["yerc", "--help"]), Some(GOAL)),
