@@ -96,7 +96,9 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         };
         if is_whole {
             column.set_constraint(ColumnConstraint::ContentWidth);
-        } else if let Section::Table(table) = section {
+        } else if let Section::Table(table) = section
+            && table.rows.iter().any(|row| row[index].text.contains("://"))
+        {
             let least = u16::try_from(least_column(table, index)).unwrap_or(u16::MAX).saturating_add(PADDING);
             column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
         }
@@ -206,18 +208,17 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
-/// Longest run of hexadecimal digits that keeps together: a frame is broken like nothing else.
+/// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
 const WORD: usize = 16;
 
-/// What a table may ask for a word, such as an address, that has to stay whole.
+/// Longest address that stays whole.
 const LONGEST: usize = 60;
 
 /// The width of a column below which it would break words.
 fn least_column(table: &Table, index: usize) -> usize {
     let of_word = |word: &str| {
         let wide = measure_text_width(word);
-        let may_break = wide > LONGEST || word.bytes().all(|byte| byte.is_ascii_hexdigit());
-        if may_break { wide.min(WORD) } else { wide }
+        if word.contains("://") && wide <= LONGEST { wide } else { wide.min(WORD) }
     };
     let of_text = |text: &str| escape::line(text).split(' ').map(of_word).max().unwrap_or_default();
     let of_cell = |cell: &Cell| if cell.is_whole { measure_text_width(&cell.text) } else { of_text(&cell.text) };
