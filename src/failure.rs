@@ -137,8 +137,7 @@ impl Failure {
 
 /// An I/O error without the `(os error 13)` that tells a technician nothing.
 pub fn plain(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or_default().to_lowercase()
+    crate::transport::plain(error).to_lowercase()
 }
 
 impl fmt::Display for Failure {

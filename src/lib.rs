@@ -33,6 +33,12 @@
 //! ```rust,ignore
 #![doc = include_str!("../examples/toyo.rs")]
 //! ```
+//!
+//! and this is `examples/yrcx.rs`:
+//!
+//! ```rust,ignore
+#![doc = include_str!("../examples/yrcx.rs")]
+//! ```
 
 pub mod app;
 pub mod cli;

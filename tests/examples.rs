@@ -23,3 +23,9 @@ fn toyo_reads_and_moves() {
 fn yerc_reads_fetches_and_moves() {
     assert_eq!(run("yerc"), "servo on: true, alarm: false\nTESTJOB.JBI: 487 bytes\nS stands at 5000 pulses\n");
 }
+
+#[test]
+fn yrcx_looks_reads_and_moves() {
+    let place = "[100000, 100000, 0, 0] um";
+    assert_eq!(run("yrcx"), format!("servo on: true, alarm: false\npoint 1: {place}\nmoved to {place}\n"));
+}

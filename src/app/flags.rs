@@ -27,7 +27,7 @@ const NONE: Uses = Uses { robots: false, link: false, repeat: false, gate: false
 impl Uses {
     fn of(task: &Task) -> Self {
         match task {
-            Task::Family(_, command) if !command.takes_robot() => NONE,
+            Task::Family(_, command) if command.driver().is_none() => NONE,
             Task::Family(..) => ALL,
             Task::Common(common) => Self::of_common(common),
         }

@@ -126,7 +126,7 @@ impl Task {
 
     fn need(&self) -> Need {
         match self {
-            Self::Family(_, command) if !command.takes_robot() => Need::Nothing,
+            Self::Family(_, command) if command.driver().is_none() => Need::Nothing,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,

@@ -115,7 +115,7 @@ impl Repl {
         // What stops the robot when it ends is taken by the command that needs it, once that was confirmed.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
-            && !matches!(families::of(robot.family).entry(robot, ConnectMode::Control), Entry::Stops(_))
+            && !matches!(families::of(robot.family).driver().entry(robot, ConnectMode::Control), Entry::Stops(_))
         {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }

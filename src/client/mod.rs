@@ -20,6 +20,7 @@ mod plan;
 pub mod toyo;
 mod watcher;
 pub mod yerc;
+pub mod yrcx;
 
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};

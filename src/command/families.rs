@@ -4,11 +4,14 @@ use clap::ArgMatches;
 use clap::error::ErrorKind;
 
 use super::face::Face;
-use super::{toyo, yerc, yrcx};
+use super::face::declared::Declared;
+use super::toyo::link::Toyo;
+use super::yerc::link::Yerc;
+use super::yrcx::link::Yrcx;
 use crate::settings::target::Family;
 
 /// Every family, in the order help texts list them.
-pub static FAMILIES: [&dyn Face; 3] = [&yerc::face::Yerc, &yrcx::face::Yrcx, &toyo::face::Toyo];
+pub static FAMILIES: [&dyn Face; 3] = [&Declared::<Yerc>::FACE, &Declared::<Yrcx>::FACE, &Declared::<Toyo>::FACE];
 
 /// A family by its name.
 ///

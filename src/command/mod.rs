@@ -25,6 +25,6 @@ pub mod yrcx;
 
 pub(crate) use frame::commands;
 pub use frame::{
-    Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Entry, Family,
-    Offline, OfflineCommand, Outcome, Report, SchemaEntry, Subcommands, ValueKind,
+    Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Driver, Entry,
+    Family, Offline, OfflineCommand, Outcome, Report, SchemaEntry, Subcommands, ValueKind,
 };

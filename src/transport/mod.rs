@@ -2,6 +2,7 @@
 //!
 //! Nothing in here knows a controller's protocol, and no controller knows what is in here.
 
+mod bytes;
 pub mod capture;
 pub mod devicenet;
 pub mod eip;
@@ -31,4 +32,9 @@ use std::io;
 /// The error of a byte stream whose other end is gone.
 fn vanished(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
+}
+
+/// An error of the system without its number, which tells a technician nothing.
+pub fn plain(error: &io::Error) -> String {
+    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }

@@ -12,6 +12,13 @@ pub fn soon() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
 
+/// Bytes from their digits, whatever stands between them.
+pub fn hex(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = text.bytes().filter(u8::is_ascii_hexdigit).collect();
+    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+    digits.chunks(2).map(byte).collect()
+}
+
 /// Answers each line with itself, backwards and without delay, and keeps what it heard, and when.
 #[derive(Debug, Default)]
 pub struct Mirror {

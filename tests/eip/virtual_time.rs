@@ -71,7 +71,7 @@ fn both_counters_go_up_with_every_image() {
 fn the_time_is_that_of_the_answer() {
     let setup = Setup { tick: 8 * MS, ..setup() };
     let mut world = World::open(setup, settings(), "");
-    assert_eq!(world.view().intervals, Some((24 * MS, 24 * MS)));
+    assert_eq!(world.view().details.intervals, Some((24 * MS, 24 * MS)));
     world.run(1000 * MS);
     let times: Vec<_> = world.images_out.windows(2).map(|pair| pair[1].0.saturating_sub(pair[0].0)).collect();
     assert!(times.iter().all(|time| *time == 24 * MS));

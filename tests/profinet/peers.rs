@@ -153,7 +153,7 @@ fn others_controller() {
                 opened => break opened.unwrap(),
             }
         };
-        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().device);
+        println!("open after {:?}: {:?}", begin.elapsed(), connection.view().details.device);
         for round in 0..3u8 {
             let mut image = vec![round + 1; 48];
             let generation = connection.view().generation;

@@ -1,6 +1,7 @@
 //! Backups as all families make and restore them: what is asked for, and what became of each file or part.
 
 pub mod manifest;
+pub mod saving;
 pub mod text_diff;
 
 use std::fmt;
@@ -10,8 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Report;
-use super::backup::manifest::{Hash, LeftOut, MANIFEST, Saved, State};
-use super::frame::local::Target;
+use super::backup::manifest::{LeftOut, MANIFEST, Saved, State};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::inventory::fits;
@@ -250,25 +250,30 @@ impl Items {
 
     /// The same with how it goes on.
     fn failure(&self, again: &str) -> Option<Failure> {
-        let failure = self.gravest()?;
-        let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
-        Some(failure.hint(hint))
+        Some(with_hint(self.gravest()?, again))
     }
+}
+
+/// A failure with how the work goes on, below what it hints at already.
+pub fn with_hint(failure: Failure, again: &str) -> Failure {
+    let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
+    failure.hint(hint)
 }
 
 /// What is in a folder after a backup.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BackedUp {
     /// The folder.
-    folder: String,
+    pub folder: String,
     /// The list of what is in it.
-    manifest: String,
+    pub manifest: String,
     /// Whether nothing is missing of what was asked for.
-    complete: bool,
+    pub complete: bool,
     /// What was asked for, where that is not everything.
-    scope: Vec<String>,
+    pub scope: Vec<String>,
+    /// Each file or part.
     #[serde(flatten)]
-    items: Items,
+    pub items: Items,
 }
 
 impl BackedUp {
@@ -326,24 +331,6 @@ impl Report for Restored {
         let not_done = self.needs_power_cycle.then(|| Failure::new(Kind::ConditionNotMet, POWER_CYCLE));
         self.items.failure("the same command goes on: what is the same already is not written again").or(not_done)
     }
-}
-
-/// Writes a text into a folder, whole or not at all.
-pub fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved, Failure> {
-    let mut draft = Target::new(folder.join(&file), true)?.begin()?;
-    draft.write(text.as_bytes())?;
-    draft.commit()?;
-    let mut hash = Hash::default();
-    hash.take(text.as_bytes());
-    Ok(Saved { file, bytes: hash.bytes, sha256: hash.hex() })
-}
-
-/// A failure that ended a backup, with what is there already; `saved` files are.
-pub fn cut_off(failure: Failure, folder: &Path, saved: usize) -> Failure {
-    let message = format!("{}; {saved} files are in {}", failure.message.trim_end_matches('.'), folder.display());
-    let again = "--resume goes on from there";
-    let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}; then {again}"));
-    Failure { message, ..failure }.hint(hint)
 }
 
 #[cfg(test)]

@@ -1,24 +1,22 @@
 //! What the rest of the house may ask of a family. Each has its own in `face.rs`; [`families`](super::families) lists them.
 
+pub mod declared;
 pub mod layers;
 pub mod overview;
 pub mod sample;
 pub mod tool;
 pub mod words;
 
-use std::future::ready;
-
 use clap::ArgMatches;
-use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use self::layers::Layer;
 use self::overview::OverviewReport;
-use self::sample::{Depth, Sample};
+use self::sample::{Detail, Sample};
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
-use super::frame::{Access, AnyContext, ConnectMode, Connection, Entry, SchemaEntry};
+use super::frame::{Access, AnyContext, Connection, Driver, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -26,7 +24,7 @@ use crate::settings::{Robot, target::Family};
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::held::Held;
 
-/// A family, as the rest of the house sees it.
+/// A family, as the rest of the house sees it: [`declared`] makes it of what the family says of itself.
 pub trait Face: Sync {
     /// Which it is.
     fn family(&self) -> Family;
@@ -52,20 +50,11 @@ pub trait Face: Sync {
     /// The schemas of all its reports.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
-    /// What it does behind a common word, if it does.
-    fn tool(&self, _kind: ToolKind) -> Option<Tool> {
-        None
-    }
+    /// What it does behind a common word.
+    fn tool(&self, kind: ToolKind) -> Tool;
 
-    /// Connects to a robot.
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
-    /// What a connection does to the controller by being there.
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// What opens connections to its robots.
+    fn driver(&self) -> &'static dyn Driver;
     /// A line for `status`.
     fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
     /// What `robots check` finds.
@@ -93,44 +82,26 @@ pub trait Face: Sync {
     /// What may pass to a read-only robot, whoever sends it through a session.
     fn guard(&self) -> Guard;
     /// Whether a session records what passes; otherwise each command does.
-    fn session_records(&self) -> bool {
-        false
-    }
+    fn session_records(&self) -> bool;
     /// Whether a session commands the controller by being there, which a read-only robot does not allow.
-    fn session_commands(&self) -> bool {
-        false
-    }
+    fn session_commands(&self) -> bool;
 
     /// What it takes to read all of a controller.
-    fn backup_risk(&self, _robot: &Robot) -> Risk {
-        Risk::Read
-    }
+    fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
-    fn back_up<'a>(
-        &self,
-        _context: AnyContext<'a>,
-        _making: &'a Making,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
-        ready(Err(no_backups(self.family()))).boxed_local()
-    }
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
     /// Writes a backup back.
     fn restore<'a>(
         &self,
-        _context: AnyContext<'a>,
-        _restoring: &'a Restoring,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
-        ready(Err(no_backups(self.family()))).boxed_local()
-    }
-}
-
-fn no_backups(family: Family) -> Failure {
-    Failure::usage(format!("{family} has no backups")).hint(format!("`armctl {family} -h` lists its commands"))
+        context: AnyContext<'a>,
+        restoring: &'a Restoring,
+    ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
 }
 
 /// Looks at a robot again and again, for `top`.
 pub trait Watch {
     /// Looks once.
-    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
     /// Closes the connection.
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
 }

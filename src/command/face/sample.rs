@@ -9,11 +9,11 @@ use crate::output::view::Tone;
 
 /// How much is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Depth {
+pub enum Detail {
     /// What a line of a list shows.
-    Line,
+    Summary,
     /// What a screen of its own shows.
-    Whole,
+    Full,
 }
 
 /// What a look found.
@@ -25,7 +25,7 @@ pub struct Sample {
     pub answered_in: Option<Duration>,
     /// The alarms and errors that are present, the latest first, as far as they can be asked for.
     pub alarms: Vec<Alarm>,
-    /// What only [`Depth::Whole`] asks for.
+    /// What only [`Detail::Full`] asks for.
     pub whole: Option<Whole>,
 }
 
@@ -44,7 +44,7 @@ pub struct Alarm {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Whole {
     /// States that are so or not so.
-    pub lamps: Vec<Lamp>,
+    pub indicators: Vec<Indicator>,
     /// Axes and coordinates.
     pub axes: Vec<Axis>,
     /// The unit of torques; `None` where the protocol has none.
@@ -57,7 +57,7 @@ pub struct Whole {
 
 /// A state that is so or not so.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lamp {
+pub struct Indicator {
     /// In a word or two.
     pub name: &'static str,
     /// Whether it is so.
@@ -66,13 +66,13 @@ pub struct Lamp {
     pub tone: Tone,
 }
 
-impl Lamp {
-    /// A lamp that means this while it is on, and nothing while it is off.
+impl Indicator {
+    /// A indicator that means this while it is on, and nothing while it is off.
     pub fn new(name: &'static str, is_on: bool, tone: Tone) -> Self {
         Self { name, is_on, tone: if is_on { tone } else { Tone::Plain } }
     }
 
-    /// A lamp that is on in good times, and means this while it is off.
+    /// A indicator that is on in good times, and means this while it is off.
     pub fn should(name: &'static str, is_on: bool, off: Tone) -> Self {
         Self { name, is_on, tone: if is_on { Tone::Good } else { off } }
     }
@@ -102,20 +102,20 @@ pub struct Axis {
 pub struct Bank {
     /// `inputs`, `outputs`.
     pub name: &'static str,
-    /// Eight at a time.
-    pub groups: Vec<Eight>,
+    /// SignalByte at a time.
+    pub groups: Vec<SignalByte>,
 }
 
-/// Eight signals that stand together.
+/// SignalByte signals that stand together.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Eight {
+pub struct SignalByte {
     /// The number of the first one shown, or the name of all.
     pub label: String,
     /// From left to right, in the order of the manual.
     pub signals: [bool; 8],
 }
 
-impl Eight {
+impl SignalByte {
     /// The bits of a byte, the lowest first.
     pub fn rising(label: String, byte: u8) -> Self {
         Self { label, signals: [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| byte >> bit & 1 == 1) }
@@ -140,16 +140,16 @@ mod tests {
 
     #[test]
     fn a_lamp_has_its_tone_where_it_means_something() {
-        assert_eq!(Lamp::new("alarm", true, Tone::Bad).tone, Tone::Bad);
-        assert_eq!(Lamp::new("alarm", false, Tone::Bad).tone, Tone::Plain);
-        assert_eq!(Lamp::should("CPU OK", true, Tone::Bad).tone, Tone::Good);
-        assert_eq!(Lamp::should("CPU OK", false, Tone::Bad).tone, Tone::Bad);
+        assert_eq!(Indicator::new("alarm", true, Tone::Bad).tone, Tone::Bad);
+        assert_eq!(Indicator::new("alarm", false, Tone::Bad).tone, Tone::Plain);
+        assert_eq!(Indicator::should("CPU OK", true, Tone::Bad).tone, Tone::Good);
+        assert_eq!(Indicator::should("CPU OK", false, Tone::Bad).tone, Tone::Bad);
     }
 
     #[test]
     fn eight_signals_stand_as_the_manual_has_them() {
-        let first = |eight: Eight| eight.signals.iter().position(|on| *on);
-        assert_eq!(first(Eight::rising("#10".to_owned(), 1)), Some(0));
-        assert_eq!(first(Eight::falling("PN01".to_owned(), 1)), Some(7));
+        let first = |eight: SignalByte| eight.signals.iter().position(|on| *on);
+        assert_eq!(first(SignalByte::rising("#10".to_owned(), 1)), Some(0));
+        assert_eq!(first(SignalByte::falling("PN01".to_owned(), 1)), Some(7));
     }
 }

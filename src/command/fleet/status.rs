@@ -31,7 +31,7 @@ impl Family for Fleet {
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let face = families::of(robot.family);
-        match face.connect(robot, access, screen).await {
+        match face.driver().connect(robot, access, screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
             // A robot that is not there has a line as well.
             Err(failure) if failure.kind == Kind::NoAnswer => Ok(Link::Absent(failure)),
@@ -54,7 +54,7 @@ impl Family for Fleet {
     }
 
     fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
-        families::of(robot.family).entry(robot, mode)
+        families::of(robot.family).driver().entry(robot, mode)
     }
 
     async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
@@ -73,10 +73,7 @@ impl Command for Overview {
     type Family = Fleet;
     type Report = OverviewReport;
     const ID: &'static str = "status";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Monitor
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<OverviewReport, Failure> {
         let found = match context.link {

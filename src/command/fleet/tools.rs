@@ -3,7 +3,6 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
 
 use crate::command::SchemaEntry;
@@ -40,7 +39,7 @@ impl Sim {
 /// The schemas of all that they report.
 pub fn schemas() -> Vec<SchemaEntry> {
     let tools = ToolKind::ALL.into_iter().flat_map(|kind| FAMILIES.map(|face| face.tool(kind)));
-    tools.flatten().flat_map(|tool| (tool.schemas)()).collect()
+    tools.flat_map(|tool| (tool.schemas)()).collect()
 }
 
 /// A word behind which families stand.
@@ -79,15 +78,14 @@ pub struct OfFamily<W> {
 }
 
 impl<W: Word> OfFamily<W> {
-    fn tool(family: Family) -> Result<Tool, clap::Error> {
-        let tool = families::of(family).tool(W::KIND);
-        tool.ok_or_else(|| clap::Error::new(ErrorKind::InvalidSubcommand))
+    fn tool(family: Family) -> Tool {
+        families::of(family).tool(W::KIND)
     }
 
     /// The first family, without arguments.
     fn first() -> Result<Self, clap::Error> {
         let family = FAMILIES[0].family();
-        let tool = Self::tool(family)?;
+        let tool = Self::tool(family);
         let mut matches = (tool.augment)(Command::new(family.name())).try_get_matches_from([family.name()])?;
         Ok(Self { family, task: (tool.read)(&mut matches)?, word: PhantomData })
     }
@@ -106,10 +104,7 @@ impl<W> fmt::Debug for OfFamily<W> {
 
 impl<W: Word> Subcommand for OfFamily<W> {
     fn augment_subcommands(command: Command) -> Command {
-        let words = FAMILIES.iter().filter_map(|face| {
-            let tool = face.tool(W::KIND)?;
-            Some((tool.augment)(Command::new(face.family().name())))
-        });
+        let words = FAMILIES.map(|face| (face.tool(W::KIND).augment)(Command::new(face.family().name())));
         command.subcommands(words)
     }
 
@@ -118,7 +113,7 @@ impl<W: Word> Subcommand for OfFamily<W> {
     }
 
     fn has_subcommand(name: &str) -> bool {
-        name.parse().is_ok_and(|family| Self::tool(family).is_ok())
+        name.parse::<Family>().is_ok()
     }
 }
 
@@ -129,7 +124,7 @@ impl<W: Word> FromArgMatches for OfFamily<W> {
 
     fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
         let (family, mut matches) = families::named(matches)?;
-        Ok(Self { family, task: (Self::tool(family)?.read)(&mut matches)?, word: PhantomData })
+        Ok(Self { family, task: (Self::tool(family).read)(&mut matches)?, word: PhantomData })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {

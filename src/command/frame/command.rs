@@ -4,7 +4,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::authority::Authority;
-use super::connection::{self, Access, ConnectMode, Connection, Entry, Family};
+use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
 use super::report::{Outcome, Report};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -58,10 +58,18 @@ pub trait Command {
     type Report: Report + 'static;
     /// `yerc.status`: its name in envelopes and schemas.
     const ID: &'static str;
-
     /// The most that it does.
+    const RISK: Risk = Risk::Read;
+    /// Completes "This will …" in the question before a motion.
+    const INTENT: &'static str = "";
+    /// How a yes is given to what moves, deletes or overwrites.
+    const CONFIRMATION: Confirmation = Confirmation::Question;
+    /// What it wants of the connection.
+    const CONNECT_MODE: ConnectMode = ConnectMode::Control;
+
+    /// [`RISK`](Self::RISK), where that depends on its arguments.
     fn risk(&self) -> Risk {
-        Risk::Read
+        Self::RISK
     }
 
     /// The most that it does to this robot, where that depends on it; not more than [`risk`](Self::risk).
@@ -69,14 +77,14 @@ pub trait Command {
         self.risk()
     }
 
-    /// Completes "This will …" in the question before a motion.
+    /// [`INTENT`](Self::INTENT), where that depends on its arguments.
     fn intent(&self) -> String {
-        String::new()
+        Self::INTENT.to_owned()
     }
 
-    /// How a yes is given to what moves, deletes or overwrites.
+    /// [`CONFIRMATION`](Self::CONFIRMATION), where that depends on its arguments.
     fn confirmation(&self) -> Confirmation {
-        Confirmation::Question
+        Self::CONFIRMATION
     }
 
     /// Whether it stops the robot, which is always allowed.
@@ -94,9 +102,9 @@ pub trait Command {
         false
     }
 
-    /// What it wants of the connection.
+    /// [`CONNECT_MODE`](Self::CONNECT_MODE), where that depends on its arguments.
     fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Control
+        Self::CONNECT_MODE
     }
 
     /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
@@ -114,10 +122,6 @@ pub trait AnyCommand {
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
         None
     }
-    /// Whether it is for a robot.
-    fn takes_robot(&self) -> bool {
-        true
-    }
     /// See [`Command::moves_until_stopped`].
     fn moves_until_stopped(&self) -> bool {
         false
@@ -126,21 +130,39 @@ pub trait AnyCommand {
     fn is_endless(&self) -> bool {
         false
     }
-    /// See [`Family::FAMILY`].
-    fn family(&self) -> Option<target::Family>;
-    /// See [`Family::entry`].
-    fn entry(&self, robot: &Robot) -> Entry;
+    /// What opens connections for it, unless it takes no robot.
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        None
+    }
     /// See [`Command::connect_mode`].
-    fn connect_mode(&self) -> ConnectMode;
-    /// See [`Family::connect`].
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+    fn connect_mode(&self) -> ConnectMode {
+        ConnectMode::default()
+    }
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
+}
+
+impl dyn AnyCommand + '_ {
+    /// The family it is for; `None` if it is for robots of any, or for none.
+    pub fn family(&self) -> Option<target::Family> {
+        self.driver()?.family()
+    }
+
+    /// What its connection does to a robot by being there.
+    pub fn entry(&self, robot: &Robot) -> Entry {
+        self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode()))
+    }
+
+    /// Connects to a robot.
+    pub async fn connect(
+        &self,
+        robot: &Robot,
+        access: Access,
+        screen: &Screen,
+    ) -> Result<Box<dyn Connection>, Failure> {
+        let driver = self.driver().ok_or_else(|| Failure::local("internal error: this command takes no robot"))?;
+        driver.connect(robot, access, screen).await
+    }
 }
 
 impl<C: Command> AnyCommand for C {
@@ -165,25 +187,12 @@ impl<C: Command> AnyCommand for C {
         Command::is_endless(self)
     }
 
-    fn family(&self) -> Option<target::Family> {
-        C::Family::FAMILY
-    }
-
-    fn entry(&self, robot: &Robot) -> Entry {
-        C::Family::entry(robot, Command::connect_mode(self))
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Some(connection::driver::<C::Family>())
     }
 
     fn connect_mode(&self) -> ConnectMode {
         Command::connect_mode(self)
-    }
-
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        connection::connect::<C::Family>(robot, access, screen)
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

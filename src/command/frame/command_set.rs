@@ -1,18 +1,15 @@
 //! How commands become words of the command line: sets of them, sets within sets, and those that take no robot.
 
-use std::future::ready;
-
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::command::{AnyCommand, AnyContext, Command};
-use super::connection::{Access, ConnectMode, Connection, Entry};
 use super::report::{Outcome, Report, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
 use crate::output::Screen;
-use crate::settings::{Robot, target};
+use crate::settings::Robot;
 
 /// A command of a family that takes no robot: it is about files, or about this machine.
 pub trait OfflineCommand {
@@ -47,33 +44,8 @@ impl<C: OfflineCommand + clap::Args + 'static> AnyCommand for Offline<C> {
         Intent { risk: Risk::Read, text: String::new(), confirmation: Confirmation::Question, is_stop: false }
     }
 
-    fn takes_robot(&self) -> bool {
-        false
-    }
-
     fn without_robot(&self, screen: &Screen) -> Option<Outcome> {
         Some(self.report(screen))
-    }
-
-    fn family(&self) -> Option<target::Family> {
-        None
-    }
-
-    fn entry(&self, _robot: &Robot) -> Entry {
-        Entry::Harmless
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::default()
-    }
-
-    fn connect<'a>(
-        &self,
-        _robot: &'a Robot,
-        _access: Access,
-        _screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        ready(Err(Failure::local("internal error: this command takes no robot"))).boxed_local()
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

@@ -1,6 +1,7 @@
 //! Connections to robots: how they may be used, and what the one loop does with them whatever their family.
 
 use std::any::Any;
+use std::marker::PhantomData;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -107,14 +108,46 @@ pub trait Connection {
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
-/// Connects as a family does.
-pub fn connect<'a, F: Family>(
-    robot: &'a Robot,
-    access: Access,
-    screen: &'a Screen,
-) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-    let connected = F::connect(robot, access, screen);
-    async move { Ok(Box::new(Connected::<F>(connected.await?)) as Box<dyn Connection>) }.boxed_local()
+/// What opens connections to the robots of a family: what [`Family`] says, without its type.
+pub trait Driver: Sync {
+    /// See [`Family::FAMILY`].
+    fn family(&self) -> Option<target::Family>;
+    /// See [`Family::entry`].
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// See [`Family::connect`].
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
+}
+
+/// The driver of a family.
+pub fn driver<F: Family>() -> &'static dyn Driver {
+    &Drives::<F>(PhantomData)
+}
+
+struct Drives<F>(PhantomData<fn() -> F>);
+
+impl<F: Family> Driver for Drives<F> {
+    fn family(&self) -> Option<target::Family> {
+        F::FAMILY
+    }
+
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
+        F::entry(robot, mode)
+    }
+
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+        let connected = F::connect(robot, access, screen);
+        async move { Ok(Box::new(Connected::<F>(connected.await?)) as Box<dyn Connection>) }.boxed_local()
+    }
 }
 
 /// The link of a family behind a connection; anything else is a fault of this program.

@@ -173,7 +173,7 @@ impl Run {
 
     /// Finds what is refused without asking anybody: robots that are not there, a gate that stays closed.
     pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
-        if !command.takes_robot() {
+        if command.driver().is_none() {
             return Ok(());
         }
         let robots = self.chosen(command)?;

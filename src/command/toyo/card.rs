@@ -44,14 +44,9 @@ impl Command for Read {
     type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.read";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "replace programs, tables and parameters of the controller by those on the memory card".to_owned()
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str =
+        "replace programs, tables and parameters of the controller by those on the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {
@@ -68,14 +63,8 @@ impl Command for Write {
     type Family = Toyo;
     type Report = Transferred;
     const ID: &'static str = "toyo.card.write";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite what is on the memory card".to_owned()
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite what is on the memory card";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Transferred, Failure> {
         let work = Accepted {

@@ -71,10 +71,7 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.coordinate.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         format!("have the next RSMV of task {} move to {}", field("task").meaning(&self.task), self.aim())

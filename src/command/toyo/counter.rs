@@ -71,10 +71,7 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Count;
     const ID: &'static str = "toyo.counter.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Count, Failure> {
         let Self { counter, value } = *self;

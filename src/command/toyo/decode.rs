@@ -136,33 +136,9 @@ struct DecodedLine {
     section: Option<String>,
     /// `host` or `controller`.
     sender: &'static str,
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with it.
     problem: Option<String>,
-}
-
-/// A piece of a line.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct FieldRow {
-    /// Of its first character, from 1.
-    column: usize,
-    /// Characters.
-    width: usize,
-    /// What it is called.
-    name: &'static str,
-    /// As it stands there.
-    raw: String,
-    /// What it says.
-    meaning: String,
-    /// What it is.
-    about: &'static str,
-}
-
-impl From<FieldNote> for FieldRow {
-    fn from(note: FieldNote) -> Self {
-        let FieldNote { column, width, name, raw, meaning, about } = note;
-        Self { column, width, name, raw, meaning, about }
-    }
 }
 
 impl DecodedLine {
@@ -172,12 +148,11 @@ impl DecodedLine {
             Sender::Host => "host",
             Sender::Controller => "controller",
         };
-        let fields = fields.into_iter().map(FieldRow::from).collect();
         Self { text: text.to_owned(), title, section, sender, fields, problem }
     }
 }
 
-impl decode::Field for FieldRow {
+impl decode::Field for FieldNote {
     const COLUMNS: &'static [&'static str] = &["column", "field", "raw", "meaning"];
 
     fn cells(&self) -> Vec<Cell> {

@@ -209,10 +209,7 @@ impl Command for Cancel {
     type Family = Toyo;
     type Report = Cancelled;
     const ID: &'static str = "toyo.error.cancel";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;

@@ -1,28 +1,19 @@
 //! What the rest of the house may ask of `toyo`.
 
-use clap::ArgMatches;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
-use super::backup::{Backup, Restore};
+use super::backup::{Restore, back_up};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
+use super::link::{Link, Toyo};
 use super::serve::Serve;
-use super::top::Eye;
-use super::{check, connect, link, overview};
+use super::top::Poller;
+use super::{check, connect, overview};
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::face::HeldLink;
+use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::sample::{Depth, Sample};
-use crate::command::face::tool::{Tool, ToolKind};
-use crate::command::face::words::{self, Typed};
-use crate::command::face::{Face, HeldLink, Watch};
-use crate::command::frame::connection;
-use crate::command::{
-    Access, AnyContext, Command as _, CommandSet as _, ConnectMode, Connection, Entry, Family as _, SchemaEntry,
-};
+use crate::command::{Access, Command as _, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::{errors, passing, simulator};
 use crate::failure::Failure;
@@ -32,152 +23,61 @@ use crate::settings::target::Family;
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::held::Held;
 
-/// The family `toyo`.
-pub struct Toyo;
+impl Declaration for Toyo {
+    type Commands = Commands;
+    type Decode = Decode;
+    type Explain = Explain;
+    type Serve = Serve;
+    type Poller = Poller;
 
-impl Face for Toyo {
-    fn family(&self) -> Family {
-        Family::Toyo
-    }
+    const NAME: Family = Family::Toyo;
+    const TITLE: &'static str = "Toyo";
+    const ABOUT: &'static str = "Toyo over RS-232C host communication";
+    const AFTER_HELP: &'static str =
+        "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`.";
+    const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
+    const START_STATE: &'static str = simulator::EXAMPLE;
+    const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
 
-    fn title(&self) -> &'static str {
-        "Toyo"
-    }
-
-    fn urls(&self) -> Vec<(String, &'static str)> {
+    fn urls() -> Vec<(String, &'static str)> {
         vec![
             ("serial://".to_owned(), "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
             ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
         ]
     }
 
-    fn codes(&self) -> Vec<(String, String)> {
+    fn codes() -> Vec<(String, String)> {
         errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string())).collect()
     }
 
-    fn setup(&self) -> (&'static str, &'static str) {
-        ("cable and settings of a Toyo controller", include_str!("setup.txt"))
+    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+        overview::overview(link).await
     }
 
-    fn start_state(&self) -> &'static str {
-        simulator::EXAMPLE
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+        check::check(robot, access, screen).await
     }
 
-    fn augment(&self, command: clap::Command) -> clap::Command {
-        words::augment::<Commands>(command, "Toyo over RS-232C host communication").after_help(
-            "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`.",
-        )
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        Ok(Held::Stream(connect::hold(robot, access, screen).await?).into())
     }
 
-    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
-        Commands::lay_out(command, is_named)
-    }
-
-    fn has_command(&self, word: &str) -> bool {
-        words::has_command::<Commands>(word)
-    }
-
-    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
-        Ok(words::read::<Commands>(matches)?.into())
-    }
-
-    fn schemas(&self) -> Vec<SchemaEntry> {
-        Commands::schemas()
-    }
-
-    fn tool(&self, kind: ToolKind) -> Option<Tool> {
-        Some(match kind {
-            ToolKind::Decode => Tool::decode::<Decode>(),
-            ToolKind::Explain => Tool::explain::<Explain>(),
-            ToolKind::Simulate => Tool::simulate::<Serve>(),
-        })
-    }
-
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        connection::connect::<link::Toyo>(robot, access, screen)
-    }
-
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
-        link::Toyo::entry(robot, mode)
-    }
-
-    fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>> {
-        async move { overview::overview(connection::link::<link::Toyo>(connection)?).await }.boxed_local()
-    }
-
-    fn check<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>> {
-        check::check(robot, access, screen).boxed_local()
-    }
-
-    fn watch<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>> {
-        async move { Ok(Box::new(Eye::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
-    }
-
-    fn hold<'a>(
-        &self,
-        robot: &'a Robot,
-        access: &'a Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        async move { Ok(Held::Stream(connect::hold(robot, access, screen).await?).into()) }.boxed_local()
-    }
-
-    fn guard(&self) -> Guard {
-        Guard { sends: passing::only_reads_or_stops, shows: |_, _| false }
-    }
-
-    fn backup_risk(&self, robot: &Robot) -> Risk {
+    fn backup_risk(robot: &Robot) -> Risk {
         if robot.read_only.value { Risk::Read } else { Risk::Write }
     }
 
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: &'a Making,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
-        async move {
-            let current_task = context.robot.read_only.value;
-            if current_task {
-                context.screen.note(&format!(
-                    "{}: it is read-only, and to choose another task is a change: only the current task's points and program",
-                    context.robot.label()
-                ));
-            }
-            Ok(Backup::of(making, current_task).run(context.of()?).await?.into())
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+        let current_task = context.robot.read_only.value;
+        if current_task {
+            context.screen.note(&format!(
+                "{}: it is read-only, and to choose another task is a change: only the current task's points and program",
+                context.robot.label()
+            ));
         }
-        .boxed_local()
+        back_up(context, making, current_task).await
     }
 
-    fn restore<'a>(
-        &self,
-        context: AnyContext<'a>,
-        restoring: &'a Restoring,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
-        async move { Ok(Restore::of(restoring).run(context.of()?).await?.of_folder(&restoring.folder)) }.boxed_local()
-    }
-}
-
-impl Watch for Eye {
-    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
-        Eye::look(self, depth).boxed_local()
-    }
-
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        Eye::close(*self, screen).boxed_local()
+    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+        Ok(Restore::of(restoring).run(context).await?.of_folder(&restoring.folder))
     }
 }

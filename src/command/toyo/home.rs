@@ -48,10 +48,7 @@ impl Command for Home {
     type Family = Toyo;
     type Report = Homed;
     const ID: &'static str = "toyo.home";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         match self.sync {

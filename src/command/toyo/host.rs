@@ -26,10 +26,7 @@ impl Command for Host {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.host";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (command, is_on, done) = match self.to {

@@ -74,10 +74,7 @@ impl Command for Init {
     type Family = Toyo;
     type Report = Cleared;
     const ID: &'static str = "toyo.init";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
+    const RISK: Risk = Risk::Destroy;
 
     fn intent(&self) -> String {
         let (_, _, words) = self.what.row();

@@ -322,20 +322,14 @@ impl Command for Jog {
     type Family = Toyo;
     type Report = Jogged;
     const ID: &'static str = "toyo.jog";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         self.in_words(&self.axis.to_string())
     }
 
     /// The controller tells which axis has which letter.
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
-
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Jogged, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step takes no time").hint("leave --for out; --steps makes several"));

@@ -29,10 +29,7 @@ impl Command for Servo {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.servo";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         match self.to {
@@ -121,10 +118,7 @@ impl Command for Mode {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.mode";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, mode) = (context.link, self.mode);
@@ -149,10 +143,7 @@ impl Command for Reset {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.reset";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
@@ -174,10 +165,7 @@ impl Command for Stop {
     type Family = Toyo;
     type Report = Stopped;
     const ID: &'static str = "toyo.stop";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     fn is_stop(&self) -> bool {
         true

@@ -66,10 +66,7 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Written;
     const ID: &'static str = "toyo.override.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Written, Failure> {
         let value = Value::Number(self.percent);

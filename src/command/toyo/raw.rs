@@ -4,14 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::decode::FieldRow;
 use super::link::Link;
 use super::numbers::small;
 use crate::command::decode::{field_table, problem_lines};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
-use crate::controller::toyo::describe::{Sender, describe};
+use crate::controller::toyo::describe::{FieldNote, Sender, describe};
 use crate::controller::toyo::request::{Answer, BlockError, Request};
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
@@ -113,7 +112,7 @@ pub struct Exchange {
     /// The answer in words.
     title: String,
     /// The answer field by field.
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with the answer.
     problem: Option<String>,
     /// Whether it is `@NG`.
@@ -128,7 +127,7 @@ impl Exchange {
             refused: answer.trim_end() == "@NG",
             answer,
             title: description.title,
-            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            fields: description.fields,
             problem: description.problem,
         }
     }

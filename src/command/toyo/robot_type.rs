@@ -41,10 +41,7 @@ impl Command for RobotType {
     type Family = Toyo;
     type Report = InForce;
     const ID: &'static str = "toyo.robot-type";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
+    const RISK: Risk = Risk::Destroy;
 
     fn intent(&self) -> String {
         format!("make axis {} of robot type {:06}; its parameters may change with it", self.axis, self.robot_type)

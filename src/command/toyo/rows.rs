@@ -191,18 +191,9 @@ impl<K: Kind> Command for Set<K> {
     type Family = Toyo;
     type Report = Stored<K>;
     const ID: &'static str = K::IDS[1];
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite a row of a table".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite a row of a table";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored<K>, Failure> {
         let Context { link, screen, authority, .. } = context;

@@ -52,10 +52,7 @@ impl Command for Sequential {
     type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.sequential";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         match self.step {
@@ -85,10 +82,7 @@ impl Command for Palletizing {
     type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.palletizing";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         format!("run {}", chosen("palletizing", self.program))
@@ -116,10 +110,7 @@ impl Command for Easy {
     type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.easy";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         format!("run {}", chosen("easy", self.program))
@@ -147,10 +138,7 @@ impl Command for Point {
     type Family = Toyo;
     type Report = Ran;
     const ID: &'static str = "toyo.run.point";
-
-    fn risk(&self) -> Risk {
-        Risk::Motion
-    }
+    const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
         format!("move the axes to point {} of the coordinate table", self.point)

@@ -62,10 +62,7 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Current;
     const ID: &'static str = "toyo.task.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));

@@ -5,7 +5,8 @@ use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Place;
-use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::face::declared;
+use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::layout::Record;
@@ -17,9 +18,9 @@ use crate::output::Screen;
 use crate::output::view::Tone;
 use crate::settings::Robot;
 
-/// An eye on one controller.
+/// An poller on one controller.
 #[derive(Debug)]
-pub struct Eye {
+pub struct Poller {
     link: Link,
     /// Once they were asked for.
     limits: Option<Limits>,
@@ -28,35 +29,34 @@ pub struct Eye {
 /// The soft limits of axes 1 to 4, where the controller tells them.
 type Limits = [Option<(f64, f64)>; 4];
 
-impl Eye {
-    /// Opens it; nothing but reads can leave.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+impl declared::Poller for Poller {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Toyo::connect(robot, access, screen).await?, limits: None })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
         let (first, answered_in) = clocked(self.link.status_of(&[0])).await;
         let first = first?;
-        let rest: &[u8] = match (depth, first.has_error()) {
-            (Depth::Whole, _) => &[1, 2, 3, 4],
-            (Depth::Line, true) => &[1, 2, 3],
-            (Depth::Line, false) => &[2, 3],
+        let rest: &[u8] = match (detail, first.has_error()) {
+            (Detail::Full, _) => &[1, 2, 3, 4],
+            (Detail::Summary, true) => &[1, 2, 3],
+            (Detail::Summary, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
         let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
-        let whole = match depth {
-            Depth::Line => None,
-            Depth::Whole => Some(self.whole(status, place).await?),
+        let whole = match detail {
+            Detail::Summary => None,
+            Detail::Full => Some(self.whole(status, place).await?),
         };
         Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Toyo::close(self.link, screen).await
     }
+}
 
+impl Poller {
     async fn whole(&mut self, status: Status, place: Option<Place>) -> Result<Whole, Failure> {
         let limits = match self.limits {
             Some(limits) => limits,
@@ -65,13 +65,15 @@ impl Eye {
         let banks = vec![self.bank("inputs", INPUTS).await?, self.bank("outputs", OUTPUTS).await?];
         let letters = self.link.letters().await?.all();
         let axes = place.map_or_else(Vec::new, |place| axes(place, letters, limits));
-        Ok(Whole { lamps: lamps(status), axes, torque_unit: None, banks, not_asked: None })
+        Ok(Whole { indicators: indicators(status), axes, torque_unit: None, banks, not_asked: None })
     }
 
     /// The first screen of ports of the controller itself.
     async fn bank(&mut self, name: &'static str, ports: Ports) -> Result<Bank, Failure> {
         let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
-            Ok(record) => ports_of(&record).iter().map(|port| Eight::falling(port.name.clone(), port.byte())).collect(),
+            Ok(record) => {
+                ports_of(&record).iter().map(|port| SignalByte::falling(port.name.clone(), port.byte())).collect()
+            }
             Err(_) => Vec::new(),
         };
         Ok(Bank { name, groups })
@@ -102,22 +104,22 @@ fn alarms(status: Status) -> Vec<Alarm> {
     vec![Alarm { code, text: error.name.into_owned(), remedy: error.remedy.to_owned() }]
 }
 
-fn lamps(status: Status) -> Vec<Lamp> {
+fn indicators(status: Status) -> Vec<Indicator> {
     vec![
-        Lamp::new("host", status.host_on(), Tone::Good),
-        Lamp::new("pendant", status.pendant_on(), Tone::Warning),
-        Lamp::new("servo", status.servo_on(), Tone::Good),
-        Lamp::should("origin", status.homed(), Tone::Warning),
-        Lamp::new("homing", status.homing(), Tone::Warning),
-        Lamp::new("running", status.executing(), Tone::Good),
-        Lamp::new("paused", status.paused(), Tone::Warning),
-        Lamp::new("in position", status.in_position(), Tone::Good),
-        Lamp::new("error", status.has_error(), Tone::Bad),
-        Lamp::should("ready", status.ready_output(), Tone::Plain),
-        Lamp::new("waits", status.waits_for_input(), Tone::Warning),
-        Lamp::new("one move", status.single_movement(), Tone::Plain),
-        Lamp::new("slave lost", status.slave_not_ready(), Tone::Bad),
-        Lamp::new("power cycle", status.needs_power_cycle(), Tone::Bad),
+        Indicator::new("host", status.host_on(), Tone::Good),
+        Indicator::new("pendant", status.pendant_on(), Tone::Warning),
+        Indicator::new("servo", status.servo_on(), Tone::Good),
+        Indicator::should("origin", status.homed(), Tone::Warning),
+        Indicator::new("homing", status.homing(), Tone::Warning),
+        Indicator::new("running", status.executing(), Tone::Good),
+        Indicator::new("paused", status.paused(), Tone::Warning),
+        Indicator::new("in position", status.in_position(), Tone::Good),
+        Indicator::new("error", status.has_error(), Tone::Bad),
+        Indicator::should("ready", status.ready_output(), Tone::Plain),
+        Indicator::new("waits", status.waits_for_input(), Tone::Warning),
+        Indicator::new("one move", status.single_movement(), Tone::Plain),
+        Indicator::new("slave lost", status.slave_not_ready(), Tone::Bad),
+        Indicator::new("power cycle", status.needs_power_cycle(), Tone::Bad),
     ]
 }
 

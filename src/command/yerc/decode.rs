@@ -195,31 +195,9 @@ struct DecodedFrame {
     /// `client` or `controller`.
     sender: &'static str,
     bytes: usize,
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with it.
     problem: Option<String>,
-}
-
-/// A piece of a frame.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct FieldRow {
-    /// From the start of the frame.
-    pub offset: usize,
-    /// Bytes.
-    pub size: usize,
-    /// What it is called.
-    pub name: String,
-    /// The bytes as they travel.
-    pub raw_hex: String,
-    /// What they say.
-    pub meaning: String,
-}
-
-impl From<FieldNote> for FieldRow {
-    fn from(note: FieldNote) -> Self {
-        let FieldNote { offset, size, name, raw, meaning } = note;
-        Self { offset, size, name, raw_hex: raw, meaning }
-    }
 }
 
 impl DecodedFrame {
@@ -229,11 +207,11 @@ impl DecodedFrame {
             Sender::Client => "client",
             Sender::Controller => "controller",
         };
-        Self { title, section, sender, bytes, fields: fields.into_iter().map(FieldRow::from).collect(), problem }
+        Self { title, section, sender, bytes, fields, problem }
     }
 }
 
-impl decode::Field for FieldRow {
+impl decode::Field for FieldNote {
     const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
     const NONE: &'static str = "no data";
 
@@ -241,8 +219,8 @@ impl decode::Field for FieldRow {
     fn cells(&self) -> Vec<Cell> {
         const LONGEST: usize = 32;
 
-        let Self { offset, size, name, raw_hex, meaning } = self;
-        let raw = shortened(raw_hex, LONGEST);
+        let Self { offset, size, name, raw, meaning } = self;
+        let raw = shortened(raw, LONGEST);
         vec![(*offset).into(), (*size).into(), name.as_str().into(), raw.into(), meaning.as_str().into()]
     }
 }

@@ -1,29 +1,19 @@
 //! What the rest of the house may ask of `yerc`.
 
-use clap::ArgMatches;
-
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
-use super::file::{Backup, Restore};
+use super::file::{Restore, back_up};
+use super::link::{Link, Yerc};
 use super::serve::Serve;
-use super::top::Eye;
-use super::{check, connect, link, overview};
+use super::top::Poller;
+use super::{check, connect, overview};
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
+use crate::command::face::HeldLink;
+use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::sample::{Depth, Sample};
-use crate::command::face::tool::{Tool, ToolKind};
-use crate::command::face::words::{self, Typed};
-use crate::command::face::{Face, HeldLink, Watch};
-use crate::command::frame::connection;
-use crate::command::{
-    Access, AnyContext, Command as _, CommandSet as _, ConnectMode, Connection, Entry, Family as _, SchemaEntry,
-};
-
+use crate::command::{Access, Command as _, Context};
 use crate::controller::yerc::{passing, simulator, status};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -32,138 +22,48 @@ use crate::settings::target::Family;
 use crate::transport::session::host::Guard;
 use crate::transport::session::host::held::Held;
 
-/// The family `yerc`.
-pub struct Yerc;
+impl Declaration for Yerc {
+    type Commands = Commands;
+    type Decode = Decode;
+    type Explain = Explain;
+    type Serve = Serve;
+    type Poller = Poller;
 
-impl Face for Yerc {
-    fn family(&self) -> Family {
-        Family::Yerc
-    }
+    const NAME: Family = Family::Yerc;
+    const TITLE: &'static str = "Yaskawa FS100 / DX200";
+    const ABOUT: &'static str = "Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)";
+    const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
+    const SETUP: (&'static str, &'static str) = ("settings of an FS100 or DX200", include_str!("setup.txt"));
+    const START_STATE: &'static str = simulator::EXAMPLE;
+    const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
 
-    fn title(&self) -> &'static str {
-        "Yaskawa FS100 / DX200"
-    }
-
-    fn urls(&self) -> Vec<(String, &'static str)> {
+    fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
     }
 
-    fn codes(&self) -> Vec<(String, String)> {
+    fn codes() -> Vec<(String, String)> {
         let statuses = status::all_statuses().map(|row| (format!("0x{:02X}", row.code), row.name.to_owned()));
         statuses.chain(status::all_added().map(|row| (format!("0x{:04X}", row.code), row.name.to_owned()))).collect()
     }
 
-    fn setup(&self) -> (&'static str, &'static str) {
-        ("settings of an FS100 or DX200", include_str!("setup.txt"))
+    async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
+        overview::overview(link).await
     }
 
-    fn start_state(&self) -> &'static str {
-        simulator::EXAMPLE
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
+        check::check(robot, access, screen).await
     }
 
-    fn augment(&self, command: clap::Command) -> clap::Command {
-        words::augment::<Commands>(command, "Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)")
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into())
     }
 
-    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
-        Commands::lay_out(command, is_named)
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
+        back_up(context, making).await
     }
 
-    fn has_command(&self, word: &str) -> bool {
-        words::has_command::<Commands>(word)
-    }
-
-    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
-        Ok(words::read::<Commands>(matches)?.into())
-    }
-
-    fn schemas(&self) -> Vec<SchemaEntry> {
-        Commands::schemas()
-    }
-
-    fn tool(&self, kind: ToolKind) -> Option<Tool> {
-        Some(match kind {
-            ToolKind::Decode => Tool::decode::<Decode>(),
-            ToolKind::Explain => Tool::explain::<Explain>(),
-            ToolKind::Simulate => Tool::simulate::<Serve>(),
-        })
-    }
-
-    fn connect<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
-        connection::connect::<link::Yerc>(robot, access, screen)
-    }
-
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
-        link::Yerc::entry(robot, mode)
-    }
-
-    fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>> {
-        async move { overview::overview(connection::link::<link::Yerc>(connection)?).await }.boxed_local()
-    }
-
-    fn check<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>> {
-        check::check(robot, access, screen).boxed_local()
-    }
-
-    fn watch<'a>(
-        &self,
-        robot: &'a Robot,
-        access: Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>> {
-        async move { Ok(Box::new(Eye::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
-    }
-
-    fn hold<'a>(
-        &self,
-        robot: &'a Robot,
-        access: &'a Access,
-        screen: &'a Screen,
-    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        async move { Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into()) }.boxed_local()
-    }
-
-    fn guard(&self) -> Guard {
-        Guard { sends: passing::only_reads_or_stops, shows: |_, _| false }
-    }
-
-    fn back_up<'a>(
-        &self,
-        context: AnyContext<'a>,
-        making: &'a Making,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
-        async move { Ok(Backup::of(making).run(context.of()?).await?.into()) }.boxed_local()
-    }
-
-    fn restore<'a>(
-        &self,
-        context: AnyContext<'a>,
-        restoring: &'a Restoring,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
-        async move {
-            let results = Restore::of(restoring).run(context.of()?).await?;
-            Ok(Restored::new(&restoring.folder, Items::from(results)))
-        }
-        .boxed_local()
-    }
-}
-
-impl Watch for Eye {
-    fn look(&mut self, depth: Depth) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
-        Eye::look(self, depth).boxed_local()
-    }
-
-    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        Eye::close(*self, screen).boxed_local()
+    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
+        let results = Restore::of(restoring).run(context).await?;
+        Ok(Restored::new(&restoring.folder, Items::from(results)))
     }
 }

@@ -235,10 +235,7 @@ impl Command for Select {
     type Family = Yerc;
     type Report = Selected;
     const ID: &'static str = "yerc.job.select";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Selected, Failure> {
         let link = context.link;
@@ -286,17 +283,11 @@ impl Command for Start {
     type Family = Yerc;
     type Report = Started;
     const ID: &'static str = "yerc.job.start";
+    const INTENT: &'static str = "start the selected job";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn risk(&self) -> Risk {
         StartJob.risk()
-    }
-
-    fn intent(&self) -> String {
-        "start the selected job".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {

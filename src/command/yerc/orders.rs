@@ -116,10 +116,7 @@ impl Command for Say {
     type Family = Yerc;
     type Report = Done;
     const ID: &'static str = "yerc.say";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
         refuse_controls("the message", &self.text)?;

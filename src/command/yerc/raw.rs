@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::decode::{FieldRow, parse_hex};
+use super::decode::parse_hex;
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
 use crate::command::decode::field_table;
@@ -16,7 +16,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;
 use crate::controller::typed;
-use crate::controller::yerc::describe::{Sender, describe};
+use crate::controller::yerc::describe::{FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, Reply};
 use crate::controller::yerc::status;
@@ -184,7 +184,7 @@ pub struct Answer {
     data_hex: String,
     data_bytes: usize,
     /// The data part field by field.
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     elapsed_ms: f64,
     /// Copies of the request that were sent.
     attempts: u32,
@@ -245,7 +245,7 @@ impl Answer {
             remedy: explanation.remedy.into_owned(),
             data_hex: hex(&data),
             data_bytes: data.len(),
-            fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).map(FieldRow::from).collect(),
+            fields: fields.into_iter().filter(|field| field.offset >= HEADER_LEN).collect(),
             elapsed_ms: elapsed.as_secs_f64() * 1000.0,
             attempts,
             refusal: (!status.is_ok()).then(|| Refusal { status, to: link::Asked::from(request) }.into()),

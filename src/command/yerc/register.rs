@@ -103,10 +103,7 @@ impl Command for Set {
     type Family = Yerc;
     type Report = WrittenRegisters;
     const ID: &'static str = "yerc.register.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenRegisters, Failure> {
         let Context { link, screen, .. } = context;

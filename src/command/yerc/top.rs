@@ -4,7 +4,8 @@ use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
-use crate::command::face::sample::{Axis, Bank, Depth, Eight, Lamp, Sample, Whole, clocked};
+use crate::command::face::declared;
+use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;
@@ -17,9 +18,9 @@ use crate::output::Screen;
 use crate::output::view::Tone;
 use crate::settings::Robot;
 
-/// An eye on one controller.
+/// An poller on one controller.
 #[derive(Debug)]
-pub struct Eye {
+pub struct Poller {
     link: Link,
     /// Whether the controller knows alarms with their texts, as far as is known.
     texts: bool,
@@ -29,32 +30,31 @@ pub struct Eye {
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
-impl Eye {
-    /// Opens it; nothing but reads can leave.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+impl declared::Poller for Poller {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Yerc::connect(robot, access, screen).await?, texts: true })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
         // A controller without a first robot has no position to show; that is no failure.
         let base = self.position(Coordinates::Base).await?;
-        let slots = if depth == Depth::Whole { SLOTS } else { 1 };
+        let slots = if detail == Detail::Full { SLOTS } else { 1 };
         let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
-        let whole = match depth {
-            Depth::Line => None,
-            Depth::Whole => Some(self.whole(status, base.as_ref()).await?),
+        let whole = match detail {
+            Detail::Summary => None,
+            Detail::Full => Some(self.whole(status, base.as_ref()).await?),
         };
         Ok(Sample { line: report(status, base.as_ref()), answered_in, alarms, whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Yerc::close(self.link, screen).await
     }
+}
 
+impl Poller {
     async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
         let model = self.link.model;
         let pulses = self.position(Coordinates::Pulse).await?;
@@ -65,12 +65,12 @@ impl Eye {
         let mut banks = Vec::new();
         for (name, first) in BANKS {
             if let Some(bytes) = self.ask(ReadIoGroups::new(model, first, GROUPS)).await? {
-                let groups = (first..).zip(bytes).map(|(group, byte)| Eight::rising(format!("#{group}0"), byte));
+                let groups = (first..).zip(bytes).map(|(group, byte)| SignalByte::rising(format!("#{group}0"), byte));
                 banks.push(Bank { name, groups: groups.collect() });
             }
         }
         let torque_unit = torque.map(|_| "raw");
-        Ok(Whole { lamps: lamps(status), axes, torque_unit, banks, not_asked: None })
+        Ok(Whole { indicators: indicators(status), axes, torque_unit, banks, not_asked: None })
     }
 
     async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>, Failure> {
@@ -87,22 +87,22 @@ impl Eye {
     }
 }
 
-fn lamps(status: ControllerStatus) -> Vec<Lamp> {
+fn indicators(status: ControllerStatus) -> Vec<Indicator> {
     let has = |bit| status.has(bit);
     let cycle = |cycle| status.cycle() == Some(cycle);
     vec![
-        Lamp::new("teach", has(StatusBit::Teach), Tone::Warning),
-        Lamp::new("play", has(StatusBit::Play), Tone::Good),
-        Lamp::should("remote", has(StatusBit::CommandRemote), Tone::Plain),
-        Lamp::new("servo", status.servo_on(), Tone::Good),
-        Lamp::new("running", status.running(), Tone::Good),
-        Lamp::new("hold", status.held(), Tone::Warning),
-        Lamp::new("alarm", status.alarm(), Tone::Bad),
-        Lamp::new("error", status.error(), Tone::Bad),
-        Lamp::new("step", cycle(CycleMode::Step), Tone::Plain),
-        Lamp::new("one cycle", cycle(CycleMode::Once), Tone::Plain),
-        Lamp::new("continuous", cycle(CycleMode::Continuous), Tone::Plain),
-        Lamp::new("safe speed", has(StatusBit::Guarded), Tone::Warning),
+        Indicator::new("teach", has(StatusBit::Teach), Tone::Warning),
+        Indicator::new("play", has(StatusBit::Play), Tone::Good),
+        Indicator::should("remote", has(StatusBit::CommandRemote), Tone::Plain),
+        Indicator::new("servo", status.servo_on(), Tone::Good),
+        Indicator::new("running", status.running(), Tone::Good),
+        Indicator::new("hold", status.held(), Tone::Warning),
+        Indicator::new("alarm", status.alarm(), Tone::Bad),
+        Indicator::new("error", status.error(), Tone::Bad),
+        Indicator::new("step", cycle(CycleMode::Step), Tone::Plain),
+        Indicator::new("one cycle", cycle(CycleMode::Once), Tone::Plain),
+        Indicator::new("continuous", cycle(CycleMode::Continuous), Tone::Plain),
+        Indicator::new("safe speed", has(StatusBit::Guarded), Tone::Warning),
     ]
 }
 

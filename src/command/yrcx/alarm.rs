@@ -40,7 +40,7 @@ impl Command for Reset {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
         let order = link.draft(table::Command::AlarmReset)?.build()?;
-        link.run(&order).await?;
+        link.ask(&order).await?;
         if link.is_dry() {
             return Ok(WasReset { alarm: false, servo_on: false });
         }

@@ -55,7 +55,7 @@ impl Command for Get {
             && moment.hour() == 0
             && moment.minute() == 0
         {
-            date = link.run(&orders[0]).await.and_then(|done| date_of(&done.values));
+            date = link.ask(&orders[0]).await.and_then(|done| date_of(&done.values));
         }
         let reading = Reading::of(date, time, Zoned::now().datetime());
         items::nothing(PARTS, &reading.errors)?;
@@ -210,10 +210,7 @@ impl Command for Set {
     type Family = Yrcx;
     type Report = WasSet;
     const ID: &'static str = "yrcx.clock.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasSet, Failure> {
         let link = context.link;
@@ -224,13 +221,13 @@ impl Command for Set {
         // The time goes first: the clock must not pass midnight by its old time with the new date.
         if let Some(time) = time {
             let order = time_order(link, time)?;
-            link.run(&order).await?;
+            link.ask(&order).await?;
         }
         let date = if self.moment == Moment::Now { Some(Zoned::now().date()) } else { date };
         let mut errors = Vec::new();
         if let Some(date) = date {
             let order = date_order(link, date)?;
-            match link.run(&order).await {
+            match link.ask(&order).await {
                 Ok(_) => {}
                 Err(failure) if time.is_some() => errors.push(ItemError::new("date", failure)),
                 Err(failure) => return Err(failure),

@@ -2,8 +2,8 @@
 
 use super::motion::Moving;
 use super::{
-    alarm, backup, clock, data, devicenet, eip, info, io, motion, param, point_calc, port, procedures, profibus,
-    program, raw, select, servo, speed, status, status_reset, teach, torque_limit, var,
+    alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
+    profibus, program, raw, status, var,
 };
 use crate::command::{Subcommands, commands};
 
@@ -31,27 +31,27 @@ commands! {
         /// Move an axis by the inching distance
         Inch(Moving<motion::Inch>),
         /// Set the inching distance
-        InchDistance(motion::InchDistance),
+        InchDistance(orders::InchDistance),
         /// Teach: store the current position as a point
-        Teach(teach::Teach),
+        Teach(orders::Teach),
         /// Return to origin
         Origin(motion::Origin),
         /// Reset the absolute position of an axis
         AbsReset(motion::AbsReset),
         /// Set a speed
-        Speed(speed::Speed),
+        Speed(orders::Speed),
         /// Coordinate shift selection
-        Shift(Subcommands<select::Shift>),
+        Shift(Subcommands<orders::Shift>),
         /// Hand (end effector) selection
-        Hand(Subcommands<select::Hand>),
+        Hand(Subcommands<orders::Hand>),
         /// Arm hand system
-        Arm(Subcommands<select::Arm>),
+        Arm(Subcommands<orders::Arm>),
         /// Limit the torque of an axis
-        TorqueLimit(torque_limit::TorqueLimit),
+        TorqueLimit(orders::TorqueLimit),
         /// Switch servos on or off, or release their brakes
-        Servo(servo::Servo),
+        Servo(orders::Servo),
         /// Switch motor power on or off
-        Motor(servo::Motor),
+        Motor(orders::Motor),
         /// Points
         Point(Subcommands<data::Point>),
         /// Point comments: get, set
@@ -99,7 +99,7 @@ commands! {
         /// Stop the robot program with the dedicated inputs
         Stop(procedures::Stop),
         /// Reset the remote command status
-        StatusReset(status_reset::StatusReset),
+        StatusReset(orders::StatusReset),
         /// Send the words of any remote command and decode the answer
         Raw(raw::Raw),
         /// Diagnose the network board: identity, assemblies, attributes

@@ -10,12 +10,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::ImageDecoder;
-pub use self::images::FieldRow;
 use super::raw::words;
 use crate::command::Report;
 use crate::command::decode::capture::Selection;
 use crate::command::decode::{self, field_table, in_parentheses, problem_lines};
-use crate::controller::yrcx::describe::{Description, answer, command};
+use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
@@ -85,7 +84,7 @@ struct Part {
     title: String,
     /// Section of the manual, in chapter 2, where the command is known.
     section: Option<&'static str>,
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with it.
     problems: Vec<String>,
 }
@@ -93,7 +92,7 @@ struct Part {
 impl Part {
     fn new(kind: &'static str, description: Description) -> Self {
         let Description { title, section, fields, problems } = description;
-        Self { kind, title, section, fields: fields.into_iter().map(FieldRow::from).collect(), problems }
+        Self { kind, title, section, fields, problems }
     }
 }
 
@@ -119,6 +118,7 @@ impl Report for DecodedWords {
 mod tests {
     use super::*;
     use crate::command::decode::Decode as _;
+    use crate::controller::yrcx::value::Key;
 
     fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {
         let read = |text: &str| words(text).unwrap();
@@ -130,7 +130,7 @@ mod tests {
     fn a_command_explains_its_answer() {
         let both = explained(Some("0x0001,0x8004,0,0x0032,0x0013"), Some("0x0200,0,0,0,0x3039"));
         assert_eq!(both.parts[1].section, Some("4.2.1"));
-        let axis = both.parts[1].fields.iter().find(|field| field.key == Some("axis_1")).unwrap();
+        let axis = both.parts[1].fields.iter().find(|field| field.key == Some(Key::Axis1)).unwrap();
         assert_eq!(axis.meaning, "12.345 mm");
         assert!(both.failure().is_none());
     }

@@ -1,13 +1,13 @@
 //! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
 //!
 //! A command that gives one remote command implements `single::Single`: which row of the table, its fields, the report.
-//! `servo.rs` is the model of one that changes something, `info.rs` of those that read. What gives several implements
+//! `orders.rs` is a table of those that change something, `info/` has those that read. What gives several implements
 //! `Command` itself, as `status.rs` does. The link has one driver for remote commands and signals; see `link.rs`.
 //!
 //! To add a command:
 //!
 //! 1. Its file: arguments (texts go to the codec as they were typed: `draft.with(Key::SpeedPercent, text)` reads them in
-//!    the unit of the field and checks their range), the report, `impl Single`. Shared arguments are in `arguments.rs`,
+//!    the unit of the field and checks their range), the report, `impl Single` or a row of `one_row!`. Shared arguments are in `arguments.rs`,
 //!    positions in `position.rs`.
 //! 2. A line in the list below, or in that of its noun.
 //! 3. Tests: `testing::words` gives the words of a command line, `testing::example` those of an example of the manual.
@@ -30,6 +30,7 @@ pub mod discover;
 pub mod eip;
 mod explain;
 pub mod face;
+mod failure;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;
@@ -40,6 +41,7 @@ pub mod link;
 mod link_error;
 mod motion;
 mod numbers;
+mod orders;
 mod overview;
 mod overwrite;
 mod param;
@@ -51,20 +53,14 @@ pub mod profibus;
 mod program;
 mod raw;
 mod refusal;
-mod select;
 mod serve;
-mod servo;
 mod several;
 pub mod simulated;
 mod single;
-mod speed;
 mod status;
-mod status_reset;
-mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;
-mod torque_limit;
 pub mod trace;
 mod unit;
 mod var;

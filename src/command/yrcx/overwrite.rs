@@ -1,17 +1,19 @@
 //! Orders that overwrite what a person wrote or taught: what is there is read first, then old and new are confirmed.
 
+use std::time::Duration;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link::{Done, Link};
+use super::link::Link;
 use super::position::Unit;
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
+use crate::client::yrcx;
 use crate::command::Report;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::controller::Risk;
-use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::table::parameter::Parameter;
@@ -19,6 +21,23 @@ use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
 use crate::output::view::View;
+
+/// What was carried out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Done {
+    /// What the answer holds.
+    pub values: Values,
+    /// From the first time that the command was sent to its end.
+    pub elapsed: Duration,
+    /// What was overwritten, where something was.
+    pub replaced: Option<Replaced>,
+}
+
+impl From<yrcx::Done> for Done {
+    fn from(yrcx::Done { values, elapsed }: yrcx::Done) -> Self {
+        Self { values, elapsed, replaced: None }
+    }
+}
 
 /// What an order overwrites, and with what.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -45,7 +64,7 @@ pub fn confirmation(command: Command) -> Confirmation {
 /// Gives an order. If it overwrites something, that is confirmed first; what is there already is not written.
 pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Done, Failure> {
     if confirmation(order.command()) != Confirmation::WhenKnown {
-        return link.run(order).await;
+        return link.ask(order).await;
     }
     let replaced = confirm(link, authority, order).await?;
     if replaced.is_there {
@@ -57,7 +76,7 @@ pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order) -> 
         link.plan_depending(order, order, reason);
         return Ok(Done::default());
     }
-    let done = link.run(order).await?;
+    let done = link.ask(order).await?;
     Ok(Done { replaced: Some(replaced), ..done })
 }
 
@@ -136,10 +155,10 @@ async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Val
         link.plan(order, about);
         return Ok(None);
     }
-    match link.try_run(order).await?.answer {
-        Answer::Done(values) | Answer::Running(values) => check_echo(order, &values).map(|()| Some(values)),
-        Answer::Refused { alarm, .. } if is_about_commands(alarm) => Err(refused(order.row(), alarm)),
-        Answer::Refused { .. } => Ok(None),
+    match link.try_ask(order).await? {
+        Ok(done) => check_echo(order, &done.values).map(|()| Some(done.values)),
+        Err(refusal) if is_about_commands(refusal.alarm) => Err(refused(order.row(), refusal.alarm)),
+        Err(_) => Ok(None),
     }
 }
 

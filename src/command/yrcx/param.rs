@@ -4,16 +4,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link;
 use super::link::Yrcx;
 use super::numbers::single;
 use super::overwrite::Stored;
 use super::several::{Rows, Several, ask_each};
-use super::single::Single;
+use super::single::one_row;
 use crate::command::ValueKind;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::nearest::nearest;
-use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use crate::controller::yrcx::value::Key;
@@ -141,39 +140,30 @@ impl Report for Parameters {
     }
 }
 
-/// Sets a parameter.
-#[derive(Debug, Args)]
-#[command(after_help = listing())]
-pub struct Set {
-    /// Parameter by name or number, as in TOLE or 259
-    #[arg(value_name = "PARAMETER", value_parser = parameter, add = ValueKind::YrcxParameter)]
-    parameter: &'static Parameter,
-    /// A whole number in the unit of the parameter
-    #[arg(value_name = "VALUE", allow_negative_numbers = true)]
-    value: String,
-    /// Axis, 1 to 4; for a parameter of an axis
-    #[arg(long, value_name = "AXIS")]
-    axis: Option<String>,
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.param.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::ParamSet
+one_row! {
+    /// Sets a parameter.
+    #[command(after_help = listing())]
+    Set(self) "yrcx.param.set" -> Stored {
+        /// Parameter by name or number, as in TOLE or 259
+        #[arg(value_name = "PARAMETER", value_parser = parameter, add = ValueKind::YrcxParameter)]
+        parameter: &'static Parameter,
+        /// A whole number in the unit of the parameter
+        #[arg(value_name = "VALUE", allow_negative_numbers = true)]
+        value: String,
+        /// Axis, 1 to 4; for a parameter of an axis
+        #[arg(long, value_name = "AXIS")]
+        axis: Option<String>,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives table::Command::ParamSet,
+    with draft => {
         let draft = draft.with(Key::Parameter, self.parameter.number).with(Key::Value, self.value.as_str());
         draft.with_some(Key::Axes, self.axis.clone())
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+    },
+    done {
         let Parameter { name, unit, .. } = self.parameter;
         let axis = self.axis.as_ref().map(|axis| format!(" of axis {axis}")).unwrap_or_default();
-        Ok(Stored::new(format!("{name}{axis} = {} {unit}", self.value).trim_end(), done))
-    }
+        format!("{name}{axis} = {} {unit}", self.value).trim_end().to_owned()
+    };
 }
 
 #[cfg(test)]

@@ -1,16 +1,13 @@
 //! `yrcx point-calc` (4.4.3, 4.4.4): the controller computes points and shifts.
 
-use clap::{ArgGroup, Args};
+use clap::ArgGroup;
 
-use super::link;
 use super::numbers::single;
 use super::overwrite::Stored;
-use super::single::Single;
+use super::single::one_row;
 use crate::command::commands;
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 
 commands! {
     /// What the controller can do with points and shifts that it has.
@@ -34,193 +31,113 @@ fn point(text: &str) -> Result<i32, String> {
     single(Command::PointCopy, Key::Point, text)
 }
 
-/// Copies a point.
-#[derive(Debug, Args)]
-pub struct Copy {
-    /// Point to copy, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = point)]
-    point: i32,
-    /// Point that becomes the same
-    #[arg(long, value_name = "POINT", value_parser = point)]
-    to: i32,
-}
-
-impl Single for Copy {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.copy";
-
-    fn command(&self) -> Command {
-        Command::PointCopy
+one_row! {
+    /// Copies a point.
+    Copy(self) "yrcx.point-calc.copy" -> Stored {
+        /// Point to copy, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point that becomes the same
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
     }
+    gives Command::PointCopy,
+    with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
+    done format!("P{} = P{}", self.to, self.point);
 
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::Point, self.to).with(Key::Point2, self.point)
+    /// Adds a point to another one, axis by axis.
+    Add(self) "yrcx.point-calc.add" -> Stored {
+        /// Point to add, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point that changes
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
     }
+    gives Command::PointAdd,
+    with draft => draft.with(Key::Point, self.to).with(Key::Point2, self.point),
+    done format!("P{to} = P{to} + P{}", self.point, to = self.to);
 
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("P{} = P{}", self.to, self.point), done))
+    /// Subtracts a point from another one, axis by axis.
+    Sub(self) "yrcx.point-calc.sub" -> Stored {
+        /// Point to subtract, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Point that changes
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        from: i32,
     }
-}
+    gives Command::PointSub,
+    with draft => draft.with(Key::Point, self.from).with(Key::Point2, self.point),
+    done format!("P{from} = P{from} - P{}", self.point, from = self.from);
 
-/// Adds a point to another one, axis by axis.
-#[derive(Debug, Args)]
-pub struct Add {
-    /// Point to add, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = point)]
-    point: i32,
-    /// Point that changes
-    #[arg(long, value_name = "POINT", value_parser = point)]
-    to: i32,
-}
-
-impl Single for Add {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.add";
-
-    fn command(&self) -> Command {
-        Command::PointAdd
+    /// Copies a place of a pallet to a point.
+    Pallet(self) "yrcx.point-calc.pallet" -> Stored {
+        /// Pallet, 0 to 39
+        #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
+        pallet: i32,
+        /// Work position, from 1 to as many as the pallet has
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointPallet, Key::WorkPosition, text))]
+        place: i32,
+        /// Point that becomes the same
+        #[arg(long, value_name = "POINT", value_parser = point)]
+        to: i32,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::Point, self.to).with(Key::Point2, self.point)
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("P{to} = P{to} + P{}", self.point, to = self.to), done))
-    }
-}
-
-/// Subtracts a point from another one, axis by axis.
-#[derive(Debug, Args)]
-pub struct Sub {
-    /// Point to subtract, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = point)]
-    point: i32,
-    /// Point that changes
-    #[arg(long, value_name = "POINT", value_parser = point)]
-    from: i32,
-}
-
-impl Single for Sub {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.sub";
-
-    fn command(&self) -> Command {
-        Command::PointSub
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::Point, self.from).with(Key::Point2, self.point)
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("P{from} = P{from} - P{}", self.point, from = self.from), done))
-    }
-}
-
-/// Copies a place of a pallet to a point.
-#[derive(Debug, Args)]
-pub struct Pallet {
-    /// Pallet, 0 to 39
-    #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
-    pallet: i32,
-    /// Work position, from 1 to as many as the pallet has
-    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointPallet, Key::WorkPosition, text))]
-    place: i32,
-    /// Point that becomes the same
-    #[arg(long, value_name = "POINT", value_parser = point)]
-    to: i32,
-}
-
-impl Single for Pallet {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.pallet";
-
-    fn command(&self) -> Command {
-        Command::PointPallet
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives Command::PointPallet,
+    with draft => {
         let draft = draft.with(Key::Point, self.to).with(Key::Pallet, self.pallet);
         draft.with(Key::WorkPosition, self.place)
+    },
+    done format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet);
+
+    /// Sets one element of a point, in the unit of the point.
+    #[command(group = ArgGroup::new("value").required(true))]
+    Element(self) "yrcx.point-calc.element" -> Stored {
+        /// Point, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = point)]
+        point: i32,
+        /// Element, 1 to 6: the axis
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
+        element: i32,
+        /// Its value in mm, for a point in mm
+        #[arg(long, value_name = "MM", group = "value", allow_negative_numbers = true)]
+        mm: Option<String>,
+        /// Its value in pulses, for a point in pulses
+        #[arg(long, value_name = "PULSES", group = "value", allow_negative_numbers = true)]
+        pulse: Option<String>,
     }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("P{} = place {} of pallet {}", self.to, self.place, self.pallet), done))
-    }
-}
-
-/// Sets one element of a point, in the unit of the point.
-#[derive(Debug, Args)]
-#[command(group = ArgGroup::new("value").required(true))]
-pub struct Element {
-    /// Point, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = point)]
-    point: i32,
-    /// Element, 1 to 6: the axis
-    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
-    element: i32,
-    /// Its value in mm, for a point in mm
-    #[arg(long, value_name = "MM", group = "value", allow_negative_numbers = true)]
-    mm: Option<String>,
-    /// Its value in pulses, for a point in pulses
-    #[arg(long, value_name = "PULSES", group = "value", allow_negative_numbers = true)]
-    pulse: Option<String>,
-}
-
-impl Single for Element {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.element";
-
-    fn command(&self) -> Command {
-        if self.mm.is_some() { Command::PointElementMm } else { Command::PointElementPulse }
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives if self.mm.is_some() { Command::PointElementMm } else { Command::PointElementPulse },
+    with draft => {
         let value = self.mm.clone().or_else(|| self.pulse.clone());
         draft.with(Key::Point, self.point).with(Key::Element, self.element).with_some(Key::Value, value)
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+    },
+    done {
         let (value, unit) = match &self.mm {
             Some(value) => (Some(value), "mm"),
             None => (self.pulse.as_ref(), "pulses"),
         };
         let value = value.map_or("", String::as_str);
-        Ok(Stored::new(format!("element {} of P{} = {value} {unit}", place(self.element), self.point), done))
+        format!("element {} of P{} = {value} {unit}", place(self.element), self.point)
+    };
+
+    /// Sets one element of a shift.
+    ShiftElement(self) "yrcx.point-calc.shift-element" -> Stored {
+        /// Shift, 0 to 39
+        #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
+        shift: i32,
+        /// Element, 1 to 4: the axis
+        #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
+        element: i32,
+        /// Its value in mm
+        #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+        mm: String,
     }
-}
-
-/// Sets one element of a shift.
-#[derive(Debug, Args)]
-pub struct ShiftElement {
-    /// Shift, 0 to 39
-    #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
-    shift: i32,
-    /// Element, 1 to 4: the axis
-    #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
-    element: i32,
-    /// Its value in mm
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    mm: String,
-}
-
-impl Single for ShiftElement {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point-calc.shift-element";
-
-    fn command(&self) -> Command {
-        Command::ShiftElement
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives Command::ShiftElement,
+    with draft => {
         let draft = draft.with(Key::Shift, self.shift).with(Key::Element, self.element);
         draft.with(Key::Value, self.mm.as_str())
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm), done))
-    }
+    },
+    done format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm);
 }
 
 /// The place of the one bit that is set, from 1.

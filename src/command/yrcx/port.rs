@@ -4,11 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link;
 use super::link::Yrcx;
 use super::numbers::{named, single};
 use super::several::{Rows, Several, ask_each};
-use super::single::Single;
+use super::single::one_row;
 use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, Report, commands};
@@ -172,16 +171,30 @@ impl Report for Ports {
     }
 }
 
-/// Switches all signals of a port, or one of them.
-#[derive(Debug, Args)]
-#[command(after_help = NAMES)]
-pub struct Set {
-    /// A port, or a signal of one
-    #[arg(value_name = "PORT", value_parser = signal_or_port, add = ValueKind::YrcxOutputPort)]
-    place: Place,
-    /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
-    #[arg(value_name = "VALUE", value_parser = value)]
-    value: u8,
+one_row! {
+    /// Switches all signals of a port, or one of them.
+    #[command(after_help = NAMES)]
+    Set(self) "yrcx.port.set" -> Done {
+        /// A port, or a signal of one
+        #[arg(value_name = "PORT", value_parser = signal_or_port, add = ValueKind::YrcxOutputPort)]
+        place: Place,
+        /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
+        #[arg(value_name = "VALUE", value_parser = value)]
+        value: u8,
+    }
+    gives if self.place.bit.is_some() { table::Command::PortSetBit } else { table::Command::PortSet },
+    with draft => {
+        let Place { kind, port, bit } = self.place;
+        let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
+        draft.with(Key::Value, i32::from(self.value))
+    },
+    done {
+        let place = self.place.told();
+        match self.place.bit {
+            Some(_) => format!("switched {place} {}", if self.value == 1 { "on" } else { "off" }),
+            None => format!("{place} = {} ({:08b})", self.value, self.value),
+        }
+    };
 }
 
 fn value(text: &str) -> Result<u8, String> {
@@ -199,29 +212,6 @@ fn value(text: &str) -> Result<u8, String> {
             (_, Some(binary)) => digits(binary, 2),
             _ => digits(text, 10),
         },
-    }
-}
-
-impl Single for Set {
-    type Report = Done;
-    const ID: &'static str = "yrcx.port.set";
-
-    fn command(&self) -> table::Command {
-        if self.place.bit.is_some() { table::Command::PortSetBit } else { table::Command::PortSet }
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        let Place { kind, port, bit } = self.place;
-        let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
-        draft.with(Key::Value, i32::from(self.value))
-    }
-
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        let place = self.place.told();
-        Ok(Done::new(match self.place.bit {
-            Some(_) => format!("switched {place} {}", if self.value == 1 { "on" } else { "off" }),
-            None => format!("{place} = {} ({:08b})", self.value, self.value),
-        }))
     }
 }
 

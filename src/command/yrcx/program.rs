@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link;
-use super::single::Single;
+use super::single::{Single, one_row};
 use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
 use crate::command::{Report, commands};
@@ -118,37 +118,28 @@ struct Registered {
     name: Option<String>,
 }
 
-/// Registers a program in a task.
-#[derive(Debug, Args)]
-pub struct Select {
-    #[command(flatten)]
-    program: Registered,
-    /// Task, 1 to 16; the lowest vacant one unless given
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
-    task: Option<u16>,
-    /// Priority of the task, 1 to 64
-    #[arg(long, value_name = "N")]
-    priority: String,
-}
-
-impl Single for Select {
-    type Report = Done;
-    const ID: &'static str = "yrcx.program.select";
-
-    fn command(&self) -> Command {
-        Command::ProgramSelect
+one_row! {
+    /// Registers a program in a task.
+    Select(self) "yrcx.program.select" -> Done {
+        #[command(flatten)]
+        program: Registered,
+        /// Task, 1 to 16; the lowest vacant one unless given
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
+        task: Option<u16>,
+        /// Priority of the task, 1 to 64
+        #[arg(long, value_name = "N")]
+        priority: String,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives Command::ProgramSelect,
+    with draft => {
         let draft = put(draft, self.program.program.as_ref(), self.program.name.as_ref(), None);
         draft.with_some(Key::Task, self.task).with(Key::Priority, self.priority.as_str())
-    }
-
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+    },
+    done {
         let program = told(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
-        Ok(Done::new(format!("registered {program} in {task} with priority {}", self.priority)))
-    }
+        format!("registered {program} in {task} with priority {}", self.priority)
+    };
 }
 
 /// Declares the commands that start programs.

@@ -4,16 +4,16 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::decode::FieldRow;
 use super::refusal::refused;
 use super::{link, overwrite};
+use crate::client::yrcx::Reply;
 use crate::command::decode::{field_table, problem_lines};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::typed;
 use crate::controller::yrcx::answer::Answer;
-use crate::controller::yrcx::describe;
+use crate::controller::yrcx::describe::{self, FieldNote};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Words};
 use crate::controller::yrcx::order::Order;
 use crate::failure::Failure;
@@ -74,8 +74,8 @@ impl Command for Raw {
         if self.confirmation() == Confirmation::WhenKnown {
             overwrite::confirm(context.link, &context.authority, &self.wi).await?;
         }
-        let given = context.link.try_run(&self.wi).await?;
-        Ok(Exchange::of(&self.wi, &given))
+        let reply = context.link.raw(&self.wi).await?;
+        Ok(Exchange::of(&self.wi, &reply))
     }
 }
 
@@ -89,7 +89,7 @@ pub struct Exchange {
     /// The answer in words.
     title: String,
     /// The answer field by field.
-    fields: Vec<FieldRow>,
+    fields: Vec<FieldNote>,
     /// What is wrong with the answer.
     problems: Vec<String>,
     elapsed_ms: u64,
@@ -98,19 +98,19 @@ pub struct Exchange {
 }
 
 impl Exchange {
-    fn of(order: &Order, given: &link::Given) -> Self {
-        let description = describe::answer(&given.words, Some(order.words()));
-        let refusal = match given.answer {
+    fn of(order: &Order, reply: &Reply) -> Self {
+        let description = describe::answer(&reply.words, Some(order.words()));
+        let refusal = match reply.answer {
             Answer::Refused { alarm, .. } => Some(refused(order.row(), alarm)),
             Answer::Done(_) | Answer::Running(_) => None,
         };
         Self {
             wi: link::hex(order.words()),
-            wo: link::hex(&given.words),
+            wo: link::hex(&reply.words),
             title: description.title,
-            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            fields: description.fields,
             problems: description.problems,
-            elapsed_ms: u64::try_from(given.elapsed.as_millis()).unwrap_or(u64::MAX),
+            elapsed_ms: u64::try_from(reply.elapsed.as_millis()).unwrap_or(u64::MAX),
             refusal,
         }
     }

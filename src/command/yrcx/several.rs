@@ -3,14 +3,13 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::link::Link;
 use super::link::Yrcx;
-use super::link::{Given, Link};
 use super::numbers::Numbers;
 use super::refusal::refused;
 use crate::command::Context;
 use crate::command::frame::items::{ItemError, ItemOutcome, verdict};
 use crate::controller::yrcx::alarm::{Alarm, STOP_INPUT};
-use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Value, Values};
@@ -30,7 +29,7 @@ pub struct Answers {
 /// Asks all of it. What is refused stands in its place; what ends the link, or would be refused whatever is asked, ends
 /// the asking. Nothing but that is a failure of all. A dry run notes all orders and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
-    link.dry_run(orders)?;
+    link.plan_all(orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -54,13 +53,9 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
 
 /// Asks one of several, and says whether the next one is worth asking.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
-    match link.try_run(order).await {
-        Ok(Given { answer: Answer::Refused { alarm, .. }, .. }) => {
-            (Err(refused(order.row(), alarm)), !is_about_commands(alarm))
-        }
-        Ok(Given { answer: Answer::Done(values) | Answer::Running(values), .. }) => {
-            (check_echo(order, &values).map(|()| values), true)
-        }
+    match link.try_ask(order).await {
+        Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !is_about_commands(refusal.alarm)),
+        Ok(Ok(done)) => (check_echo(order, &done.values).map(|()| done.values), true),
         Err(failure) => (Err(failure), false),
     }
 }

@@ -2,7 +2,8 @@
 
 use super::link::Done;
 use super::link::Yrcx;
-use super::overwrite;
+use super::overwrite::{self, Stored};
+use crate::command::frame::orders;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Draft;
@@ -58,6 +59,75 @@ impl<S: Single> Command for S {
         self.report(&overwrite::give(context.link, &context.authority, &order).await?)
     }
 }
+
+/// A report that says in words what the controller accepted.
+pub trait Accepted {
+    /// In words; `done` says what else there is to tell.
+    fn accepted(words: String, done: &Done) -> Self;
+}
+
+impl Accepted for orders::Done {
+    fn accepted(words: String, _done: &Done) -> Self {
+        Self::new(words)
+    }
+}
+
+impl Accepted for Stored {
+    fn accepted(words: String, done: &Done) -> Self {
+        Self::new(words, done)
+    }
+}
+
+/// Declares commands that give one remote command each, and say in words what was done: what is typed, the row of the
+/// table, what is filled in, what the question says, what is said in the end.
+macro_rules! one_row {
+    ($(
+        $(#[$meta:meta])*
+        $name:ident($self:ident) $id:literal -> $report:ty {
+            $($(#[$arg:meta])* $field:ident: $type:ty,)*
+        }
+        gives $row:expr,
+        $(with $draft:ident => $filled:expr,)?
+        $(intent $intent:expr,)?
+        done $done:expr;
+    )*) => {
+        $(
+            #[derive(Debug, clap::Args)]
+            $(#[$meta])*
+            pub struct $name {
+                $($(#[$arg])* $field: $type,)*
+            }
+
+            impl $crate::command::yrcx::single::Single for $name {
+                type Report = $report;
+                const ID: &'static str = $id;
+
+                fn command(&$self) -> $crate::controller::yrcx::table::Command {
+                    $row
+                }
+
+                $(fn fill(
+                    &$self,
+                    $draft: $crate::controller::yrcx::order::Draft,
+                ) -> $crate::controller::yrcx::order::Draft {
+                    $filled
+                })?
+
+                $(fn intent(&$self) -> String {
+                    $intent.to_owned()
+                })?
+
+                fn report(
+                    &$self,
+                    done: &$crate::command::yrcx::link::Done,
+                ) -> Result<$report, $crate::failure::Failure> {
+                    Ok($crate::command::yrcx::single::Accepted::accepted($done.into(), done))
+                }
+            }
+        )*
+    };
+}
+pub(super) use one_row;
 
 /// What a field of an answer says, in words; nothing where the answer has no such field.
 pub fn shown(command: table::Command, values: &Values, key: Key) -> Option<String> {

@@ -13,7 +13,7 @@ use super::several::ask_each;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items::{ItemError, verdict};
 use crate::command::{Command, ConnectMode, Context, Report};
-use crate::controller::yrcx::answer::{Answer, Status as CommandStatus};
+use crate::controller::yrcx::answer::Status as CommandStatus;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
@@ -49,7 +49,7 @@ impl Command for Status {
         let position = link.draft(table::Command::PositionMm)?.build()?;
         let orders = [servo, position];
         if link.is_dry() && (self.full || link.commands()) {
-            link.dry_run(&orders)?;
+            link.plan_all(&orders)?;
         }
         if link.is_dry() && link.is_held() {
             let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");
@@ -191,8 +191,6 @@ impl Report for StatusReport {
 /// Where the robot is. One that does not know its origin refuses to tell.
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
     let order = link.draft(table::Command::PositionMm)?.build()?;
-    match link.try_run(&order).await?.answer {
-        Answer::Done(values) | Answer::Running(values) => Ok(Position::of(&values, Some(Unit::Mm)).position_mm),
-        Answer::Refused { .. } => Ok(None),
-    }
+    let done = link.try_ask(&order).await?.ok();
+    Ok(done.and_then(|done| Position::of(&done.values, Some(Unit::Mm)).position_mm))
 }

@@ -12,10 +12,11 @@ use super::info::{AlarmReport, servos};
 use super::link::{Link, Yrcx};
 use super::overview::{not_asked, report};
 use super::position::{Position, Unit};
+use crate::command::face::declared;
 use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Axis, Bank, Depth, Eight, Lamp, Sample, Whole};
+use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
 use crate::command::{Access, Family as _};
-use crate::controller::yrcx::answer::{Answer, Status};
+use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::{Side, Signal, output};
@@ -27,9 +28,9 @@ use crate::output::view::Tone;
 use crate::settings::Robot;
 use crate::settings::target::Place;
 
-/// An eye on one controller.
+/// An poller on one controller.
 #[derive(Debug)]
-pub struct Eye {
+pub struct Poller {
     link: Link,
     told: Told,
     /// What is asked next in a session, and when something was asked there.
@@ -56,9 +57,9 @@ const TURNS: Duration = Duration::from_millis(500);
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
-impl Eye {
+impl declared::Poller for Poller {
     /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
-    pub async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
             bus.calm = LOOKS;
@@ -67,30 +68,30 @@ impl Eye {
         Ok(Self { link, told: Told::default(), next: 0, asked: None })
     }
 
-    /// Takes a look.
-    pub async fn look(&mut self, depth: Depth) -> Result<Sample, Failure> {
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
         let image = self.link.look().await?;
         let not_asked = not_asked(&self.link, &image);
         if not_asked.is_none() {
-            self.ask(depth, &image).await?;
+            self.ask(detail, &image).await?;
         }
         if !output::ALARM.is_on(&image) {
             self.told.alarm = None;
         }
         let position = self.told.position_mm.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
         let line = OverviewReport { position, not_asked, ..report(&self.link, &image) };
-        let whole = (depth == Depth::Whole).then(|| self.whole(&image, not_asked));
+        let whole = (detail == Detail::Full).then(|| self.whole(&image, not_asked));
         Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
     }
 
-    /// Closes it.
-    pub async fn close(self, screen: &Screen) -> Result<(), Failure> {
+    async fn close(self, screen: &Screen) -> Result<(), Failure> {
         Yrcx::close(self.link, screen).await
     }
+}
 
+impl Poller {
     /// Gives the remote commands that are due.
-    async fn ask(&mut self, depth: Depth, image: &Image) -> Result<(), Failure> {
-        let questions = self.questions(depth, output::ALARM.is_on(image));
+    async fn ask(&mut self, detail: Detail, image: &Image) -> Result<(), Failure> {
+        let questions = self.questions(detail, output::ALARM.is_on(image));
         if !self.link.is_shared() {
             for question in questions {
                 self.put(question).await?;
@@ -106,8 +107,8 @@ impl Eye {
         self.put(questions[self.next % questions.len()]).await
     }
 
-    fn questions(&self, depth: Depth, has_alarm: bool) -> Vec<Command> {
-        let is_whole = depth == Depth::Whole;
+    fn questions(&self, detail: Detail, has_alarm: bool) -> Vec<Command> {
+        let is_whole = detail == Detail::Full;
         let wanted = [
             (Command::PositionMm, true),
             (Command::AlarmHistory, has_alarm && self.told.alarm.is_none()),
@@ -127,11 +128,8 @@ impl Eye {
             _ => draft.build()?,
         };
         // A refusal is no answer here: a robot that does not know its origin refuses to tell its position.
-        let values = match self.link.try_run(&order).await?.answer {
-            Answer::Done(values) | Answer::Running(values) => Some(values),
-            Answer::Refused { .. } => None,
-        };
-        let values = values.as_ref();
+        let done = self.link.try_ask(&order).await?.ok();
+        let values = done.as_ref().map(|done| &done.values);
         match command {
             Command::PositionMm => {
                 let position = values.and_then(|values| Position::of(values, Some(Unit::Mm)).position_mm);
@@ -156,7 +154,7 @@ impl Eye {
         }
         banks.push(bank("outputs", Side::Output, image));
         let torque_unit = self.told.torque_percent.map(|_| "% of max");
-        Whole { lamps: lamps(image), axes: self.axes(), torque_unit, banks, not_asked }
+        Whole { indicators: indicators(image), axes: self.axes(), torque_unit, banks, not_asked }
     }
 
     fn axes(&self) -> Vec<Axis> {
@@ -183,28 +181,28 @@ fn alarm(values: &Values) -> Option<Alarm> {
     Some(Alarm { code: code?, text, remedy: remedies.join("; ") })
 }
 
-fn lamps(image: &Image) -> Vec<Lamp> {
+fn indicators(image: &Image) -> Vec<Indicator> {
     let is_on = |signal: Signal| signal.is_on(image);
     vec![
-        Lamp::new("auto", is_on(output::AUTO_MODE), Tone::Good),
-        Lamp::new("servo", is_on(output::SERVO_ON), Tone::Good),
-        Lamp::new("program", is_on(output::PROGRAM_RUNNING), Tone::Good),
-        Lamp::new("sequence", is_on(output::SEQUENCE_RUNNING), Tone::Good),
-        Lamp::should("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
-        Lamp::new("emergency", is_on(output::EMERGENCY_STOP), Tone::Bad),
-        Lamp::new("alarm", is_on(output::ALARM), Tone::Bad),
-        Lamp::new("warning", is_on(output::WARNING), Tone::Warning),
-        Lamp::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
-        Lamp::should("MP ready", is_on(output::MP_READY), Tone::Warning),
-        Lamp::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
-        Lamp::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
+        Indicator::new("auto", is_on(output::AUTO_MODE), Tone::Good),
+        Indicator::new("servo", is_on(output::SERVO_ON), Tone::Good),
+        Indicator::new("program", is_on(output::PROGRAM_RUNNING), Tone::Good),
+        Indicator::new("sequence", is_on(output::SEQUENCE_RUNNING), Tone::Good),
+        Indicator::should("origin", is_on(output::ORIGIN_COMPLETE), Tone::Warning),
+        Indicator::new("emergency", is_on(output::EMERGENCY_STOP), Tone::Bad),
+        Indicator::new("alarm", is_on(output::ALARM), Tone::Bad),
+        Indicator::new("warning", is_on(output::WARNING), Tone::Warning),
+        Indicator::should("CPU OK", is_on(output::CPU_OK), Tone::Bad),
+        Indicator::should("MP ready", is_on(output::MP_READY), Tone::Warning),
+        Indicator::new("at start", is_on(output::PROGRAM_RESET), Tone::Plain),
+        Indicator::new("command", Status::from_word(image.0[0]) == Status::Running, Tone::Good),
     ]
 }
 
 fn bank(name: &'static str, side: Side, image: &Image) -> Bank {
     // The numbers are octal: 20, 30, 40 and 50, and 0 to 7 from each.
     let starts = (0..GROUPS).map(|group| FIRST + 10 * group);
-    let groups = starts.map(|start| Eight {
+    let groups = starts.map(|start| SignalByte {
         label: format!("{}{start}", side.name()),
         signals: std::array::from_fn(|bit| {
             let bit = u16::try_from(bit).unwrap_or_default();

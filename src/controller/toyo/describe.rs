@@ -3,6 +3,9 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::errors;
 use super::field::{Field, FieldError, Form, Value};
 use super::layout::{Layout, LayoutError};
@@ -24,17 +27,18 @@ pub struct Description {
 }
 
 /// A piece of a line.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// In characters from the start of the line, from 1.
+    /// Of its first character, from 1.
     pub column: usize,
     /// Characters.
     pub width: usize,
-    /// In snake case.
+    /// What it is called.
     pub name: &'static str,
     /// As it stands there.
     pub raw: String,
-    /// What it says: `12.50 mm`, `absolute`.
+    /// What it says.
     pub meaning: String,
     /// What it is.
     pub about: &'static str,

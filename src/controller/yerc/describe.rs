@@ -2,6 +2,9 @@
 
 mod data;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use super::Model;
 use super::payload::PositionKind;
 use super::request::Request;
@@ -23,15 +26,17 @@ pub struct Description {
 }
 
 /// A piece of a frame.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "FieldRow")]
 pub struct FieldNote {
     /// From the start of the frame.
     pub offset: usize,
     /// Bytes.
     pub size: usize,
-    /// In words.
+    /// What it is called.
     pub name: String,
-    /// The bytes as they travel, in hexadecimal.
+    /// The bytes as they travel.
+    #[serde(rename = "raw_hex")]
     pub raw: String,
     /// What they say.
     pub meaning: String,

@@ -1,5 +1,8 @@
 //! Explains any words, field by field, from the table. Never fails: what is wrong is said beside the fields.
 
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
+
 use super::alarm::Alarm;
 use super::answer::{Status, is_stopped_jog};
 use super::codec::{self, Layout, Side};
@@ -21,19 +24,33 @@ pub struct Description {
     pub problems: Vec<String>,
 }
 
-/// A field of the words.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A field of words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// The word and, of a part of a word, the bits: `WI1 bits 2-1`, `WO4-WO5`.
+    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
     pub place: String,
-    /// For programs; empty for the code, the status and what is not used.
+    /// Its name for programs; null for the code, the status and what is not used.
+    #[serde(serialize_with = "key_name")]
+    #[schemars(with = "Option<String>")]
     pub key: Option<Key>,
-    /// For people.
+    /// What it is called.
     pub name: String,
     /// As it travels.
     pub raw: String,
-    /// What it says, with its unit.
+    /// What it says.
     pub meaning: String,
+}
+
+impl FieldNote {
+    /// A part of a message that is no field of a command.
+    pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
+        Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
+    }
+}
+
+fn key_name<S: Serializer>(key: &Option<Key>, serializer: S) -> Result<S::Ok, S::Error> {
+    key.map(Key::name).serialize(serializer)
 }
 
 /// Explains WI0 to WI15.

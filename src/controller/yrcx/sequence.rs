@@ -1,5 +1,6 @@
 //! Carries out procedures: edges of dedicated inputs keep their distance, and outputs confirm them (chapter 1, section 3).
 
+use std::fmt;
 use std::time::Duration;
 
 use super::image::{Image, Output};
@@ -43,6 +44,24 @@ pub enum Outcome {
         /// Whether an input may have been switched before.
         begun: bool,
     },
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let state = |on: bool| if on { "on" } else { "off" };
+        match *self {
+            Self::Done => f.write_str("done"),
+            Self::NotPossible { signal, on, begun, .. } => {
+                let after = if begun { ", after inputs were switched" } else { "; nothing was switched" };
+                write!(f, "{} is not {}{after}", signal.named(), state(on))
+            }
+            Self::TimedOut { signal, on } => write!(f, "{} did not go {} in time", signal.named(), state(on)),
+            Self::Broken { signal } => write!(f, "{} came on meanwhile", signal.named()),
+            Self::NoImage => f.write_str("the controller shows nothing"),
+            Self::LinkLost { begun: false } => f.write_str("the link went down before anything was switched"),
+            Self::LinkLost { begun: true } => f.write_str("the link went down in the middle"),
+        }
+    }
 }
 
 /// Carries out a procedure.

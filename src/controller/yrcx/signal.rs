@@ -351,6 +351,11 @@ impl Signal {
         DEDICATED.iter().find(|dedicated| dedicated.signal == self)
     }
 
+    /// `servo-on (SI(01))`; a general-purpose signal has but its number.
+    pub fn named(self) -> String {
+        self.dedicated().map_or_else(|| self.to_string(), |dedicated| format!("{} ({self})", dedicated.name))
+    }
+
     /// Its name, or `SI(20)`.
     pub fn name(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| dedicated.name.to_owned())

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::can::{BusState, PortError};
 use super::wire::{Mac, general};
+use crate::image::view::BusError;
 
 /// Why something does not come about, or ended.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -99,6 +100,11 @@ pub enum Error {
     /// It is closed.
     #[error("it is closed")]
     Ended,
+}
+
+impl BusError for Error {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
 }
 
 /// What silence means.

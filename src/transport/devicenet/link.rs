@@ -11,24 +11,17 @@ use tokio::time::{Instant, sleep_until};
 use super::can::PortError;
 use super::error::Error;
 use super::network::{Connection, Network};
-use super::scanner::State;
+use super::scanner::{Details, State, Statistics, View, Views};
 use super::settings::{Purpose, Settings};
 use super::wire::{Answer, Mac, Request, class, connection};
+use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
 /// Packet rates after which a slave lets go of its outputs.
 const WATCHDOG: u32 = 4;
 
 /// A slave that is polled.
-#[derive(Debug)]
-pub struct Polled {
-    connection: Connection,
-    size: usize,
-    /// The opening that is known of.
-    generation: u32,
-    /// The change that has not been taken yet.
-    pending: Option<u64>,
-}
+pub type Polled = Cyclic<Connection>;
 
 impl Polled {
     /// Opens it.
@@ -37,66 +30,35 @@ impl Polled {
     /// When the slave does not answer, refuses, or has images of other sizes.
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
-        let view = connection.view();
-        let size = view.size.ok_or_else(|| Error::Settings("the connection is for messages".to_owned()))?;
-        Ok(Self { connection, size, generation: view.generation, pending: None })
-    }
-
-    async fn wait(&mut self, known: Known<'_>) -> Event {
-        loop {
-            let view = self.connection.view();
-            let is_open = view.state == State::Open;
-            if known.is_up && !(is_open && view.generation == self.generation) {
-                self.pending = None;
-                let outputs = Outputs::ReleasedWithin(view.rate.unwrap_or_default() * WATCHDOG);
-                let error = view.error.unwrap_or(Error::Outdated);
-                let advice = advice(&error);
-                return Event::Lost(LinkError::Lost { cause: Cause { advice, ..Cause::new(error) }, outputs });
-            }
-            if !known.is_up && is_open {
-                self.generation = view.generation;
-                return Event::Reopened;
-            }
-            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
-                self.pending = None;
-                return Event::Sent;
-            }
-            let input = view.input.filter(|input| input.generation == self.generation);
-            if let Some(input) = input.filter(|input| known.is_news(&input.image)) {
-                return Event::Image(input.image);
-            }
-            self.connection.changed().await;
-        }
+        let size = connection.view().details.size;
+        let size = size.ok_or_else(|| Error::Settings("the connection is for messages".to_owned()))?;
+        Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
 }
 
-impl ImageConnection for Polled {
-    fn sizes(&self) -> Sizes {
-        Sizes { output: self.size, input: self.size }
+impl Bus for Connection {
+    type Error = Error;
+    type Statistics = Statistics;
+    type Details = Details;
+
+    fn views(&mut self) -> &mut Views {
+        &mut self.views
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // What was to be seen before is replaced, whatever becomes of this.
-        self.pending = None;
-        match self.connection.set_image(self.generation, image) {
-            Ok(change) => {
-                self.pending = Some(change);
-                Ok(())
-            }
-            // The loss is told by `next`.
-            Err(Error::Outdated | Error::Ended) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+    fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Error> {
+        Self::set_image(self, generation, image)
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn loss(&self, view: View) -> (Cause, Outputs) {
+        let outputs = Outputs::ReleasedWithin(view.details.rate.unwrap_or_default() * WATCHDOG);
+        let error = view.trouble.unwrap_or(Error::Outdated);
+        (Cause { advice: advice(&error), ..Cause::new(error) }, outputs)
     }
 
-    fn traffic(&self) -> Option<Traffic> {
-        let view = self.connection.view();
+    fn traffic(&self) -> Traffic {
+        let view = self.view();
         let counted = view.statistics;
-        let (health, _) = self.connection.network().health();
+        let (health, _) = self.network().health();
         let odd = vec![
             (counted.missed, "not answered in time"),
             (counted.wrong, "spoilt"),
@@ -105,12 +67,12 @@ impl ImageConnection for Polled {
             (health.overruns, "lost in the adapter"),
             (health.rejected, "not taken by the adapter"),
         ];
-        let intervals = view.rate.map(|rate| (rate, rate));
-        Some(Traffic { sent: counted.sent, received: counted.received, intervals, odd })
+        let intervals = view.details.rate.map(|rate| (rate, rate));
+        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    fn close(self) -> LocalBoxFuture<'static, Result<(), Error>> {
+        Self::close(self).boxed_local()
     }
 }
 
@@ -173,20 +135,8 @@ impl ImageConnection for Listened {
         Sizes { output: 0, input: self.size }
     }
 
-    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
-        Err(LinkError::Settings(Cause::new("a link that only listens shows nothing")))
-    }
-
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(known).boxed_local()
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        None
-    }
-
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        async { Ok(()) }.boxed_local()
     }
 }
 
@@ -223,14 +173,14 @@ impl Reading {
         loop {
             let view = self.connection.view();
             if known.is_up && view.state != State::Open {
-                let error = view.error.unwrap_or(Error::Outdated);
+                let error = view.trouble.unwrap_or(Error::Outdated);
                 return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
             }
             if !known.is_up {
                 if view.state == State::Open {
                     return Event::Reopened;
                 }
-                self.connection.changed().await;
+                self.connection.views.changed().await;
                 continue;
             }
             if known.is_news(&self.image) {
@@ -255,16 +205,8 @@ impl ImageConnection for Reading {
         Sizes { output: 0, input: self.image.len() }
     }
 
-    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
-        Err(LinkError::Settings(Cause::new("a link that only reads shows nothing")))
-    }
-
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(known).boxed_local()
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        None
     }
 
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {

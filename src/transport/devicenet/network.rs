@@ -19,7 +19,7 @@ use super::can::pipe::Pipe;
 use super::can::{Bitrate, CanPort, Frame, Health, Heard, PortError, SlcanPort};
 use super::error::Error;
 use super::monitor::{Monitor, Sight};
-use super::scanner::{Found, Identity, Reply, Scanner, State, Token, View};
+use super::scanner::{Found, Identity, Reply, Scanner, Token, View, Views};
 use super::settings::Settings;
 use super::wire::{Answer, Mac, Request};
 use crate::image::tap::Passed;
@@ -203,19 +203,14 @@ impl Network {
             let scanner = state.scanner.as_mut().ok_or_else(|| Error::Settings(ONLY_LISTENS.to_owned()))?;
             scanner.open(number, settings)?;
             let view = scanner.view(number).cloned().ok_or(Error::Ended)?;
-            let (sender, views) = watch::channel(view);
+            let (sender, views) = Views::new(view);
             state.views.insert(number, sender);
             views
         };
         inner.wake.notify_one();
         let mut connection = Connection { network: self.clone(), number, views };
-        // What does not come about is released first.
-        let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
-        match (view.state, view.error) {
-            (State::Closed, Some(error)) => Err(error),
-            (State::Closed, None) => Err(Error::Ended),
-            _ => Ok(connection),
-        }
+        connection.views.opened().await?;
+        Ok(connection)
     }
 
     /// Looks who is on the bus, without owning anybody.
@@ -287,31 +282,18 @@ const ONLY_LISTENS: &str = "the adapter only listens";
 pub struct Connection {
     network: Network,
     number: u64,
-    views: watch::Receiver<View>,
+    pub(super) views: Views,
 }
 
 impl Connection {
     /// What there is to see now.
     pub fn view(&self) -> View {
-        self.views.borrow().clone()
-    }
-
-    /// Waits for something new. After the view that says that the connection is closed nothing comes any more.
-    pub async fn changed(&mut self) -> View {
-        if self.views.changed().await.is_err() {
-            return std::future::pending().await;
-        }
-        self.views.borrow_and_update().clone()
+        self.views.now()
     }
 
     /// Waits until the view is so. It never is again once the connection is closed.
-    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
-        loop {
-            let view = self.views.borrow_and_update().clone();
-            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
-                return view;
-            }
-        }
+    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
+        self.views.until(condition).await
     }
 
     /// Shows this image from the next poll on; see [`Scanner::set_image`].
@@ -338,10 +320,9 @@ impl Connection {
 
     /// Closes it: the slave's connections are released. Says if the slave did not confirm that.
     pub async fn close(mut self) -> Result<(), Error> {
-        let before = self.view().error;
+        let before = self.view().trouble;
         self.with(|scanner, now| scanner.close(now, self.number));
-        let view = self.until(|view| view.state == State::Closed).await;
-        view.error.filter(|error| before.as_ref() != Some(error)).map_or(Ok(()), Err)
+        self.views.closed(before.as_ref()).await
     }
 
     /// The adapter that it goes over.

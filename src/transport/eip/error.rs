@@ -7,6 +7,8 @@ use thiserror::Error;
 
 use super::status;
 use super::wire::{Status, WireError};
+use crate::image::view::BusError;
+use crate::plain;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -115,13 +117,18 @@ pub enum EipError {
     ),
 }
 
+impl BusError for EipError {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
+}
+
 impl EipError {
     pub(super) fn unreachable(error: &io::Error) -> Self {
-        Self::Unreachable { kind: error.kind(), text: plain(error) }
+        Self::Unreachable { kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
     pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
-        Self::Local { what, kind: error.kind(), text: plain(error) }
+        Self::Local { what, kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
     /// What the code in it means, and what to do about it.
@@ -132,10 +139,4 @@ impl EipError {
             _ => None,
         }
     }
-}
-
-/// An error of the system without its number, which tells a technician nothing.
-fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or_default().to_lowercase()
 }

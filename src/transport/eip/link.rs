@@ -9,24 +9,23 @@ use futures_util::future::LocalBoxFuture;
 
 use super::client::Client;
 use super::error::EipError;
-use super::originator::State;
+use super::originator::{Details, Statistics, View, Views};
 use super::reader::{Assembly, Reader};
 use super::scanner::{Connection, Scanner};
 use super::settings::{Role, Settings};
 use super::tap::Tap;
+use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
 /// A class 1 connection.
+pub type Class1 = Cyclic<Device>;
+
+/// The device of one.
 #[derive(Debug)]
-pub struct Class1 {
+pub struct Device {
     connection: Connection,
-    sizes: Sizes,
-    /// What the device does with its outputs once it is not heard any more.
+    /// What it does with its outputs once it does not hear this end any more.
     outputs: Outputs,
-    /// The opening that is known of.
-    generation: u32,
-    /// The change that has not left yet.
-    pending: Option<u64>,
 }
 
 impl Class1 {
@@ -41,64 +40,31 @@ impl Class1 {
             Role::InputOnly | Role::ListenOnly => Outputs::Never,
         };
         let connection = Scanner::shared()?.open(target, settings, tap).await?;
-        let generation = connection.view().generation;
-        Ok(Self { connection, sizes, outputs, generation, pending: None })
-    }
-
-    async fn wait(&mut self, known: Known<'_>) -> Event {
-        loop {
-            let view = self.connection.view();
-            let is_open = view.state == State::Open;
-            if known.is_up && !(is_open && view.generation == self.generation) {
-                self.pending = None;
-                let text = view.trouble.map_or_else(|| "it was opened anew".to_owned(), |error| error.to_string());
-                return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs: self.outputs });
-            }
-            if !known.is_up && is_open {
-                self.generation = view.generation;
-                return Event::Reopened;
-            }
-            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
-                self.pending = None;
-                return Event::Sent;
-            }
-            let input = view.input.filter(|input| input.generation == self.generation);
-            if let Some(input) = input.filter(|input| known.is_news(&input.image)) {
-                return Event::Image(input.image);
-            }
-            self.connection.changed().await;
-        }
+        Ok(Self::over(Device { connection, outputs }, sizes))
     }
 }
 
-impl ImageConnection for Class1 {
-    fn sizes(&self) -> Sizes {
-        self.sizes
+impl Bus for Device {
+    type Error = EipError;
+    type Statistics = Statistics;
+    type Details = Details;
+
+    fn views(&mut self) -> &mut Views {
+        &mut self.connection.views
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // What was to be seen before is replaced, whatever becomes of this.
-        self.pending = None;
-        let shown = self.connection.set_image(self.generation, image).and_then(|change| {
-            // From the first image after an opening on the device may act upon it.
-            if self.connection.view().run { Ok(change) } else { self.connection.set_run(self.generation, true) }
-        });
-        match shown {
-            Ok(change) => {
-                self.pending = Some(change);
-                Ok(())
-            }
-            // The loss is told by `next`.
-            Err(EipError::Outdated | EipError::Ended) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+    fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
+        let change = self.connection.set_image(generation, image)?;
+        // From the first image after an opening on the device may act upon it.
+        let runs = self.connection.view().details.run;
+        if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn loss(&self, view: View) -> (Cause, Outputs) {
+        (Cause::of_loss(view.trouble), self.outputs)
     }
 
-    fn traffic(&self) -> Option<Traffic> {
+    fn traffic(&self) -> Traffic {
         let view = self.connection.view();
         let counted = view.statistics;
         let odd = vec![
@@ -108,11 +74,11 @@ impl ImageConnection for Class1 {
             (counted.misfit, "of a wrong size"),
             (counted.skipped, "not sent in time"),
         ];
-        Some(Traffic { sent: counted.sent, received: counted.received, intervals: view.intervals, odd })
+        Traffic { sent: counted.sent, received: counted.received, intervals: view.details.intervals, odd }
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    fn close(self) -> LocalBoxFuture<'static, Result<(), EipError>> {
+        self.connection.close().boxed_local()
     }
 }
 
@@ -153,16 +119,8 @@ impl ImageConnection for Reading {
         Sizes { output: 0, input: self.size }
     }
 
-    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
-        Err(LinkError::Settings(Cause::new("a link that only reads shows nothing")))
-    }
-
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(known).boxed_local()
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        None
     }
 
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {

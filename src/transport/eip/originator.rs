@@ -22,7 +22,7 @@ mod numbers;
 mod view;
 
 pub use numbers::Numbers;
-pub use view::{Input, State, Statistics, View};
+pub use view::{Details, Input, State, Statistics, View, Views};
 
 const OPEN: Token = Token(0);
 const CLOSE: Token = Token(1);
@@ -118,16 +118,6 @@ impl Originator {
     /// If no connection can be as `settings` say.
     pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
         settings.check()?;
-        let view = View {
-            state: State::Opening,
-            generation: 0,
-            input: None,
-            sent: 0,
-            run: false,
-            trouble: None,
-            intervals: None,
-            statistics: Statistics::default(),
-        };
         Ok(Self {
             session: Session::new(settings.timeout),
             image: settings.resting.clone(),
@@ -143,7 +133,7 @@ impl Originator {
             is_over: false,
             tries: 0,
             before: Statistics::default(),
-            view,
+            view: View::new(Details::default()),
             has_changed: true,
             actions: VecDeque::new(),
         })
@@ -180,7 +170,7 @@ impl Originator {
     /// # Errors
     /// If the connection is not open in this generation, or the image has another size.
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
-        self.is_current(generation)?;
+        self.view.check(generation)?;
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
             return Err(EipError::Impossible(format!("the output image has {size} bytes, not {len}")));
@@ -195,8 +185,8 @@ impl Originator {
     /// # Errors
     /// If the connection is not open in this generation.
     pub fn set_run(&mut self, generation: u32, run: bool) -> Result<u64, EipError> {
-        self.is_current(generation)?;
-        self.view.run = run;
+        self.view.check(generation)?;
+        self.view.details.run = run;
         self.revision += 1;
         Ok(self.revision)
     }
@@ -218,7 +208,7 @@ impl Originator {
         self.is_over = true;
         match self.phase {
             Phase::Open => {
-                self.view.run = false;
+                self.view.details.run = false;
                 self.phase = Phase::Parting(self.io.as_ref().map_or(0, |io| io.producer.sent));
                 self.show(State::Closing);
             }
@@ -265,7 +255,6 @@ impl Originator {
                 let before = self.view.input.as_ref().filter(|input| *input.image == *image);
                 self.view.input = Some(Input {
                     image: before.map_or_else(|| image.into(), |input| Arc::clone(&input.image)),
-                    sequence: datagram.sequence,
                     at: now,
                     generation: self.view.generation,
                 });
@@ -330,7 +319,8 @@ impl Originator {
         if now < io.producer.due() {
             return false;
         }
-        let header = (self.settings.role == Role::ExclusiveOwner).then_some(if self.view.run { RUN } else { 0 });
+        let header =
+            (self.settings.role == Role::ExclusiveOwner).then_some(if self.view.details.run { RUN } else { 0 });
         let datagram = io.producer.produce(now, header, &self.image);
         self.actions.push_back(Action::Datagram(io.destination, datagram));
         self.has_changed |= self.view.sent != self.revision;
@@ -421,7 +411,7 @@ impl Originator {
         });
         self.phase = Phase::Open;
         self.view.generation += 1;
-        self.view.intervals = Some((to, from));
+        self.view.details.intervals = Some((to, from));
         self.view.trouble = None;
         self.show(State::Open);
         Ok(())
@@ -434,7 +424,7 @@ impl Originator {
         match self.phase {
             Phase::Open => {
                 self.image.clone_from(&self.settings.resting);
-                self.view.run = false;
+                self.view.details.run = false;
                 self.show(State::Lost);
                 // The device may only have lost its way to us: a proper close frees it for the next opening.
                 self.ask_close(true);
@@ -493,13 +483,5 @@ impl Originator {
     fn show(&mut self, state: State) {
         self.view.state = state;
         self.has_changed = true;
-    }
-
-    fn is_current(&self, generation: u32) -> Result<(), EipError> {
-        match self.view.state {
-            State::Open if generation == self.view.generation => Ok(()),
-            State::Closing | State::Closed => Err(EipError::Ended),
-            _ => Err(EipError::Outdated),
-        }
     }
 }

@@ -13,7 +13,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 use super::engine::{Alarm, Engine, Prepared, spawn};
 use super::error::EipError;
 use super::explicit::{Answer, Message};
-use super::originator::{Action, Numbers, Originator, State, View};
+use super::originator::{Action, Numbers, Originator, View, Views};
 use super::session::{Ask, Token};
 use super::settings::Settings;
 use super::tap::Tap;
@@ -137,18 +137,14 @@ impl Scanner {
             return Err(EipError::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
-        let (view, views) = watch::channel(core.view());
+        let (view, views) = Views::new(core.view());
         let slot = Slot { core, tap, line: None, here: *inner.local.ip(), view, answers: HashMap::new() };
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, slot);
         inner.with(id, |_, _| ());
         let mut connection = Connection { owner: Arc::clone(&self.owner), id, views, tokens: FIRST_TOKEN };
-        let view = connection.until(|view| view.state != State::Opening).await;
-        match (view.state, view.trouble) {
-            (State::Closed, Some(trouble)) => Err(trouble),
-            (State::Closed, None) => Err(EipError::Ended),
-            _ => Ok(connection),
-        }
+        connection.views.opened().await?;
+        Ok(connection)
     }
 }
 
@@ -157,14 +153,14 @@ impl Scanner {
 pub struct Connection {
     owner: Arc<Owner>,
     id: u64,
-    views: watch::Receiver<View>,
+    pub(super) views: Views,
     tokens: u64,
 }
 
 impl Connection {
     /// What there is to see now.
     pub fn view(&self) -> View {
-        self.views.borrow().clone()
+        self.views.now()
     }
 
     /// The moment, on the clock of the view's images.
@@ -172,27 +168,9 @@ impl Connection {
         self.owner.inner.now()
     }
 
-    /// Waits for something new: an image, or a change of state. After the view that says that the connection is closed
-    /// nothing comes any more.
-    pub async fn changed(&mut self) -> View {
-        // The other end goes with the slot, when all has ended; then nothing changes any more.
-        if self.views.changed().await.is_err() {
-            return std::future::pending().await;
-        }
-        self.views.borrow_and_update().clone()
-    }
-
     /// Waits until the view is so. It never is again once the connection is closed.
-    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
-        loop {
-            let view = self.views.borrow_and_update().clone();
-            if condition(&view) || view.state == State::Closed {
-                return view;
-            }
-            if self.views.changed().await.is_err() {
-                return self.view();
-            }
-        }
+    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
+        self.views.until(condition).await
     }
 
     /// Sends this image from the next interval on; see [`Originator::set_image`].
@@ -227,8 +205,7 @@ impl Connection {
             Ok(())
         })
         .or_else(|trouble| if trouble == EipError::Ended { Ok(()) } else { Err(trouble) })?;
-        let view = self.until(|view| view.state == State::Closed).await;
-        view.trouble.filter(|trouble| before.as_ref() != Some(trouble)).map_or(Ok(()), Err)
+        self.views.closed(before.as_ref()).await
     }
 
     fn with<T>(&self, change: impl FnOnce(&mut Originator) -> Result<T, EipError>) -> Result<T, EipError> {

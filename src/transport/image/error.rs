@@ -71,6 +71,11 @@ impl Cause {
         Self { text: text.to_string(), ..Self::default() }
     }
 
+    /// Why a connection is lost, or that it is another one by now.
+    pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
+        trouble.map_or_else(|| Self::new("it was opened anew"), Self::new)
+    }
+
     /// With what to set or to check.
     #[must_use]
     pub fn advice(self, advice: impl Into<Cow<'static, str>>) -> Self {

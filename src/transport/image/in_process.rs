@@ -7,7 +7,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use tokio::time::{Instant, sleep_until};
 
-use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes};
 
 /// The other end of a connection in this process, such as a simulated controller.
 pub trait ImagePeer: fmt::Debug {
@@ -89,10 +89,6 @@ impl ImageConnection for InProcess {
 
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(known).boxed_local()
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        None
     }
 
     fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {

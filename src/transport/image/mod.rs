@@ -5,16 +5,19 @@
 //! an image to be seen shows it and waits for [`Event::Sent`]. After a loss the peer is shown what the connection rests
 //! at until something is shown again: nothing that was meant for the time before happens a second time.
 //!
-//! Each fieldbus implements [`ImageConnection`], with [`LinkError`] for whatever its devices say. One implementation is
-//! here: [`InProcess`], whose other end is in this process, such as a simulated controller.
+//! Each fieldbus implements [`cyclic::Bus`] for a connection that commands, and [`ImageConnection`] for one that only
+//! looks, with [`LinkError`] for whatever its devices say. [`InProcess`] is a connection whose other end is in this process,
+//! such as a simulated controller.
 //!
 //! A link may be another process's, which lets several have it: see [`session`](super::session).
 
+pub mod cyclic;
 mod error;
 mod in_process;
 pub mod tap;
 #[cfg(test)]
 mod tests;
+pub mod view;
 
 use std::fmt;
 use std::sync::Arc;
@@ -55,19 +58,25 @@ pub trait ImageConnection: fmt::Debug {
     /// nothing is kept for later.
     ///
     /// # Errors
-    /// When the image does not have the size of the connection, or nothing can be shown at all. A loss is none: `next`
-    /// tells it.
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError>;
+    /// When the image does not have the size of the connection, or nothing can be shown at all, as where the connection
+    /// only looks. A loss is none: `next` tells it.
+    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
+        Err(LinkError::Settings(Cause::new("a link that only reads or listens shows nothing")))
+    }
 
     /// Waits for what is new to whoever knows this much: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or
     /// [`Event::Reopened`]. The future may be dropped.
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event>;
 
-    /// What was counted; `None` for what has no network.
-    fn traffic(&self) -> Option<Traffic>;
+    /// What was counted; `None` for what has no cycle of its own.
+    fn traffic(&self) -> Option<Traffic> {
+        None
+    }
 
     /// Ends it properly.
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>>;
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
+        std::future::ready(Ok(())).boxed_local()
+    }
 }
 
 /// Bytes of images.

@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 use super::error::ProfibusError;
-use super::master::{Master, State, View};
+use super::master::{Master, State, View, Views};
 use super::port::Port;
 use super::settings::Settings;
 use super::survey::{Found, Survey};
 use super::wire::{Piece, Stream};
+use crate::plain;
 
 /// How long a port is waited for at once, so that a wish to end is heard.
 const SLICE: Duration = Duration::from_millis(10);
@@ -29,7 +30,7 @@ pub type Tap = Box<dyn Fn(&[u8]) + Send>;
 #[derive(Debug)]
 pub struct Connection {
     shared: Arc<Shared>,
-    views: watch::Receiver<View>,
+    pub(super) views: Views,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -49,7 +50,7 @@ impl Connection {
     pub async fn open(settings: Settings, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let master = Master::new(Duration::ZERO, settings)?;
         let port = opener()?;
-        let (view, views) = watch::channel(master.view());
+        let (view, views) = Views::new(master.view());
         let shared = Arc::new(Shared {
             master: Mutex::new(master),
             view,
@@ -63,23 +64,13 @@ impl Connection {
         let thread =
             thread.map_err(|error| ProfibusError::Port { port: "thread".to_owned(), text: error.to_string() })?;
         let mut connection = Self { shared, views, thread: Some(thread) };
-        let view = connection.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
-        match (view.state, view.error) {
-            (State::Closed, error) => Err(error.unwrap_or(ProfibusError::Ended)),
-            _ => Ok(connection),
-        }
+        connection.views.opened().await?;
+        Ok(connection)
     }
 
     /// What there is to see now.
     pub fn view(&self) -> View {
         self.shared.master().view()
-    }
-
-    /// Waits for something new: an image, or a change of state.
-    pub async fn changed(&mut self) {
-        if self.views.changed().await.is_err() {
-            std::future::pending::<()>().await;
-        }
     }
 
     /// Sends this image from the next cycle on; see [`Master::set_image`].
@@ -94,17 +85,7 @@ impl Connection {
     pub async fn close(mut self) -> Result<(), ProfibusError> {
         let now = self.shared.start.elapsed();
         self.shared.master().close(now);
-        let view = self.until(|view| view.state == State::Closed).await;
-        view.error.map_or(Ok(()), Err)
-    }
-
-    async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
-        loop {
-            let view = self.views.borrow_and_update().clone();
-            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
-                return self.view();
-            }
-        }
+        self.views.closed(None).await
     }
 }
 
@@ -231,11 +212,6 @@ impl Record {
             }
         }
     }
-}
-
-/// An error of the system without its number.
-pub(super) fn plain(error: &io::Error) -> String {
-    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }
 
 /// Asks stations who they are; on a thread that may block.

@@ -5,6 +5,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::wire::{Diagnosis, Status};
+use crate::image::view::BusError;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -184,6 +185,11 @@ pub enum ProfibusError {
     /// The connection was closed here.
     #[error("the connection is closed")]
     Ended,
+}
+
+impl BusError for ProfibusError {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
 }
 
 /// What came while an answer was waited for.

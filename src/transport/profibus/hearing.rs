@@ -8,9 +8,10 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tokio::time::timeout;
 
-use super::driver::{Opener, Record, Tap, plain};
+use super::driver::{Opener, Record, Tap};
 use super::error::ProfibusError;
 use super::listener::{Heard, Listener};
+use crate::plain;
 
 /// How long a port is waited for at once, so that the wish to end is heard.
 const SLICE: Duration = Duration::from_millis(10);

@@ -9,8 +9,9 @@ use futures_util::future::LocalBoxFuture;
 use super::driver::{Connection, Opener};
 use super::error::ProfibusError;
 use super::hearing::Hearing;
-use super::master::State;
+use super::master::{Details, Statistics, View, Views};
 use super::settings::Settings;
+use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::{Passed, Tap};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
@@ -37,16 +38,13 @@ impl Swapped {
 }
 
 /// A link to a slave that is ours.
+pub type Master = Cyclic<Slave>;
+
+/// The slave of one.
 #[derive(Debug)]
-pub struct Master {
+pub struct Slave {
     connection: Connection,
-    sizes: Sizes,
     swapped: Swapped,
-    watchdog: Duration,
-    /// The opening that is known of.
-    generation: u32,
-    /// The change that has not left yet.
-    pending: Option<u64>,
 }
 
 impl Master {
@@ -63,68 +61,37 @@ impl Master {
         swapped.turn(&mut settings.resting);
         let sizes = Sizes { output: settings.output_size, input: settings.input_size };
         let connection = Connection::open(settings, opener, record(tap)).await?;
-        let view = connection.view();
-        let (generation, watchdog) = (view.generation, view.watchdog);
-        Ok(Self { connection, sizes, swapped, watchdog, generation, pending: None })
-    }
-
-    async fn wait(&mut self, known: Known<'_>) -> Event {
-        loop {
-            let view = self.connection.view();
-            let is_open = view.state == State::Open;
-            if known.is_up && !(is_open && view.generation == self.generation) {
-                self.pending = None;
-                let error = view.error.unwrap_or(ProfibusError::Outdated);
-                let outputs = match error {
-                    ProfibusError::Left { .. } => Outputs::Released,
-                    _ => Outputs::ReleasedWithin(self.watchdog),
-                };
-                let cause = LinkError::from(error).cause().clone();
-                return Event::Lost(LinkError::Lost { cause, outputs });
-            }
-            if !known.is_up && is_open {
-                self.generation = view.generation;
-                return Event::Reopened;
-            }
-            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
-                self.pending = None;
-                return Event::Sent;
-            }
-            if let Some(input) = view.input.filter(|input| input.generation == self.generation) {
-                let image = self.swapped.turned(&input.image);
-                if known.is_news(&image) {
-                    return Event::Image(image.into());
-                }
-            }
-            self.connection.changed().await;
-        }
+        Ok(Self::over(Slave { connection, swapped }, sizes))
     }
 }
 
-impl ImageConnection for Master {
-    fn sizes(&self) -> Sizes {
-        self.sizes
+impl Bus for Slave {
+    type Error = ProfibusError;
+    type Statistics = Statistics;
+    type Details = Details;
+
+    fn views(&mut self) -> &mut Views {
+        &mut self.connection.views
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // What was to be seen before is replaced, whatever becomes of this.
-        self.pending = None;
-        match self.connection.set_image(self.generation, &self.swapped.turned(image)) {
-            Ok(change) => {
-                self.pending = Some(change);
-                Ok(())
-            }
-            // The loss is told by `next`.
-            Err(ProfibusError::Outdated | ProfibusError::Ended) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+    fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
+        self.connection.set_image(generation, &self.swapped.turned(image))
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn turned(&self, image: Arc<[u8]>) -> Arc<[u8]> {
+        self.swapped.turned(&image).into()
     }
 
-    fn traffic(&self) -> Option<Traffic> {
+    fn loss(&self, view: View) -> (Cause, Outputs) {
+        let error = view.trouble.unwrap_or(ProfibusError::Outdated);
+        let outputs = match error {
+            ProfibusError::Left { .. } => Outputs::Released,
+            _ => Outputs::ReleasedWithin(view.details.watchdog),
+        };
+        (LinkError::from(error).cause().clone(), outputs)
+    }
+
+    fn traffic(&self) -> Traffic {
         let view = self.connection.view();
         let counted = view.statistics;
         let odd = vec![
@@ -133,12 +100,12 @@ impl ImageConnection for Master {
             (counted.unexpected, "unexpected"),
             (counted.skipped, "not sent in time"),
         ];
-        let intervals = Some((view.cycle, view.cycle));
-        Some(Traffic { sent: counted.sent, received: counted.received, intervals, odd })
+        let intervals = Some((view.details.cycle, view.details.cycle));
+        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    fn close(self) -> LocalBoxFuture<'static, Result<(), ProfibusError>> {
+        self.connection.close().boxed_local()
     }
 }
 
@@ -201,20 +168,8 @@ impl ImageConnection for Listening {
         Sizes { output: 0, input: self.size }
     }
 
-    fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
-        Err(LinkError::Settings(Cause::new("a link that only listens shows nothing")))
-    }
-
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(known).boxed_local()
-    }
-
-    fn traffic(&self) -> Option<Traffic> {
-        None
-    }
-
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        std::future::ready(Ok(())).boxed_local()
     }
 }
 

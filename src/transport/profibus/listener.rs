@@ -88,8 +88,8 @@ impl Listener {
 
 #[cfg(test)]
 mod tests {
-    use super::super::wire::testing::hex;
     use super::*;
+    use crate::testing::hex;
 
     #[test]
     fn both_images_are_heard_in_the_middle_of_everything_else() {

@@ -17,7 +17,6 @@ use super::wire::dcp::{self, Block, Dcp, Kind, Service, Station};
 use super::wire::frame::{Frame, id};
 use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
-use super::wire::status::Status;
 use super::wire::{Mac, Uuid};
 
 /// Over how many steps of 10 ms stations spread their answers when all are asked.
@@ -173,17 +172,9 @@ fn read(
 ) -> Result<Vec<u8>, ProfinetError> {
     let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: ROOM };
     let blocks = asked.emit(BlockType::READ, 0, &[]);
-    match exchange(socket, target, client, &blocks)? {
-        Outcome::Answer(0, blocks) => {
-            let (_, record) =
-                Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
-            Ok(record.to_vec())
-        }
-        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
-        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
-        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
-        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
-    }
+    let blocks = exchange(socket, target, client, &blocks)?.blocks(what)?;
+    let (_, record) = Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;
+    Ok(record.to_vec())
 }
 
 /// Calls, and waits for what comes of it.

@@ -10,6 +10,8 @@ use thiserror::Error;
 use super::wire::dcp;
 use super::wire::status::Status;
 use super::wire::{Mac, WireError};
+use crate::image::view::BusError;
+use crate::plain;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -198,11 +200,14 @@ pub enum ProfinetError {
     ),
 }
 
+impl BusError for ProfinetError {
+    const OUTDATED: Self = Self::Outdated;
+    const ENDED: Self = Self::Ended;
+}
+
 impl ProfinetError {
     pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
-        let text = error.to_string();
-        let text = text.split(" (os error").next().unwrap_or_default().to_lowercase();
-        Self::Local { what, kind: error.kind(), text }
+        Self::Local { what, kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
     /// The four bytes of a refusal, if it is one.

@@ -3,13 +3,14 @@
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::controller::view::State;
+use super::controller::view::{Details, Statistics, View, Views};
 use super::error::ProfinetError;
 use super::layout::Direction;
 use super::network::{Connection, Network};
 use super::settings::Settings;
+use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::Tap;
-use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use crate::image::{Cause, LinkError, Outputs, Sizes, Traffic};
 
 /// What raw Ethernet needs.
 const PRIVILEGE: &str = "run `sudo setcap cap_net_raw+ep $(command -v armctl)`, or run armctl as root";
@@ -18,15 +19,13 @@ const MODULES: &[&str] = &["layout", "gsdml"];
 const TIMES: &[&str] = &["cycle", "watchdog"];
 
 /// A connection as the IO controller of a device.
+pub type Link = Cyclic<Device>;
+
+/// The device of one.
 #[derive(Debug)]
-pub struct Link {
+pub struct Device {
     connection: Connection,
-    sizes: Sizes,
     settings: Settings,
-    /// The opening that is known of.
-    generation: u32,
-    /// The change that has not left yet.
-    pending: Option<u64>,
 }
 
 impl Link {
@@ -35,64 +34,33 @@ impl Link {
         let size = |direction| settings.layout.size(direction);
         let sizes = Sizes { output: size(Direction::Output), input: size(Direction::Input) };
         let connection = Network::shared(interface)?.open(settings.clone(), tap).await?;
-        let generation = connection.view().generation;
-        Ok(Self { connection, sizes, settings, generation, pending: None })
-    }
-
-    async fn wait(&mut self, known: Known<'_>) -> Event {
-        loop {
-            let view = self.connection.view();
-            let is_open = view.state == State::Open;
-            if known.is_up && !(is_open && view.generation == self.generation) {
-                self.pending = None;
-                let text = view.trouble.as_ref().map_or("it was opened anew".to_owned(), ToString::to_string);
-                let outputs = match view.trouble {
-                    // It hears the resting image instead.
-                    Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
-                    _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
-                };
-                return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs });
-            }
-            if !known.is_up && is_open {
-                self.generation = view.generation;
-                return Event::Reopened;
-            }
-            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
-                self.pending = None;
-                return Event::Sent;
-            }
-            if let Some(input) = view.input.filter(|input| known.is_news(&input.image)) {
-                return Event::Image(input.image);
-            }
-            self.connection.changed().await;
-        }
+        Ok(Self::over(Device { connection, settings }, sizes))
     }
 }
 
-impl ImageConnection for Link {
-    fn sizes(&self) -> Sizes {
-        self.sizes
+impl Bus for Device {
+    type Error = ProfinetError;
+    type Statistics = Statistics;
+    type Details = Details;
+
+    fn views(&mut self) -> &mut Views {
+        &mut self.connection.views
     }
 
-    fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // What was to be seen before is replaced, whatever becomes of this.
-        self.pending = None;
-        match self.connection.set_image(self.generation, image) {
-            Ok(change) => {
-                self.pending = Some(change);
-                Ok(())
-            }
-            // The loss is told by `next`.
-            Err(ProfinetError::Outdated | ProfinetError::Ended) => Ok(()),
-            Err(error) => Err(error.into()),
-        }
+    fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
+        self.connection.set_image(generation, image)
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn loss(&self, view: View) -> (Cause, Outputs) {
+        let outputs = match view.trouble {
+            // It hears the resting image instead.
+            Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
+            _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
+        };
+        (Cause::of_loss(view.trouble), outputs)
     }
 
-    fn traffic(&self) -> Option<Traffic> {
+    fn traffic(&self) -> Traffic {
         let counted = self.connection.view().statistics;
         let odd = vec![
             (counted.stale, "late or doubled"),
@@ -101,11 +69,11 @@ impl ImageConnection for Link {
             (counted.losses, "losses"),
         ];
         let intervals = Some((self.settings.cycle, self.settings.cycle));
-        Some(Traffic { sent: counted.sent, received: counted.received, intervals, odd })
+        Traffic { sent: counted.sent, received: counted.received, intervals, odd }
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
-        async move { self.connection.close().await.map_err(LinkError::from) }.boxed_local()
+    fn close(self) -> LocalBoxFuture<'static, Result<(), ProfinetError>> {
+        self.connection.close().boxed_local()
     }
 }
 

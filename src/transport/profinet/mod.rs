@@ -18,6 +18,8 @@ pub mod link;
 #[cfg(target_os = "linux")]
 pub mod network;
 pub mod settings;
+#[cfg(target_os = "linux")]
+mod sockets;
 #[cfg(test)]
 mod tests;
 pub mod wire;

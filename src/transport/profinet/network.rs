@@ -4,33 +4,25 @@
 //! for a person must not make a robot stop. It waits for sockets and clock at once, to a fraction of a millisecond.
 
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
-use std::os::unix::net::UnixStream;
+use std::net::SocketAddrV4;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use socket2::Socket;
 use tokio::sync::watch;
 
 use super::Now;
 use super::controller::numbers::Numbers;
-use super::controller::view::{State, View};
+use super::controller::view::{View, Views};
 use super::controller::{Action, Controller, Here};
 use super::error::ProfinetError;
 use super::interface::Interface;
 use super::settings::Settings;
+use super::sockets::{BUFFER, Sockets};
 use super::wire::alarm::Notification;
 use super::wire::rpc;
 use crate::image::tap::{Passed, Tap};
-
-/// Frames or datagrams taken at once before the clock is looked at.
-const AT_ONCE: usize = 64;
-/// Room for the longest datagram.
-const BUFFER: usize = 65_536;
 
 /// Holds connections over one interface. It is cheap to clone; its thread ends with the last clone and the last
 /// connection.
@@ -51,10 +43,7 @@ struct Inner {
     start: Instant,
     here: Here,
     numbers: Arc<Numbers>,
-    raw: Socket,
-    udp: UdpSocket,
-    /// A byte in it wakes the thread.
-    bell: UnixStream,
+    sockets: Sockets,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
     is_over: AtomicBool,
@@ -86,33 +75,21 @@ impl Network {
     }
 
     fn start(interface: &Interface) -> Result<Self, ProfinetError> {
-        let raw = interface.raw_socket()?;
-        interface.check()?;
-        let ip = interface.address()?;
-        let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);
-        let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
-            ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
-            _ => failed(&error),
-        })?;
-        udp.set_nonblocking(true).map_err(|error| failed(&error))?;
-        let (bell, heard) = UnixStream::pair().map_err(|error| failed(&error))?;
-        for end in [&bell, &heard] {
-            end.set_nonblocking(true).map_err(|error| failed(&error))?;
-        }
+        let (sockets, ip) = Sockets::open(interface)?;
         let inner = Arc::new(Inner {
             start: Instant::now(),
             here: Here { mac: interface.mac, ip },
             numbers: Arc::new(Numbers::random()),
-            raw,
-            udp,
-            bell,
+            sockets,
             slots: Mutex::default(),
             last: AtomicU64::new(0),
             is_over: AtomicBool::new(false),
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet".to_owned());
-        let thread = thread.spawn(move || runs.run(heard)).map_err(|error| failed(&error))?;
+        let thread = thread
+            .spawn(move || runs.run())
+            .map_err(|error| ProfinetError::local("thread of the connections", &error))?;
         Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
     }
 
@@ -123,24 +100,20 @@ impl Network {
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
         let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
-        let (view, views) = watch::channel(core.view());
+        let (view, views) = Views::new(core.view());
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, Slot { core, tap, view });
-        inner.ring();
+        inner.sockets.ring();
         let mut connection = Connection { owner: Arc::clone(&self.owner), id, views };
-        let view = connection.until(|view| view.state == State::Open).await;
-        match (view.state, view.trouble) {
-            (State::Closed, Some(error)) => Err(error),
-            (State::Closed, None) => Err(ProfinetError::Ended),
-            _ => Ok(connection),
-        }
+        connection.views.opened().await?;
+        Ok(connection)
     }
 }
 
 impl Drop for Owner {
     fn drop(&mut self) {
         self.inner.is_over.store(true, Ordering::SeqCst);
-        self.inner.ring();
+        self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has said so already.
             let _ = thread.join();
@@ -153,31 +126,18 @@ impl Drop for Owner {
 pub struct Connection {
     owner: Arc<Owner>,
     id: u64,
-    views: watch::Receiver<View>,
+    pub(super) views: Views,
 }
 
 impl Connection {
     /// What there is to see now.
     pub fn view(&self) -> View {
-        self.views.borrow().clone()
-    }
-
-    /// Waits for something new. After the view that says that the connection is closed nothing comes any more.
-    pub async fn changed(&mut self) {
-        // The other end goes with the slot, when all has ended; then nothing changes any more.
-        if self.views.changed().await.is_err() {
-            std::future::pending::<()>().await;
-        }
+        self.views.now()
     }
 
     /// Waits until the view is so, or the connection is closed.
-    pub async fn until(&mut self, mut condition: impl FnMut(&View) -> bool) -> View {
-        loop {
-            let view = self.views.borrow_and_update().clone();
-            if condition(&view) || view.state == State::Closed || self.views.changed().await.is_err() {
-                return self.view();
-            }
-        }
+    pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
+        self.views.until(condition).await
     }
 
     /// Sends this image from the next cycle on; see [`Controller::set_image`].
@@ -194,9 +154,8 @@ impl Connection {
     pub async fn close(mut self) -> Result<(), ProfinetError> {
         let before = self.view().trouble;
         self.with(Controller::close);
-        self.owner.inner.ring();
-        let view = self.until(|view| view.state == State::Closed).await;
-        view.trouble.filter(|error| before.as_ref() != Some(error)).map_or(Ok(()), Err)
+        self.owner.inner.sockets.ring();
+        self.views.closed(before.as_ref()).await
     }
 
     fn with<T>(&self, change: impl FnOnce(&mut Controller, Now) -> T) -> Option<T> {
@@ -210,7 +169,7 @@ impl Connection {
 impl Drop for Connection {
     fn drop(&mut self) {
         self.with(Controller::close);
-        self.owner.inner.ring();
+        self.owner.inner.sockets.ring();
     }
 }
 
@@ -223,34 +182,16 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Wakes the thread.
-    fn ring(&self) {
-        // Where the buffer is full it is awake.
-        let _ = (&self.bell).write(&[0]);
-    }
-
     /// Does what is due, and waits for the next moment, frame or datagram, until all has ended.
-    fn run(&self, mut bell: UnixStream) {
+    fn run(&self) {
         let mut buffer = vec![0; BUFFER];
         loop {
             let next = self.turn();
-            let wait = match next {
-                None if self.is_over.load(Ordering::SeqCst) => return,
-                None => None,
-                Some(next) => Some(next.saturating_sub(self.now())),
-            };
-            let wait = wait.map(|wait| Timespec::try_from(wait).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
-            let mut sources = [
-                PollFd::new(&self.raw, PollFlags::IN),
-                PollFd::new(&self.udp, PollFlags::IN),
-                PollFd::new(&bell, PollFlags::IN),
-            ];
-            if poll(&mut sources, wait.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
-                // Nothing else would slow it down.
-                std::thread::park_timeout(Duration::from_millis(1));
+            if next.is_none() && self.is_over.load(Ordering::SeqCst) {
+                return;
             }
-            while bell.read(&mut buffer).is_ok_and(|read| read > 0) {}
-            self.hear(&mut buffer);
+            self.sockets.wait(next.map(|next| next.saturating_sub(self.now())));
+            self.sockets.hear(&mut buffer, |bytes| self.frame(bytes), |from, bytes| self.datagram(from, bytes));
         }
     }
 
@@ -271,7 +212,7 @@ impl Inner {
             match action {
                 Action::Frame(bytes) => {
                     slot.tap.pass(|| Passed::Frame(bytes.clone()));
-                    if let Err(error) = (&self.raw).write(&bytes) {
+                    if let Err(error) = self.sockets.send_frame(&bytes) {
                         slot.core.failed(ProfinetError::local("sending a frame", &error));
                     }
                 }
@@ -279,7 +220,7 @@ impl Inner {
                     let from = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
                     let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.clone() };
                     slot.tap.pass(passed);
-                    if let Err(error) = self.udp.send_to(&bytes, to) {
+                    if let Err(error) = self.sockets.send_datagram(to, &bytes) {
                         slot.core.failed(ProfinetError::local("sending a call", &error));
                     }
                 }
@@ -290,37 +231,25 @@ impl Inner {
         }
     }
 
-    /// Takes what came, as far as it came at once.
-    fn hear(&self, buffer: &mut [u8]) {
-        for _ in 0..AT_ONCE {
-            let Ok(length) = (&self.raw).read(buffer) else { break };
-            let bytes = &buffer[..length];
-            let now = self.now();
-            for slot in self.slots().values_mut() {
-                if slot.core.concerns(bytes) {
-                    slot.tap.pass(|| Passed::Frame(bytes.to_vec()));
-                }
-                slot.core.frame(now, bytes);
+    fn frame(&self, bytes: &[u8]) {
+        let now = self.now();
+        for slot in self.slots().values_mut() {
+            if slot.core.concerns(bytes) {
+                slot.tap.pass(|| Passed::Frame(bytes.to_vec()));
             }
+            slot.core.frame(now, bytes);
         }
-        for _ in 0..AT_ONCE {
-            let (length, from) = match self.udp.recv_from(buffer) {
-                Ok((length, SocketAddr::V4(from))) => (length, from),
-                // What a host says of an earlier call (port unreachable) is nothing to the others.
-                Ok(_) => continue,
-                Err(error) if error.kind() == ErrorKind::ConnectionRefused => continue,
-                Err(_) => break,
-            };
-            let bytes = &buffer[..length];
-            let now = self.now();
-            let to = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
-            for slot in self.slots().values_mut() {
-                if slot.core.address() == Some(*from.ip()) {
-                    let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.to_vec() };
-                    slot.tap.pass(passed);
-                }
-                slot.core.datagram(now, from, bytes);
+    }
+
+    fn datagram(&self, from: SocketAddrV4, bytes: &[u8]) {
+        let now = self.now();
+        let to = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
+        for slot in self.slots().values_mut() {
+            if slot.core.address() == Some(*from.ip()) {
+                let passed = || Passed::Datagram { from: from.into(), to: to.into(), bytes: bytes.to_vec() };
+                slot.tap.pass(passed);
             }
+            slot.core.datagram(now, from, bytes);
         }
     }
 }

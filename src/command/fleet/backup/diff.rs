@@ -90,10 +90,7 @@ impl Command for Diff {
     type Family = Fleet;
     type Report = Differences;
     const ID: &'static str = "diff";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         reading_risk(robot)

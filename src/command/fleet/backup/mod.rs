@@ -74,10 +74,7 @@ impl Command for Backup {
     type Family = Fleet;
     type Report = BackedUp;
     const ID: &'static str = "backup";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         reading_risk(robot)
@@ -98,7 +95,7 @@ fn reading_risk(robot: &Robot) -> Risk {
 /// Makes a backup of a robot of any family.
 async fn make(context: Context<'_, Fleet>, making: Making) -> Result<BackedUp, Failure> {
     let (face, context) = opened(context)?;
-    face.back_up(context, &making).await
+    face.back_up(context, making).await
 }
 
 /// The connection of a robot of any family, and what it can be asked.

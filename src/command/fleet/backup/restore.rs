@@ -49,18 +49,9 @@ impl Command for Restore {
     type Family = Fleet;
     type Report = Restored;
     const ID: &'static str = "restore";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite what the controller stores by the backup".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Restored, Failure> {
         let robot = context.robot;

@@ -54,10 +54,7 @@ impl Command for Check {
     type Family = Checked;
     type Report = CheckReport;
     const ID: &'static str = "robots.check";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Checked>) -> Result<CheckReport, Failure> {
         let Context { robot, screen, .. } = context;

@@ -2,15 +2,15 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `eye` | looks at one robot again and again, through links that let only reads pass |
+//! | `poller` | looks at one robot again and again, through links that let only reads pass |
 //! | `model` | what is known and chosen; no terminal, no line, no clock |
 //! | `track` | the past of an axis |
 //! | `keys` | what keys order, and how they are explained |
 //! | `view` | the picture of a model |
 
-mod eye;
 mod keys;
 mod model;
+mod poller;
 #[cfg(test)]
 mod testing;
 mod track;
@@ -24,9 +24,9 @@ use futures_util::stream::FuturesUnordered;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
-use self::eye::{News, Pace, follow};
 use self::keys::{Order, order};
 use self::model::Model;
+use self::poller::{Pace, Update, follow};
 use self::view::Palette;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
@@ -52,8 +52,8 @@ const PICTURE: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
 /// How long links may take to close.
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
-/// News that wait to be taken.
-const NEWS: usize = 64;
+/// Update that wait to be taken.
+const UPDATES: usize = 64;
 
 impl Top {
     /// Does it.
@@ -71,7 +71,7 @@ impl Top {
         let silent = screen.silenced();
         let model = Model::new(&robots, every);
         let (pace, _) = watch::channel(pace_of(&model));
-        let (tell, news) = mpsc::channel(NEWS);
+        let (tell, updates) = mpsc::channel(UPDATES);
         let share = every / u32::try_from(robots.len().max(1)).unwrap_or(u32::MAX);
         let mut followers: FuturesUnordered<_> = robots
             .into_iter()
@@ -88,7 +88,7 @@ impl Top {
             let (press, keys) = mpsc::unbounded_channel();
             let _keys = Keys::listen(move |event| press.send(event).is_ok());
             let mut view = View { terminal, model, palette, pace: &pace, start: Instant::now() };
-            let shown = interruptible(view.show(news, keys));
+            let shown = interruptible(view.show(updates, keys));
             tokio::select! {
                 ended = shown => ended.and_then(|ended| ended),
                 // They go on until they are told.
@@ -143,17 +143,17 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Shows what comes until a key ends it. News are drawn together, keys at once.
+    /// Shows what comes until a key ends it. Update are drawn together, keys at once.
     async fn show(
         &mut self,
-        mut news: mpsc::Receiver<News>,
+        mut updates: mpsc::Receiver<Update>,
         mut events: mpsc::UnboundedReceiver<Event>,
     ) -> Result<(), Failure> {
         self.draw()?;
         let mut drawn = Instant::now();
-        let mut has_news = false;
+        let mut has_updates = false;
         loop {
-            let due = drawn + if has_news { PICTURE } else { TICK };
+            let due = drawn + if has_updates { PICTURE } else { TICK };
             tokio::select! {
                 biased;
                 event = events.recv() => {
@@ -169,21 +169,21 @@ impl View<'_> {
                 () = sleep_until(due) => {
                     if self.model.is_paused() {
                         drawn = Instant::now();
-                        has_news = false;
+                        has_updates = false;
                         continue;
                     }
                 }
-                told = news.recv() => {
+                told = updates.recv() => {
                     if let Some((robot, looked)) = told {
                         self.model.take(self.start.elapsed(), robot, looked);
-                        has_news = true;
+                        has_updates = true;
                     }
                     continue;
                 }
             }
             self.draw()?;
             drawn = Instant::now();
-            has_news = false;
+            has_updates = false;
         }
     }
 

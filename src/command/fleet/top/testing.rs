@@ -1,7 +1,7 @@
 //! Robots and samples for tests.
 
 use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Axis, Bank, Eight, Lamp, Sample, Whole};
+use crate::command::face::sample::{Alarm, Axis, Bank, Indicator, Sample, SignalByte, Whole};
 use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
 use crate::settings::inventory::Inventory;
@@ -55,16 +55,16 @@ pub fn sample(position: f64) -> Sample {
         limits,
         ..Axis::default()
     };
-    let lamp = Lamp::new;
+    let indicator = Indicator::new;
     let whole = Whole {
-        lamps: vec![
-            lamp("teach", false, Tone::Warning),
-            lamp("play", true, Tone::Good),
-            lamp("servo", true, Tone::Good),
-            lamp("running", true, Tone::Good),
-            lamp("hold", false, Tone::Warning),
-            lamp("alarm", false, Tone::Bad),
-            Lamp::should("CPU OK", true, Tone::Bad),
+        indicators: vec![
+            indicator("teach", false, Tone::Warning),
+            indicator("play", true, Tone::Good),
+            indicator("servo", true, Tone::Good),
+            indicator("running", true, Tone::Good),
+            indicator("hold", false, Tone::Warning),
+            indicator("alarm", false, Tone::Bad),
+            Indicator::should("CPU OK", true, Tone::Bad),
         ],
         axes: vec![
             joint("S", position, 12.0),
@@ -74,8 +74,8 @@ pub fn sample(position: f64) -> Sample {
         ],
         torque_unit: Some("raw"),
         banks: vec![
-            Bank { name: "inputs", groups: (1..=4).map(|at| Eight::rising(format!("#{at}0"), at)).collect() },
-            Bank { name: "outputs", groups: (1..=4).map(|at| Eight::rising(format!("#100{at}0"), 0)).collect() },
+            Bank { name: "inputs", groups: (1..=4).map(|at| SignalByte::rising(format!("#{at}0"), at)).collect() },
+            Bank { name: "outputs", groups: (1..=4).map(|at| SignalByte::rising(format!("#100{at}0"), 0)).collect() },
         ],
         not_asked: None,
     };

@@ -9,4 +9,4 @@ mod save;
 mod tests;
 
 pub use restore::Restore;
-pub use save::Backup;
+pub use save::{Backup, back_up};

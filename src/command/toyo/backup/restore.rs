@@ -92,18 +92,9 @@ impl Command for Restore {
     type Family = Toyo;
     type Report = Restored;
     const ID: &'static str = "toyo.restore";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite what the controller stores by the backup".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;

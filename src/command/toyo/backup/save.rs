@@ -1,20 +1,18 @@
 //! `toyo backup`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::content::{self, Text};
-use super::manifest::{Controller, Manifest};
+use super::manifest::Controller;
 use super::parts::{self, Part, PartResult};
-use crate::command::backup::manifest;
-use crate::command::backup::manifest::{Entry, MANIFEST, Reason, State};
-use crate::command::backup::{self, Item, Items, Making, Only, cut_off, write_text};
+use crate::command::backup::manifest::Entry;
+use crate::command::backup::saving::{self, Task, cut_off_by_ctrl_c};
+use crate::command::backup::{self, Item, Making, Only};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::local::{make_folder, own_folder};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::tasks;
@@ -40,9 +38,6 @@ pub struct Backup {
     /// Points and program of the current task only, so that nothing is changed
     #[arg(long)]
     current_task: bool,
-    /// What is asked for, where that was said for all families
-    #[arg(skip)]
-    scope: Option<Vec<String>>,
     /// Go on with a backup that is not whole; parts that are there already are kept
     #[arg(long, conflicts_with = "force")]
     resume: bool,
@@ -54,23 +49,6 @@ pub struct Backup {
 /// In the scope of a backup, where the other tasks are not in it.
 const CURRENT_TASK: &str = "the current task";
 
-impl Backup {
-    /// Of what is asked for in any family; of the current task only where nothing may be changed.
-    pub fn of(making: &Making, current_task: bool) -> Self {
-        let Making { folder, mut scope, resume, force } = making.clone();
-        let is_said = scope.iter().flatten().any(|word| word == CURRENT_TASK);
-        if current_task && !resume && !is_said {
-            scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
-        }
-        Self { folder, current_task, scope, resume, force }
-    }
-
-    /// What is asked for, as the list says it; `None` if nobody says.
-    fn scope(&self) -> Option<Vec<String>> {
-        self.scope.clone().or_else(|| self.current_task.then(|| vec![CURRENT_TASK.to_owned()]))
-    }
-}
-
 impl Command for Backup {
     type Family = Toyo;
     type Report = BackedUp;
@@ -81,94 +59,85 @@ impl Command for Backup {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<BackedUp, Failure> {
-        let Context { link, screen, robot, several, .. } = context;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        let scope = self.scope();
-        let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
-        if link.is_dry() {
-            return self.dry_run(link).await;
-        }
-        let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
-        if self.current_task && !scope.iter().any(|word| word == CURRENT_TASK) {
-            return Err(Failure::usage(format!("{} is a backup of every task", folder.display()))
-                .hint("of the current task alone, make one in another folder"));
-        }
-        // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
-        let outcome =
-            interruptible(self.save(link, screen, robot, &folder, scope, earlier)).await.and_then(|outcome| outcome);
-        let outcome = outcome.map_err(|failure| match manifest::read::<Controller>(&folder) {
-            Ok(Some(list)) => cut_off(failure, &folder, list.files.iter().filter(|entry| entry.copy.is_some()).count()),
-            _ => failure,
-        });
-        tasks::done(link, outcome).await
+        let Self { folder, current_task, resume, force } = self;
+        let scope = current_task.then(|| vec![CURRENT_TASK.to_owned()]);
+        let making = Making { folder: folder.clone(), scope, resume: *resume, force: *force };
+        let (controller, made) = make(context, making, *current_task).await?;
+        Ok(BackedUp::new(controller, made))
     }
 }
 
-impl Backup {
-    async fn save(
-        &self,
-        link: &mut Link,
-        screen: &Screen,
-        robot: &Robot,
-        folder: &Path,
-        scope: Vec<String>,
-        earlier: Option<Manifest>,
-    ) -> Result<BackedUp, Failure> {
-        let controller = content::controller(link).await?;
-        let mut chosen = parts(link, &controller, scope.iter().any(|word| word == CURRENT_TASK)).await?;
-        let only = Only::of_scope(&scope);
-        let names: Vec<String> = chosen.iter().map(ToString::to_string).collect();
-        only.check(&names)?;
-        chosen.retain(|part| only.has(&part.to_string()));
-        make_folder(folder)?;
-        let mut manifest = Manifest::new(robot, controller.clone(), scope);
-        // What was saved before stays in the list until it is saved anew, so that it is kept whenever this is cut off.
-        let earlier = earlier.filter(|earlier| earlier.controller.robot_type == controller.robot_type);
-        let kept = |part: Part| {
-            let entry = earlier.as_ref()?.entry(&part.to_string())?;
-            entry.copy.as_ref().filter(|copy| copy.check(folder).is_ok())?;
-            Some(entry.clone())
-        };
-        manifest.files = chosen.iter().filter_map(|part| kept(*part)).collect();
-        manifest.write(folder)?;
-        let mut results: Vec<PartResult> = chosen.iter().map(PartResult::pending).collect();
-        let total = chosen.len();
-        for (number, (part, result)) in chosen.iter().zip(&mut results).enumerate() {
-            if let Some(entry) = manifest.entry(&part.to_string()) {
-                result.state = State::Kept;
-                result.file = entry.copy.as_ref().map(|copy| copy.file.clone());
-                result.left_out.clone_from(&entry.left_out);
-                continue;
-            }
-            screen.step(&format!("{}/{total} {part}", number + 1));
-            let read = content::read(link, screen, *part, &controller).await;
-            let (entry, goes_on) = entry_of(*part, read, folder, result)?;
-            manifest.files.push(entry);
-            manifest.write(folder)?;
-            if !goes_on {
-                break;
-            }
-        }
-        let complete = results.iter().all(|part| matches!(part.state, State::Done | State::Kept));
-        manifest.complete = complete;
-        manifest.write(folder)?;
-        Ok(BackedUp::new(folder, controller, manifest.scope, complete, results))
+/// Makes a backup; of the current task only where nothing may be changed.
+pub async fn back_up(
+    context: Context<'_, Toyo>,
+    mut making: Making,
+    current_task: bool,
+) -> Result<backup::BackedUp, Failure> {
+    let is_said = making.scope.iter().flatten().any(|word| word == CURRENT_TASK);
+    if current_task && !making.resume && !is_said {
+        making.scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
     }
+    Ok(make(context, making, current_task).await?.1)
+}
 
-    async fn dry_run(&self, link: &mut Link) -> Result<BackedUp, Failure> {
-        content::plan_controller(link);
-        link.plan(&Request::bare(table::Command::Mtsk), "which task is the current one");
-        link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
-        if !self.current_task {
-            tasks::choose(link, Some(1)).await?;
-        }
-        let points =
-            if self.current_task { "of the current task" } else { "of every task, which is made the current one" };
-        link.then(&format!(
-            "every parameter, row, easy program and record is read, then every point and step {points}"
-        ));
-        Err(unknown())
+async fn make(
+    context: Context<'_, Toyo>,
+    making: Making,
+    current_task: bool,
+) -> Result<(Controller, backup::BackedUp), Failure> {
+    let Context { link, screen, robot, several, .. } = context;
+    let task = Task::new(making, robot, several)?;
+    if link.is_dry() {
+        return dry_run(link, current_task).await;
     }
+    if current_task && !task.scope.iter().any(|word| word == CURRENT_TASK) {
+        return Err(Failure::usage(format!("{} is a backup of every task", task.folder.display()))
+            .hint("of the current task alone, make one in another folder"));
+    }
+    let outcome = cut_off_by_ctrl_c(&task.folder, save(link, (screen, robot), &task)).await;
+    tasks::done(link, outcome).await
+}
+
+async fn save(
+    link: &mut Link,
+    (screen, robot): (&Screen, &Robot),
+    task: &Task<Controller>,
+) -> Result<(Controller, backup::BackedUp), Failure> {
+    let controller = content::controller(link).await?;
+    let mut chosen = parts(link, &controller, task.scope.iter().any(|word| word == CURRENT_TASK)).await?;
+    let only = Only::of_scope(&task.scope);
+    only.check(&chosen.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    chosen.retain(|part| only.has(&part.to_string()));
+    let mut list = task.begin((screen, robot), controller.clone(), |earlier, entry| {
+        let is_wanted = chosen.iter().any(|part| part.to_string() == entry.name);
+        is_wanted && earlier.controller.robot_type == controller.robot_type
+    })?;
+    for (number, part) in chosen.iter().enumerate() {
+        let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
+        let read = async {
+            screen.step(&format!("{}/{} {part}", number + 1, chosen.len()));
+            let Text { text, left_out } = content::read(link, screen, *part, &controller).await?;
+            Ok(saving::Part { left_out, ..saving::Part::new(saving::Content::Text(part.file(), text)) })
+        };
+        if !list.part(entry, read).await? {
+            break;
+        }
+    }
+    let tried = list.items().len();
+    let made = list.end(chosen[tried..].iter().map(Item::pending))?;
+    Ok((controller, made))
+}
+
+async fn dry_run<T>(link: &mut Link, current_task: bool) -> Result<T, Failure> {
+    content::plan_controller(link);
+    link.plan(&Request::bare(table::Command::Mtsk), "which task is the current one");
+    link.plan(&content::first_read(Part::Parameters)?, "the first of the parameters");
+    if !current_task {
+        tasks::choose(link, Some(1)).await?;
+    }
+    let points = if current_task { "of the current task" } else { "of every task, which is made the current one" };
+    link.then(&format!("every parameter, row, easy program and record is read, then every point and step {points}"));
+    Err(unknown())
 }
 
 /// What there is, or what there is of the current task alone.
@@ -178,29 +147,6 @@ async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> 
     let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();
     let programs: Vec<u8> = controller.program_tasks().into_iter().filter(wanted).collect();
     Ok(Part::all(&points, &programs))
-}
-
-/// Writes the file of a part that was read, and says whether the next one can be read.
-fn entry_of(
-    part: Part,
-    read: Result<Text, Failure>,
-    folder: &Path,
-    result: &mut PartResult,
-) -> Result<(Entry, bool), Failure> {
-    let mut entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
-    let Text { text, left_out } = match read {
-        Ok(text) => text,
-        Err(failure) => {
-            entry.error = Some(Reason::from(&failure));
-            return Ok((entry, result.fail(failure)));
-        }
-    };
-    entry.copy = Some(write_text(folder, part.file(), &text)?);
-    entry.left_out.clone_from(&left_out);
-    result.state = State::Done;
-    result.file = Some(part.file());
-    result.left_out = left_out;
-    Ok((entry, true))
 }
 
 /// What is in the folder now.
@@ -214,21 +160,20 @@ pub struct BackedUp {
     complete: bool,
     controller: Controller,
     parts: Vec<PartResult>,
-    #[serde(skip)]
-    of: (PathBuf, Vec<String>),
 }
 
 impl BackedUp {
-    fn new(folder: &Path, controller: Controller, scope: Vec<String>, complete: bool, parts: Vec<PartResult>) -> Self {
-        let manifest = folder.join(MANIFEST).display().to_string();
-        let of = (folder.to_owned(), scope);
-        Self { folder: folder.display().to_string(), manifest, complete, controller, parts, of }
-    }
-}
-
-impl From<BackedUp> for backup::BackedUp {
-    fn from(BackedUp { complete, parts, of: (folder, scope), .. }: BackedUp) -> Self {
-        Self::new(&folder, scope, complete, Items::new(parts.into_iter().map(Item::from).collect()))
+    fn new(controller: Controller, made: backup::BackedUp) -> Self {
+        let backup::BackedUp { folder, manifest, complete, items, .. } = made;
+        let part = |Item { name, state, file, left_out, error, .. }| PartResult {
+            part: name,
+            state,
+            file,
+            left_out,
+            cells: None,
+            error,
+        };
+        Self { folder, manifest, complete, controller, parts: items.files.into_iter().map(part).collect() }
     }
 }
 
@@ -238,9 +183,6 @@ impl Report for BackedUp {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let failure = parts::failure(&self.parts)?;
-        let again = "--resume reads what is missing";
-        let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
-        Some(failure.hint(hint))
+        Some(backup::with_hint(parts::failure(&self.parts)?, "--resume reads what is missing"))
     }
 }

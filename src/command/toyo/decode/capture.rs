@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use super::FieldRow;
 use crate::command::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut, note};
-use crate::controller::toyo::describe::{Sender, describe, summary};
+use crate::controller::toyo::describe::{FieldNote, Sender, describe, summary};
 use crate::controller::toyo::request::Request;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::tap::Direction;
@@ -17,7 +16,7 @@ pub struct LineDecoder {
     conversations: BTreeMap<Connection, Conversation>,
     /// Bytes that they take.
     kept: usize,
-    decoded: DecodedCapture<FieldRow>,
+    decoded: DecodedCapture<FieldNote>,
 }
 
 /// What a conversation goes over.
@@ -64,7 +63,7 @@ const MOST: usize = 512;
 const MOST_FOREIGN: usize = 1000;
 
 impl CaptureDecoder for LineDecoder {
-    type Field = FieldRow;
+    type Field = FieldNote;
 
     fn take(&mut self, message: &Message<'_>) {
         let (connection, end) = match message.carrier {
@@ -112,7 +111,7 @@ impl CaptureDecoder for LineDecoder {
         self.kept += conversation.kept - kept;
     }
 
-    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
         &mut self.decoded
     }
 
@@ -158,7 +157,7 @@ impl Conversation {
         usize::from(answers(1) >= answers(0))
     }
 
-    fn decode(mut self, connection: Connection, decoded: &mut DecodedCapture<FieldRow>) {
+    fn decode(mut self, connection: Connection, decoded: &mut DecodedCapture<FieldNote>) {
         let controller = self.controller(connection);
         let link = match connection {
             Connection::Serial(_) => ("host".to_owned(), "serial line".to_owned()),
@@ -186,7 +185,7 @@ impl Conversation {
                 text: format!("{text}  # {}", summary(&text, sender, request)),
                 answers: before.as_ref().map(|(number, _)| *number),
                 section: description.section,
-                fields: description.fields.into_iter().map(FieldRow::from).collect(),
+                fields: description.fields,
                 problem: if is_cut { Some(cut()) } else { description.problem },
                 raw: text.clone(),
             });

@@ -40,18 +40,9 @@ impl Command for Copy {
     type Family = Toyo;
     type Report = Copied;
     const ID: &'static str = "toyo.easy.copy";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite an easy program".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite an easy program";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Self { from, to } = *self;
@@ -67,10 +58,7 @@ impl Command for Select {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.easy.select";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Sesn, [Value::Number(self.program)]));

@@ -39,18 +39,9 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.easy.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite an easy program".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite an easy program";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;

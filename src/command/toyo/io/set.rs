@@ -117,10 +117,7 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Outputs;
     const ID: &'static str = "toyo.io.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Outputs, Failure> {
         let station = self.station;
@@ -193,10 +190,7 @@ impl Command for Direct {
     type Family = Toyo;
     type Report = Done;
     const ID: &'static str = "toyo.io.direct";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let values = vec![Value::Number(self.number.into())];

@@ -46,18 +46,9 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.mvm.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite a matrix".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite a matrix";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;

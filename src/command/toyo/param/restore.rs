@@ -74,18 +74,9 @@ impl Command for Restore {
     type Family = Toyo;
     type Report = Restored;
     const ID: &'static str = "toyo.param.restore";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite parameters by those of the file".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite parameters by those of the file";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;

@@ -46,17 +46,11 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Written;
     const ID: &'static str = "toyo.param.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
+    const RISK: Risk = Risk::Destroy;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         format!("overwrite parameter {} ({})", self.parameter.id, self.parameter.name)
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Written, Failure> {

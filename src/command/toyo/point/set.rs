@@ -60,18 +60,9 @@ impl Command for Set {
     type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.point.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite points".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite points";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;

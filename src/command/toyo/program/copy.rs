@@ -49,18 +49,9 @@ impl Command for Copy {
     type Family = Toyo;
     type Report = Copied;
     const ID: &'static str = "toyo.program.copy";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite program steps".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite program steps";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Context { link, screen, authority, .. } = context;

@@ -43,18 +43,9 @@ impl Command for Delete {
     type Family = Toyo;
     type Report = Deleted;
     const ID: &'static str = "toyo.program.delete";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "delete program steps".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "delete program steps";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Deleted, Failure> {
         let Context { link, screen, authority, .. } = context;

@@ -45,18 +45,9 @@ impl Command for Insert {
     type Family = Toyo;
     type Report = Inserted;
     const ID: &'static str = "toyo.program.insert";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "insert a program step".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "insert a program step";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
         let Context { link, screen, authority, .. } = context;

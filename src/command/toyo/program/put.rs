@@ -65,18 +65,9 @@ impl Command for Put {
     type Family = Toyo;
     type Report = Stored;
     const ID: &'static str = "toyo.program.put";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite a program".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite a program";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;

@@ -37,10 +37,7 @@ impl Command for Search {
     type Family = Toyo;
     type Report = Found;
     const ID: &'static str = "toyo.program.search";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Found, Failure> {
         let link = context.link;

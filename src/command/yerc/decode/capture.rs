@@ -3,10 +3,10 @@
 use std::collections::{HashMap, HashSet};
 use std::net::SocketAddr;
 
-use super::{FieldRow, ID_AT, IDENTIFIER};
+use super::{ID_AT, IDENTIFIER};
 use crate::command::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessage, cut};
 use crate::controller::text::hex;
-use crate::controller::yerc::describe::{Sender, describe, summary};
+use crate::controller::yerc::describe::{FieldNote, Sender, describe, summary};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::wire::RequestFrame;
 use crate::transport::capture::{Carrier, Message};
@@ -18,7 +18,7 @@ const MOST_ASKED: usize = 1 << 16;
 /// Datagrams that begin like a frame.
 #[derive(Debug, Default)]
 pub struct FrameDecoder {
-    decoded: DecodedCapture<FieldRow>,
+    decoded: DecodedCapture<FieldNote>,
     /// Who made requests.
     clients: HashSet<SocketAddr>,
     /// The last request of each id, with the number of its packet.
@@ -26,7 +26,7 @@ pub struct FrameDecoder {
 }
 
 impl CaptureDecoder for FrameDecoder {
-    type Field = FieldRow;
+    type Field = FieldNote;
 
     fn take(&mut self, message: &Message<'_>) {
         let Carrier::Datagram { from, to } = message.carrier else { return };
@@ -71,12 +71,12 @@ impl CaptureDecoder for FrameDecoder {
             answers: asked.map(|(number, _)| *number),
             section: description.section,
             raw: hex(bytes),
-            fields: description.fields.into_iter().map(FieldRow::from).collect(),
+            fields: description.fields,
             problem: if message.is_cut { Some(cut()) } else { description.problem },
         });
     }
 
-    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
         &mut self.decoded
     }
 

@@ -49,10 +49,7 @@ impl Command for Cmos {
     type Family = Yerc;
     type Report = BatchBackup;
     const ID: &'static str = "yerc.file.cmos";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<BatchBackup, Failure> {
         let Context { link, screen, robot, several, .. } = context;

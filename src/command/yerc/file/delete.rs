@@ -30,18 +30,9 @@ impl Command for Delete {
     type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.delete";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "delete files".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "delete files";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, authority, .. } = context;

@@ -103,18 +103,18 @@ pub async fn deliver(
                 ));
             }
             let bytes = replace(link, screen, delivery).await?;
-            result.notes.push("replaced");
+            result.notes.push("replaced".to_owned());
             bytes
         }
         Err(failure) if failure.kind == Kind::Refused => return Err(with_own_name(link, delivery, failure)),
         sent => sent?,
     };
     if delivery.content.fixes_line_endings() {
-        result.notes.push("line_endings_fixed");
+        result.notes.push("line_endings_fixed".to_owned());
     }
     if manner.verify {
         verify(link, screen, delivery, manner.ignore_header).await?;
-        result.notes.push("verified");
+        result.notes.push("verified".to_owned());
     }
     Ok(Some(bytes))
 }

@@ -17,7 +17,7 @@ mod restore;
 mod results;
 mod transfer;
 
-pub use backup::Backup;
+pub use backup::back_up;
 pub use restore::Restore;
 pub(super) use transfer::taken as download_failed;
 
@@ -37,7 +37,7 @@ commands! {
         /// Compare a file on the controller with a local one
         Diff(diff::Diff),
         /// Save all files to a folder, with sizes and hashes
-        Backup(Backup),
+        Backup(backup::Backup),
         /// Restore files of a backup
         Restore(Restore),
         /// Create the batch backup CMOSBK.BIN on the controller and download it

@@ -52,18 +52,9 @@ impl Command for Put {
     type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.put";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite files of the same name".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite files of the same name";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, authority, .. } = context;
@@ -78,7 +69,7 @@ impl Command for Put {
                      {own}",
                     content.path().display()
                 ));
-                result.notes.push("name_differs");
+                result.notes.push("name_differs".to_owned());
             }
             results.push(result);
         }

@@ -95,18 +95,9 @@ impl Command for Restore {
     type Family = Yerc;
     type Report = Results;
     const ID: &'static str = "yerc.file.restore";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite files by those of the backup".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite files by those of the backup";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several, authority } = context;

@@ -32,7 +32,7 @@ pub struct FileResult {
     /// What was done beyond the plain transfer: `replaced`, `verified`, `line_endings_fixed`, `name_differs`,
     /// `empty`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<&'static str>,
+    pub notes: Vec<String>,
     /// Why it failed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<Failure>,
@@ -174,8 +174,8 @@ impl Report for Results {
     }
 }
 
-fn notes(file: &FileResult) -> impl Iterator<Item = &'static str> {
-    file.notes.iter().map(|note| match *note {
+fn notes(file: &FileResult) -> impl Iterator<Item = &str> {
+    file.notes.iter().map(|note| match note.as_str() {
         "line_endings_fixed" => "line endings fixed",
         "name_differs" => "//NAME differs",
         note => note,

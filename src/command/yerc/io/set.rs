@@ -93,10 +93,7 @@ impl Command for Set {
     type Family = Yerc;
     type Report = Switched;
     const ID: &'static str = "yerc.io.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Switched, Failure> {
         let Context { link, screen, .. } = context;

@@ -45,18 +45,9 @@ impl Command for Restore {
     type Family = Yerc;
     type Report = Restored;
     const ID: &'static str = "yerc.var.restore";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "overwrite variables by those of the file".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite variables by those of the file";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, authority, .. } = context;

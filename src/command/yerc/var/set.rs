@@ -145,10 +145,7 @@ impl Command for Set {
     type Family = Yerc;
     type Report = Written;
     const ID: &'static str = "yerc.var.set";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
+    const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Written, Failure> {
         let Context { link, screen, .. } = context;

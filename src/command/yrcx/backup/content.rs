@@ -15,7 +15,6 @@ use crate::command::yrcx::refusal::refused;
 use crate::command::yrcx::several::{check_echo, is_about_commands};
 use crate::command::yrcx::single::shown;
 use crate::controller::yrcx::alarm::Alarm;
-use crate::controller::yrcx::answer::Answer;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::parameter::PARAMETERS;
 use crate::controller::yrcx::table::{Command, Field};
@@ -63,7 +62,7 @@ impl About for Controller {
 impl Controller {
     /// Asks the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
-        let versions = link.run(&Command::Versions.order().build()?).await?.values;
+        let versions = link.ask(&Command::Versions.order().build()?).await?.values;
         let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
         let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
         let mut robots = Vec::new();
@@ -74,7 +73,7 @@ impl Controller {
             if axes.is_empty() {
                 continue;
             }
-            let system = link.run(&of_robot(Command::System, robot).build()?).await?.values;
+            let system = link.ask(&of_robot(Command::System, robot).build()?).await?.values;
             robots.push(Robot { robot, robot_type: system.int(Key::RobotType).unwrap_or_default(), axes });
         }
         Ok(Self { software, robots })
@@ -151,13 +150,10 @@ fn of_robot(command: Command, robot: u8) -> Draft {
 
 /// Asks; a refusal is an answer, unless the next command would be refused as well.
 pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>, Failure> {
-    match link.try_run(order).await?.answer {
-        Answer::Done(values) | Answer::Running(values) => {
-            check_echo(order, &values)?;
-            Ok(Ok(values))
-        }
-        Answer::Refused { alarm, .. } if is_about_commands(alarm) => Err(refused(order.row(), alarm)),
-        Answer::Refused { alarm, .. } => Ok(Err(alarm)),
+    match link.try_ask(order).await? {
+        Ok(done) => check_echo(order, &done.values).map(|()| Ok(done.values)),
+        Err(refusal) if is_about_commands(refusal.alarm) => Err(refused(order.row(), refusal.alarm)),
+        Err(refusal) => Ok(Err(refusal.alarm)),
     }
 }
 

@@ -11,4 +11,4 @@ mod save;
 mod tests;
 
 pub use restore::Restore;
-pub use save::{Backup, points};
+pub use save::{Backup, back_up, points};

@@ -2,23 +2,21 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
-use crate::command::backup::manifest;
-use crate::command::backup::manifest::{Entry, Reason, State};
-use crate::command::backup::{BackedUp, Item, Items, Making, Only, cut_off, write_text};
+use crate::command::backup::manifest::{Entry, State};
+use crate::command::backup::saving::{self, Saving, Task, cut_off_by_ctrl_c};
+use crate::command::backup::{BackedUp, Item, Making, Only};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::local::{make_folder, own_folder};
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, runs};
 use crate::command::{Command, Context};
-use crate::failure::{Failure, Kind};
+use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
@@ -44,9 +42,6 @@ pub struct Backup {
     /// Make a new backup over the one in the folder
     #[arg(long)]
     force: bool,
-    /// What is asked for, where that was said for all families
-    #[arg(skip)]
-    scope: Option<Vec<String>>,
 }
 
 /// Points that can be asked for, as typed.
@@ -57,22 +52,12 @@ pub fn points(text: &str) -> Result<String, String> {
 /// Before numbers of points, in the scope of a backup.
 const OF_POINTS: &str = "points ";
 
-type Manifest = manifest::Manifest<Controller>;
-
 impl Backup {
-    /// Of what is asked for in any family.
-    pub fn of(making: &Making) -> Self {
-        let Making { folder, scope, resume, force } = making.clone();
-        Self { folder, points: Vec::new(), only: Vec::new(), resume, force, scope }
-    }
-
     /// What is asked for, as the list says it; `None` if nobody says.
     fn scope(&self) -> Option<Vec<String>> {
-        if self.points.is_empty() && self.only.is_empty() {
-            return self.scope.clone();
-        }
         let points = self.points.iter().map(|range| format!("{OF_POINTS}{range}"));
-        Some(points.chain(Only(self.only.clone()).scope()).collect())
+        let scope: Vec<String> = points.chain(Only(self.only.clone()).scope()).collect();
+        Some(scope).filter(|scope| !scope.is_empty())
     }
 }
 
@@ -82,26 +67,21 @@ impl Command for Backup {
     const ID: &'static str = "yrcx.backup";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackedUp, Failure> {
-        let Context { link, screen, robot, several, .. } = context;
-        link.no_unit("a backup is of the whole controller")?;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        let scope = self.scope();
-        let earlier: Option<Manifest> = manifest::earlier(&folder, robot, scope.as_deref(), self.resume, self.force)?;
-        let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
-        let asked = Asked::of(&scope)?;
-        if link.is_dry() {
-            return dry_run(link, &asked);
-        }
-        let saving = Saving { link, screen, folder: &folder, asked, items: Vec::new() };
-        // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
-        let outcome = interruptible(saving.save(robot, scope, earlier)).await.and_then(|outcome| outcome);
-        outcome.map_err(|failure| match manifest::read::<Controller>(&folder) {
-            Ok(Some(list)) if failure.kind != Kind::Usage => {
-                cut_off(failure, &folder, list.files.iter().filter(|entry| entry.copy.is_some()).count())
-            }
-            _ => failure,
-        })
+        let Self { folder, resume, force, .. } = self;
+        back_up(context, Making { folder: folder.clone(), scope: self.scope(), resume: *resume, force: *force }).await
     }
+}
+
+/// Makes a backup.
+pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<BackedUp, Failure> {
+    let Context { link, screen, robot, several, .. } = context;
+    link.no_unit("a backup is of the whole controller")?;
+    let task = Task::new(making, robot, several)?;
+    let asked = Asked::of(&task.scope)?;
+    if link.is_dry() {
+        return dry_run(link, &asked);
+    }
+    cut_off_by_ctrl_c(&task.folder, save(link, (screen, robot), &task, asked)).await
 }
 
 /// What is asked for.
@@ -137,60 +117,49 @@ fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
     Err(unknown())
 }
 
-/// A backup under way.
-struct Saving<'a> {
+async fn save(
+    link: &mut Link,
+    (screen, robot): (&Screen, &Robot),
+    task: &Task<Controller>,
+    asked: Asked,
+) -> Result<BackedUp, Failure> {
+    let controller = Controller::ask(link).await?;
+    let robots = controller.robots.clone();
+    let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
+    let mut reading = Reading { link, screen, task, controller, asked, list };
+    let goes_on = reading.all().await?;
+    let Reading { asked, list, .. } = reading;
+    let tried: Vec<String> = list.items().iter().map(|item| item.name.clone()).collect();
+    let rest = Part::single().into_iter().chain([Part::Points(0), Part::Comments(0)]).filter(|_| !goes_on);
+    let rest = rest.filter(|part| asked.has(*part) && !tried.contains(&part.to_string()));
+    let mut made = list.end(rest.map(Item::pending))?;
+    // What the controller refused is in the list alone.
+    made.items.files.iter_mut().filter(|item| item.state == State::Kept).for_each(|item| item.left_out.clear());
+    Ok(made)
+}
+
+/// A controller that is read into a folder.
+struct Reading<'a> {
     link: &'a mut Link,
     screen: &'a Screen,
-    folder: &'a Path,
+    task: &'a Task<Controller>,
+    controller: Controller,
     asked: Asked,
-    items: Vec<Item>,
+    list: Saving<'a, Controller>,
 }
 
-/// A part that was read, or was there already.
-#[derive(PartialEq, Eq)]
-enum Had {
-    There,
-    /// The next one can be tried.
-    Failed,
-    /// It cannot.
-    End,
-}
-
-impl Saving<'_> {
-    async fn save(mut self, robot: &Robot, scope: Vec<String>, earlier: Option<Manifest>) -> Result<BackedUp, Failure> {
-        let controller = Controller::ask(self.link).await?;
-        make_folder(self.folder)?;
-        let mut manifest = Manifest::new(robot, controller, scope);
-        // What was saved before stays in the list until it is saved anew, so that it is kept whenever this is cut off.
-        let earlier = earlier.filter(|earlier| earlier.controller.robots == manifest.controller.robots);
-        let is_there = |entry: &&Entry| entry.copy.as_ref().is_some_and(|copy| copy.check(self.folder).is_ok());
-        manifest.files = earlier.iter().flat_map(|list| &list.files).filter(is_there).cloned().collect();
-        manifest.write(self.folder)?;
-        let goes_on = self.all(&mut manifest).await?;
-        if !goes_on {
-            let tried = |part: &Part| self.items.iter().any(|item| item.name == part.to_string());
-            let rest = Part::single().into_iter().chain([Part::Points(0), Part::Comments(0)]);
-            let rest = rest.filter(|part| self.asked.has(*part) && !tried(part)).map(Item::pending);
-            self.items.extend(rest.collect::<Vec<_>>());
-        }
-        let items = Items::new(self.items);
-        manifest.complete = items.is_complete();
-        manifest.write(self.folder)?;
-        Ok(BackedUp::new(self.folder, manifest.scope, manifest.complete, items))
-    }
-
+impl Reading<'_> {
     /// Reads all parts; `false` if the work ended early.
-    async fn all(&mut self, manifest: &mut Manifest) -> Result<bool, Failure> {
+    async fn all(&mut self) -> Result<bool, Failure> {
         for part in Part::single() {
-            if self.asked.has(part) && self.part(manifest, part, None).await? == Had::End {
+            if self.asked.has(part) && !self.part(part, None).await? {
                 return Ok(false);
             }
         }
+        let folder = self.task.folder.as_path();
         let pallets = Part::Records(&super::parts::PALLETS);
-        let of_pallets = match manifest.entry(pallets.kind()).map(|entry| &entry.copy) {
-            Some(Some(_)) => content::points_of_pallets(pallets, self.folder)?,
-            _ => BTreeSet::new(),
-        };
+        let of_pallets =
+            if self.is_saved(pallets) { content::points_of_pallets(pallets, folder)? } else { BTreeSet::new() };
         let mut gap = 0;
         for thousand in 0..30 {
             let part = Part::Points(thousand);
@@ -207,66 +176,61 @@ impl Saving<'_> {
             if self.asked.has(part) {
                 let numbers = numbers.into_iter().collect();
                 let wanted = Wanted { numbers, always, gap: is_open.then_some(GAP), gap_before: gap };
-                if self.part(manifest, part, Some(wanted)).await? == Had::End {
+                if !self.part(part, Some(wanted)).await? {
                     return Ok(false);
                 }
             }
-            let is_saved = manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some());
-            let defined = if is_saved { content::defined(part, self.folder)? } else { Vec::new() };
+            let defined = if self.is_saved(part) { content::defined(part, folder)? } else { Vec::new() };
             gap = gap_after(gap, within, &defined);
             let comments = Part::Comments(thousand);
             let is_wanted = !defined.is_empty() && self.asked.has(comments);
-            if is_wanted && self.part(manifest, comments, Some(Wanted::all(defined))).await? == Had::End {
+            if is_wanted && !self.part(comments, Some(Wanted::all(defined))).await? {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// Reads a part into its file, unless it is there.
-    async fn part(&mut self, manifest: &mut Manifest, part: Part, wanted: Option<Wanted>) -> Result<Had, Failure> {
-        let mut item = Item::pending(part);
-        if let Some(Entry { copy: Some(copy), .. }) = manifest.entry(&item.name) {
-            item.saved(State::Kept, copy, &[]);
-            self.items.push(item);
-            return Ok(Had::There);
-        }
-        self.screen.step(&item.name);
-        let read = self.read(&manifest.controller, part, wanted).await;
-        let mut entry = Entry { name: item.name.clone(), holds: part.kind().to_owned(), ..Entry::default() };
-        let had = match read {
-            Ok(text) => {
-                let copy = write_text(self.folder, part.file(), &text.text)?;
-                item.saved(State::Done, &copy, &text.left_out);
-                entry.holds = text.holds(part);
-                entry.left_out = text.left_out.iter().cloned().chain(text.refusals()).collect();
-                if let Part::Points(_) = part {
-                    item.notes.push(format!("{} defined in {}", text.text.lines().count() - 1, runs(&text.numbers)));
-                }
-                entry.copy = Some(copy);
-                Had::There
-            }
-            Err(failure) => {
-                entry.error = Some(Reason::from(&failure));
-                if item.fail(failure) { Had::Failed } else { Had::End }
-            }
-        };
-        self.items.push(item);
-        manifest.files.push(entry);
-        manifest.write(self.folder)?;
-        Ok(had)
+    fn is_saved(&self, part: Part) -> bool {
+        self.list.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some())
     }
 
-    async fn read(&mut self, controller: &Controller, part: Part, wanted: Option<Wanted>) -> Result<Text, Failure> {
-        let Some(records) = part.records() else {
-            return content::read(self.link, self.screen, part, controller).await;
+    /// Reads a part into its file, unless it is there; `false` if the next one cannot be tried.
+    async fn part(&mut self, part: Part, wanted: Option<Wanted>) -> Result<bool, Failure> {
+        let Self { link, screen, controller, list, .. } = self;
+        let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
+        let read = async {
+            screen.step(&part.to_string());
+            let text = read(link, screen, controller, part, wanted).await?;
+            let notes = match part {
+                Part::Points(_) => {
+                    vec![format!("{} defined in {}", text.text.lines().count() - 1, runs(&text.numbers))]
+                }
+                _ => Vec::new(),
+            };
+            let (holds, absent) = (Some(text.holds(part)), text.refusals());
+            let Text { text, left_out, .. } = text;
+            Ok(saving::Part { content: saving::Content::Text(part.file(), text), holds, left_out, absent, notes })
         };
-        let wanted = match wanted {
-            Some(wanted) => wanted,
-            None => Wanted::all(records.all()?),
-        };
-        content::read_records(self.link, self.screen, records, &wanted).await
+        list.part(entry, read).await
     }
+}
+
+async fn read(
+    link: &mut Link,
+    screen: &Screen,
+    controller: &Controller,
+    part: Part,
+    wanted: Option<Wanted>,
+) -> Result<Text, Failure> {
+    let Some(records) = part.records() else {
+        return content::read(link, screen, part, controller).await;
+    };
+    let wanted = match wanted {
+        Some(wanted) => wanted,
+        None => Wanted::all(records.all()?),
+    };
+    content::read_records(link, screen, records, &wanted).await
 }
 
 /// How many in a row are not defined at the end of a range, after `gap` before it; at least [`GAP`] if so many came in it.

@@ -4,14 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::command::{Command, Context, Report, commands};
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
@@ -82,36 +80,22 @@ impl Report for Comments {
     }
 }
 
-/// Writes the comment of a point.
-#[derive(Debug, Args)]
-pub struct Set {
-    /// Point, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::CommentSet, Key::Point, text))]
-    point: i32,
-    /// Up to 16 ASCII characters; '' for none
-    #[arg(value_name = "TEXT", allow_hyphen_values = true)]
-    comment: String,
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.comment.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::CommentSet
+one_row! {
+    /// Writes the comment of a point.
+    Set(self) "yrcx.comment.set" -> Stored {
+        /// Point, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::CommentSet, Key::Point, text))]
+        point: i32,
+        /// Up to 16 ASCII characters; '' for none
+        #[arg(value_name = "TEXT", allow_hyphen_values = true)]
+        comment: String,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::Point, self.point).with(Key::Comment, self.comment.as_str())
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        let told = match &self.comment[..] {
-            "" => format!("removed the comment of point {}", self.point),
-            comment => format!("comment of point {}: {comment}", self.point),
-        };
-        Ok(Stored::new(told, done))
-    }
+    gives table::Command::CommentSet,
+    with draft => draft.with(Key::Point, self.point).with(Key::Comment, self.comment.as_str()),
+    done match &self.comment[..] {
+        "" => format!("removed the comment of point {}", self.point),
+        comment => format!("comment of point {}: {comment}", self.point),
+    };
 }
 
 #[cfg(test)]

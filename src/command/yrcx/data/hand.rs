@@ -5,14 +5,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::mm;
-use crate::command::yrcx::link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::command::{Command, Context, Report, commands};
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
@@ -111,46 +109,37 @@ impl Report for Hands {
     }
 }
 
-/// Defines a hand of the robot of --unit.
-#[derive(Debug, Args)]
-#[command(after_help = DATA_1)]
-pub struct Set {
-    /// Hand, 0 to 31
-    #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
-    hand: i32,
-    /// Data 1, a whole number as it travels
-    #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
-    first: String,
-    /// Data 2 in mm
-    #[arg(long = "data-2", value_name = "MM", allow_negative_numbers = true)]
-    second: String,
-    /// Data 3 in mm
-    #[arg(long = "data-3", value_name = "MM", allow_negative_numbers = true)]
-    third: String,
-    /// It is mounted on the R axis (data 4 is 1)
-    #[arg(long)]
-    on_r_axis: bool,
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.hand-data.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::HandSet
+one_row! {
+    /// Defines a hand of the robot of --unit.
+    #[command(after_help = DATA_1)]
+    Set(self) "yrcx.hand-data.set" -> Stored {
+        /// Hand, 0 to 31
+        #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
+        hand: i32,
+        /// Data 1, a whole number as it travels
+        #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
+        first: String,
+        /// Data 2 in mm
+        #[arg(long = "data-2", value_name = "MM", allow_negative_numbers = true)]
+        second: String,
+        /// Data 3 in mm
+        #[arg(long = "data-3", value_name = "MM", allow_negative_numbers = true)]
+        third: String,
+        /// It is mounted on the R axis (data 4 is 1)
+        #[arg(long)]
+        on_r_axis: bool,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives table::Command::HandSet,
+    with draft => {
         let data = [(Key::Data1, &self.first), (Key::Data2, &self.second), (Key::Data3, &self.third)];
         let draft = draft.with(Key::Hand, self.hand).with(Key::Data4, self.on_r_axis);
         data.into_iter().fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+    },
+    done {
         let Self { hand, first, second, third, on_r_axis } = self;
         let place = if *on_r_axis { ", on the R axis" } else { "" };
-        Ok(Stored::new(format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}"), done))
-    }
+        format!("defined hand {hand}: {first}, {second} mm, {third} mm{place}")
+    };
 }
 
 #[cfg(test)]

@@ -4,14 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::several::{Rows, read_numbers};
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::command::{Command, Context, Report, commands};
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
@@ -94,48 +92,39 @@ impl Report for Pallets {
     }
 }
 
-/// Defines a pallet.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "The controller keeps the corners of a pallet in five points, from the first one on; `yrcx point \
-    set` or `yrcx teach` defines those."
-)]
-pub struct Set {
-    /// Pallet, 0 to 39
-    #[arg(value_name = "PALLET", value_parser = |text: &str| single(table::Command::PalletSet, Key::Pallet, text))]
-    pallet: i32,
-    /// Places in X; at most 32767 places in all
-    #[arg(long, value_name = "COUNT")]
-    nx: String,
-    /// Places in Y
-    #[arg(long, value_name = "COUNT")]
-    ny: String,
-    /// Places in Z
-    #[arg(long, value_name = "COUNT", default_value = "1")]
-    nz: String,
-    /// First of its five points, 0 to 29995
-    #[arg(long, value_name = "POINT")]
-    first_point: String,
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.pallet-data.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::PalletSet
+one_row! {
+    /// Defines a pallet.
+    #[command(
+        after_help = "The controller keeps the corners of a pallet in five points, from the first one on; `yrcx point \
+        set` or `yrcx teach` defines those."
+    )]
+    Set(self) "yrcx.pallet-data.set" -> Stored {
+        /// Pallet, 0 to 39
+        #[arg(value_name = "PALLET", value_parser = |text: &str| single(table::Command::PalletSet, Key::Pallet, text))]
+        pallet: i32,
+        /// Places in X; at most 32767 places in all
+        #[arg(long, value_name = "COUNT")]
+        nx: String,
+        /// Places in Y
+        #[arg(long, value_name = "COUNT")]
+        ny: String,
+        /// Places in Z
+        #[arg(long, value_name = "COUNT", default_value = "1")]
+        nz: String,
+        /// First of its five points, 0 to 29995
+        #[arg(long, value_name = "POINT")]
+        first_point: String,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
+    gives table::Command::PalletSet,
+    with draft => {
         let draft = draft.with(Key::Pallet, self.pallet).with(Key::FirstPoint, self.first_point.as_str());
         let counts = [(Key::CountX, &self.nx), (Key::CountY, &self.ny), (Key::CountZ, &self.nz)];
         counts.into_iter().fold(draft, |draft, (key, count)| draft.with(key, count.as_str()))
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
+    },
+    done {
         let Self { pallet, nx, ny, nz, first_point } = self;
-        Ok(Stored::new(format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}"), done))
-    }
+        format!("defined pallet {pallet}: {nx} x {ny} x {nz}, first point {first_point}")
+    };
 }
 
 #[cfg(test)]

@@ -5,15 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::yrcx::link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
-use crate::command::yrcx::single::{Single, shown};
+use crate::command::yrcx::single::{one_row, shown};
 use crate::command::{Command, Context, Report, commands};
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
@@ -109,52 +107,43 @@ impl Report for Points {
     }
 }
 
-/// Defines a point.
-#[derive(Debug, Args)]
-#[command(group = ArgGroup::new("coordinates").required(true),
-    after_help = "Give 0 for an axis that the robot has not. `yrcx teach` stores where the robot is.")]
-pub struct Set {
-    /// Point, 0 to 29999
-    #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
-    point: i32,
-    /// Coordinates of axes 1 to 4 in mm, degrees of what turns
-    #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
-    mm: Option<Four>,
-    /// Coordinates of axes 1 to 4 in pulses
-    #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
-    pulse: Option<Four>,
-    /// Hand system of coordinates in mm
-    #[arg(long, value_name = "HAND", value_parser = ["right", "left"], conflicts_with = "pulse")]
-    hand: Option<String>,
+one_row! {
+    /// Defines a point.
+    #[command(group = ArgGroup::new("coordinates").required(true),
+        after_help = "Give 0 for an axis that the robot has not. `yrcx teach` stores where the robot is.")]
+    Set(self) "yrcx.point.set" -> Stored {
+        /// Point, 0 to 29999
+        #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
+        point: i32,
+        /// Coordinates of axes 1 to 4 in mm, degrees of what turns
+        #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+        mm: Option<Four>,
+        /// Coordinates of axes 1 to 4 in pulses
+        #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+        pulse: Option<Four>,
+        /// Hand system of coordinates in mm
+        #[arg(long, value_name = "HAND", value_parser = ["right", "left"], conflicts_with = "pulse")]
+        hand: Option<String>,
+    }
+    gives table::Command::PointSet,
+    with draft => {
+        let (unit, four) = self.coordinates();
+        let draft = draft.with(Key::Point, self.point).with(Key::Unit, unit);
+        let draft = four.into_iter().fold(draft, |draft, four| four.put(draft));
+        draft.with_some(Key::HandSystem, self.hand.clone())
+    },
+    done {
+        let (unit, four) = self.coordinates();
+        let numbers = four.map(Four::told).unwrap_or_default();
+        let unit = if unit == "mm" { "mm" } else { "pulses" };
+        let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
+        format!("defined point {}: {numbers} {unit}{hand}", self.point)
+    };
 }
 
 impl Set {
     fn coordinates(&self) -> (&'static str, Option<&Four>) {
         if self.mm.is_some() { ("mm", self.mm.as_ref()) } else { ("pulse", self.pulse.as_ref()) }
-    }
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.point.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::PointSet
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        let (unit, four) = self.coordinates();
-        let draft = draft.with(Key::Point, self.point).with(Key::Unit, unit);
-        let draft = four.into_iter().fold(draft, |draft, four| four.put(draft));
-        draft.with_some(Key::HandSystem, self.hand.clone())
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        let (unit, four) = self.coordinates();
-        let numbers = four.map(Four::told).unwrap_or_default();
-        let unit = if unit == "mm" { "mm" } else { "pulses" };
-        let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
-        Ok(Stored::new(format!("defined point {}: {numbers} {unit}{hand}", self.point), done))
     }
 }
 

@@ -5,15 +5,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::yrcx::link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::{Numbers, single};
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::{Rows, read_numbers};
-use crate::command::yrcx::single::Single;
+use crate::command::yrcx::single::one_row;
 use crate::command::{Command, Context, Report, commands};
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
@@ -83,32 +81,19 @@ impl Report for Shifts {
     }
 }
 
-/// Defines a shift.
-#[derive(Debug, Args)]
-pub struct Set {
-    /// Shift, 0 to 39
-    #[arg(value_name = "SHIFT", value_parser = |text: &str| single(table::Command::ShiftSet, Key::Shift, text))]
-    shift: i32,
-    /// Shift of axes 1 to 4 in mm, degrees of what turns
-    #[arg(long, value_name = "MM,…", required = true, allow_hyphen_values = true, value_parser = four)]
-    mm: Four,
-}
-
-impl Single for Set {
-    type Report = Stored;
-    const ID: &'static str = "yrcx.shift-data.set";
-
-    fn command(&self) -> table::Command {
-        table::Command::ShiftSet
+one_row! {
+    /// Defines a shift.
+    Set(self) "yrcx.shift-data.set" -> Stored {
+        /// Shift, 0 to 39
+        #[arg(value_name = "SHIFT", value_parser = |text: &str| single(table::Command::ShiftSet, Key::Shift, text))]
+        shift: i32,
+        /// Shift of axes 1 to 4 in mm, degrees of what turns
+        #[arg(long, value_name = "MM,…", required = true, allow_hyphen_values = true, value_parser = four)]
+        mm: Four,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        self.mm.put(draft.with(Key::Shift, self.shift))
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Stored, Failure> {
-        Ok(Stored::new(format!("defined shift {}: {} mm", self.shift, self.mm.told()), done))
-    }
+    gives table::Command::ShiftSet,
+    with draft => self.mm.put(draft.with(Key::Shift, self.shift)),
+    done format!("defined shift {}: {} mm", self.shift, self.mm.told());
 }
 
 #[cfg(test)]

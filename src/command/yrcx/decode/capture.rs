@@ -1,9 +1,10 @@
 //! A capture: what each fieldbus finds in it.
 
-use super::images::{BusDecoder, FieldRow, Images};
+use super::images::{BusDecoder, Images};
 use crate::command::decode::capture::{CaptureDecoder, DecodedCapture};
 use crate::command::yrcx::buses::BUSES;
 use crate::command::yrcx::fieldbus::Fieldbus;
+use crate::controller::yrcx::describe::FieldNote;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};
 
@@ -23,7 +24,7 @@ impl ImageDecoder {
 }
 
 impl CaptureDecoder for ImageDecoder {
-    type Field = FieldRow;
+    type Field = FieldNote;
 
     fn take(&mut self, message: &Message<'_>) {
         if let Carrier::Line { direction, .. } = message.carrier
@@ -38,7 +39,7 @@ impl CaptureDecoder for ImageDecoder {
         }
     }
 
-    fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+    fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
         self.images.decoded()
     }
 

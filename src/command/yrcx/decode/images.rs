@@ -3,9 +3,6 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::command::decode;
 use crate::command::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
 use crate::controller::text::hex;
@@ -14,7 +11,6 @@ use crate::controller::yrcx::changes::{Change, changes};
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::{Image, Words};
 use crate::controller::yrcx::signal::Side;
-use crate::controller::yrcx::value::Key;
 use crate::output::view::Cell;
 use crate::transport::capture::Message;
 use crate::transport::tap::Direction;
@@ -34,7 +30,7 @@ pub trait BusDecoder: fmt::Debug {
 /// Images, and what was said around them.
 #[derive(Debug, Default)]
 pub struct Images {
-    decoded: DecodedCapture<FieldRow>,
+    decoded: DecodedCapture<FieldNote>,
     /// Whether images that say nothing new are listed, too.
     all: bool,
     shown: HashMap<(String, String), Shown>,
@@ -61,7 +57,7 @@ impl Images {
     }
 
     /// All that was decoded.
-    pub fn decoded(&mut self) -> &mut DecodedCapture<FieldRow> {
+    pub fn decoded(&mut self) -> &mut DecodedCapture<FieldNote> {
         &mut self.decoded
     }
 
@@ -71,7 +67,7 @@ impl Images {
     }
 
     /// Adds a message of the fieldbus.
-    pub fn message(&mut self, message: DecodedMessage<FieldRow>) {
+    pub fn message(&mut self, message: DecodedMessage<FieldNote>) {
         self.decoded.messages.push(message);
     }
 
@@ -118,7 +114,7 @@ impl Images {
                     let side = if side == Side::Input { "WI" } else { "WO" };
                     let place = format!("{side}{} bit {}", signal.word(), signal.bit());
                     let meaning = signal.dedicated().map(|dedicated| dedicated.text).unwrap_or_default();
-                    decoded.fields.push(FieldRow::of_message(
+                    decoded.fields.push(FieldNote::of_message(
                         &place,
                         &signal.to_string(),
                         u8::from(*on).to_string(),
@@ -137,7 +133,7 @@ pub fn decoded(
     direction: Direction,
     link: (String, String),
     text: String,
-) -> DecodedMessage<FieldRow> {
+) -> DecodedMessage<FieldNote> {
     let raw = text.split("  # ").next().unwrap_or_default().to_owned();
     let (number, time) = (message.number, message.time);
     let problem = message.is_cut.then(cut);
@@ -155,44 +151,15 @@ pub fn decoded(
     }
 }
 
-fn describe(decoded: &mut DecodedMessage<FieldRow>, description: Description) {
+fn describe(decoded: &mut DecodedMessage<FieldNote>, description: Description) {
     decoded.section = description.section.map(str::to_owned);
-    decoded.fields = description.fields.into_iter().map(FieldRow::from).collect();
+    decoded.fields = description.fields;
     if !description.problems.is_empty() {
         decoded.problem = Some(description.problems.join("; "));
     }
 }
 
-/// A field of words.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct FieldRow {
-    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
-    pub(super) place: String,
-    /// Its name for programs; null for the code, the status and what is not used.
-    pub(super) key: Option<&'static str>,
-    /// What it is called.
-    pub(super) name: String,
-    /// As it travels.
-    pub(super) raw: String,
-    /// What it says.
-    pub(super) meaning: String,
-}
-
-impl FieldRow {
-    /// A part of a message that is no field of a command.
-    pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
-        Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
-    }
-}
-
-impl From<FieldNote> for FieldRow {
-    fn from(note: FieldNote) -> Self {
-        let FieldNote { place, key, name, raw, meaning } = note;
-        Self { place, key: key.map(Key::name), name, raw, meaning }
-    }
-}
-
-impl decode::Field for FieldRow {
+impl decode::Field for FieldNote {
     const COLUMNS: &'static [&'static str] = &["word", "field", "raw", "meaning"];
 
     fn cells(&self) -> Vec<Cell> {

@@ -21,10 +21,7 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = Probed;
     const ID: &'static str = "yrcx.devicenet.probe";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         context.link.no_unit(NO_UNIT)?;

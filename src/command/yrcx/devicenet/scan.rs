@@ -19,10 +19,7 @@ impl Command for Scan {
     type Family = Yrcx;
     type Report = Scanned;
     const ID: &'static str = "yrcx.devicenet.scan";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Scanned, Failure> {
         context.link.no_unit(NO_UNIT)?;

@@ -1,6 +1,6 @@
 //! EtherNet/IP messages in words: what passes before images flow, and when they end.
 
-use crate::command::yrcx::decode::images::FieldRow;
+use crate::controller::yrcx::describe::FieldNote;
 use crate::transport::eip::status::{describe, encapsulation};
 use crate::transport::eip::wire::{
     Close, Command, Flow, Frame, HEADER_LEN, Identity, Net, Open, Opened, Path, Reply, Request, RrData, Segment,
@@ -13,7 +13,7 @@ pub struct EncapsulatedMessage {
     /// In a line.
     pub text: String,
     /// Its parts.
-    pub fields: Vec<FieldRow>,
+    pub fields: Vec<FieldNote>,
     /// What is wrong with it.
     pub problem: Option<String>,
     /// It answers something.
@@ -105,8 +105,8 @@ fn broken(text: &str, is_answer: bool, error: &WireError) -> EncapsulatedMessage
     EncapsulatedMessage { problem: Some(error.to_string()), ..plain(text.to_owned(), is_answer) }
 }
 
-fn field(name: &str, raw: impl Into<String>, meaning: impl Into<String>) -> FieldRow {
-    FieldRow::of_message("-", name, raw.into(), &meaning.into())
+fn field(name: &str, raw: impl Into<String>, meaning: impl Into<String>) -> FieldNote {
+    FieldNote::of_message("-", name, raw.into(), &meaning.into())
 }
 
 /// An answer of a device that was looked for.
@@ -152,7 +152,7 @@ fn unconnected(frame: &Frame<'_>) -> EncapsulatedMessage {
 fn request_in_words(request: &Request<'_>) -> EncapsulatedMessage {
     let name = service_name(request.service);
     let path = path_text(&request.path);
-    let asked = |text: String, fields: Vec<FieldRow>| EncapsulatedMessage { fields, ..plain(text, false) };
+    let asked = |text: String, fields: Vec<FieldNote>| EncapsulatedMessage { fields, ..plain(text, false) };
     match request.service {
         service::FORWARD_OPEN | service::LARGE_FORWARD_OPEN => {
             match Open::parse(request.data, request.service == service::LARGE_FORWARD_OPEN) {

@@ -19,10 +19,7 @@ impl Command for Identify {
     type Family = Yrcx;
     type Report = Identified;
     const ID: &'static str = "yrcx.eip.identity";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;

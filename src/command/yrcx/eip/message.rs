@@ -39,10 +39,7 @@ impl Command for Get {
     type Family = Yrcx;
     type Report = Value;
     const ID: &'static str = "yrcx.eip.get";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
         context.link.no_unit(NO_UNIT)?;
@@ -87,6 +84,7 @@ impl Command for Set {
     type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.eip.set";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
         if self.object().is_assembly() { Risk::Motion } else { Risk::Destroy }
@@ -94,10 +92,6 @@ impl Command for Set {
 
     fn intent(&self) -> String {
         format!("set {} to {}", self.object(), shown(&self.data.0))
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {

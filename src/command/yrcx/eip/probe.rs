@@ -24,10 +24,7 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = Found;
     const ID: &'static str = "yrcx.eip.probe";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Found, Failure> {
         context.link.no_unit(NO_UNIT)?;

@@ -34,7 +34,7 @@ impl Command for Origin {
             }
             _ => error.into(),
         })?;
-        let values = link.run(&order).await?.values;
+        let values = link.ask(&order).await?.values;
         let state = |key| shown(table::Command::OriginStatus, &values, key);
         let axes = (1..).zip(Key::AXES).filter_map(|(axis, key)| Some(AxisOrigin { axis, state: state(key)? }));
         Ok(match state(Key::System) {

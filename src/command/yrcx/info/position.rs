@@ -57,7 +57,7 @@ impl Command for Where {
             Unit::Pulse => table::Command::PositionPulse,
         };
         let order = link.draft(command)?.with(Key::Continuous, self.continuous).build()?;
-        let done = if self.continuous { link.next_output(&order).await? } else { link.run(&order).await? };
+        let done = if self.continuous { link.next_output(&order).await? } else { link.ask(&order).await? };
         Ok(Place {
             position: Position::of(&done.values, Some(self.report)),
             hand: shown(table::Command::PositionMm, &done.values, Key::HandSystem),

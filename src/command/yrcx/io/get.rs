@@ -26,10 +26,7 @@ impl Command for Get {
     type Family = Yrcx;
     type Report = States;
     const ID: &'static str = "yrcx.io.get";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Monitor
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
         let given = context.link.shown().copied();

@@ -70,11 +70,6 @@ fn signal(text: &str) -> Result<Signal, String> {
     Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
 }
 
-/// `servo-on (SI(01))`; a general-purpose signal has but its number.
-pub(super) fn named(signal: Signal) -> String {
-    signal.dedicated().map_or_else(|| signal.to_string(), |dedicated| format!("{} ({signal})", dedicated.name))
-}
-
 /// An input of the controller as typed.
 fn input(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Input, text).map_err(|error| error.to_string())

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{input, named};
+use super::input;
 use crate::command::ValueKind;
 use crate::command::frame::orders::Done;
 use crate::command::yrcx::link::Link;
@@ -51,7 +51,7 @@ fn change(text: &str) -> Result<Change, String> {
 impl Change {
     fn told(self) -> String {
         match self {
-            Self::Signal { signal, on } => format!("{} {}", named(signal), if on { "on" } else { "off" }),
+            Self::Signal { signal, on } => format!("{} {}", signal.named(), if on { "on" } else { "off" }),
             Self::Word { register, value } => format!("{register} = {value}"),
         }
     }
@@ -129,12 +129,12 @@ impl Command for Pulse {
     }
 
     fn intent(&self) -> String {
-        format!("switch {} on and off again", named(self.signal))
+        format!("switch {} on and off again", self.signal.named())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
-        Ok(Done::new(format!("switched {} on and off again", named(self.signal))))
+        Ok(Done::new(format!("switched {} on and off again", self.signal.named())))
     }
 }
 

@@ -41,13 +41,10 @@ impl Command for Watch {
     type Family = Yrcx;
     type Report = Changes;
     const ID: &'static str = "yrcx.io.watch";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     fn is_endless(&self) -> bool {
         true
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Monitor
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Changes, Failure> {

@@ -4,8 +4,9 @@ use std::any::Any;
 
 use serde_json::Value as Json;
 
-use super::{Link, Transport};
+use super::Link;
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::trace::locked;
 use crate::command::yrcx::fieldbus::Board;
 use crate::failure::Failure;
 use crate::transport::tap::Direction;
@@ -13,10 +14,10 @@ use crate::transport::tap::Direction;
 impl Link {
     /// The device, of a link that is for it alone, whatever its fieldbus.
     pub fn any_board(&mut self) -> Result<&mut dyn Board, Failure> {
-        match &mut self.transport {
-            Transport::Board(board, _) => Ok(&mut **board),
-            Transport::Notes(_) => Err(unknown()),
-            Transport::Image(_) => Err(Failure::local("this link carries images, not messages")),
+        match &mut self.board {
+            Some((board, _)) => Ok(&mut **board),
+            None if self.client.is_dry() => Err(unknown()),
+            None => Err(Failure::local("this link carries images, not messages")),
         }
     }
 
@@ -32,14 +33,14 @@ impl Link {
 
     /// Tells at `-vv` what was asked of the device, and what it answered.
     pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
-        self.trace.message(Direction::Sent, sent, about);
-        self.trace.message(Direction::Received, received, "done");
+        let mut trace = locked(&self.trace);
+        trace.message(Direction::Sent, sent, about);
+        trace.message(Direction::Received, received, "done");
     }
 
     /// In a dry run, notes a message, whose answer is not known then.
     pub fn rehearse_frame(&mut self, frame: Json) -> Result<(), Failure> {
-        let Transport::Notes(plan) = &mut self.transport else { return Ok(()) };
-        plan.note(frame, Reason::default());
-        Err(unknown())
+        self.client.plan_frame(frame, Reason::default());
+        if self.client.is_dry() { Err(unknown()) } else { Ok(()) }
     }
 }

@@ -71,7 +71,7 @@ impl Command for AbsReset {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
-            let done = context.link.run(&draft.build()?).await?;
+            let done = context.link.ask(&draft.build()?).await?;
             return Ok(Moved::new(format!("reset the absolute position of {}", self.axis()), Some(&done), None));
         };
         let order = draft.with(Key::Direction, direction.value()).build()?;

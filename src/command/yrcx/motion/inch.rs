@@ -3,11 +3,9 @@
 use clap::Args;
 
 use super::{Motion, Moved};
-use crate::command::frame::orders::Done;
 use crate::command::yrcx::arguments::{Direction, System};
-use crate::command::yrcx::link;
 use crate::command::yrcx::position::Unit;
-use crate::command::yrcx::single::Single;
+
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
@@ -65,33 +63,6 @@ impl Motion for Inch {
     }
 }
 
-/// Sets the inching distance.
-#[derive(Debug, Args)]
-pub struct InchDistance {
-    /// Pulses, or steps of 0.001 mm along coordinates; 1 to 10000
-    distance: String,
-}
-
-impl Single for InchDistance {
-    type Report = Done;
-    const ID: &'static str = "yrcx.inch-distance";
-
-    fn command(&self) -> Command {
-        Command::InchAmountSet
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::InchingAmount, self.distance.as_str())
-    }
-
-    fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-        Ok(Done::new(format!(
-            "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
-            self.distance
-        )))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use crate::command::yrcx::testing::{intent, objection, words};
@@ -106,14 +77,5 @@ mod tests {
         );
         assert!(words(&["inch", "pulse", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
         assert!(objection(&["inch", "joint", "1", "+"]).contains("pulse, cartesian, tool"));
-    }
-
-    #[test]
-    fn distances_have_a_range() {
-        assert_eq!(words(&["inch-distance", "10000", "--unit", "4"]).unwrap()[0][..3], ["0x4027", "0x0000", "0x2710"]);
-        for wrong in ["0", "10001", "0.1", "1mm"] {
-            let failure = words(&["inch-distance", wrong]).unwrap_err();
-            assert!(failure.message.contains("inching_amount"), "{wrong}: {failure}");
-        }
     }
 }

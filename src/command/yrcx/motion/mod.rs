@@ -34,7 +34,7 @@ use crate::output::view::{Section, View};
 
 pub use absolute::AbsReset;
 pub use drive::{Drive, Drivei};
-pub use inch::{Inch, InchDistance};
+pub use inch::Inch;
 pub use jog::Jog;
 pub use moves::Move;
 pub use origin::Origin;
@@ -161,7 +161,7 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
         message: format!("nothing was moved: where the axes are that are not named is not known: {}", failure.message),
         ..failure.hint("name axes 1 and 2 as well, or use `yrcx drive`")
     };
-    let place = link.run(&present).await.map_err(not_moved)?.values.axes();
+    let place = link.ask(&present).await.map_err(not_moved)?.values.axes();
     let place = place.ok_or_else(|| not_moved(Failure::new(Kind::Malformed, "the answer has no position")))?;
     let keys = axes.iter().filter_map(|axis| Some((*Key::AXES.get(axis - 1)?, *place.get(axis - 1)?)));
     Ok(keys.fold(draft, |draft, (key, steps)| draft.with(key, steps)).build()?)
@@ -176,10 +176,10 @@ async fn go(
     doing: &str,
 ) -> Result<Option<Done>, Failure> {
     if no_wait {
-        return link.begin_run(order).await;
+        return link.begin(order).await;
     }
     let live = Live::new(link, screen, doing);
-    let done = link.run(order).await;
+    let done = link.ask(order).await;
     live.end();
     done.map(Some)
 }

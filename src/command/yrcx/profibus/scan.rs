@@ -19,10 +19,7 @@ impl Command for Scan {
     type Family = Yrcx;
     type Report = Stations;
     const ID: &'static str = "yrcx.profibus.scan";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Stations, Failure> {
         context.link.no_unit(NO_UNIT)?;

@@ -1,5 +1,6 @@
 //! One remote command from the ready status back to it (chapter 2, sections 1.2 and 2).
 
+use std::fmt;
 use std::time::Duration;
 
 use super::{ImageSession, Next, Policy, edge_due};
@@ -75,6 +76,30 @@ pub enum Silence {
     Undocumented(u16),
     /// The operator did not want to wait any longer; for a motion, the stop input went off before.
     Interrupted,
+}
+
+impl fmt::Display for NotSentReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoImage => f.write_str("the controller shows nothing"),
+            Self::LinkLost => f.write_str("the link is down"),
+            Self::NotReady(status) => write!(f, "the controller is not ready for a command, its status is: {status}"),
+            Self::Interrupted => f.write_str("interrupted"),
+        }
+    }
+}
+
+impl fmt::Display for Silence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LinkLost => f.write_str("the link went down"),
+            Self::NotTaken => f.write_str("the controller did not take it"),
+            Self::TooLong => f.write_str("it still ran when patience was over"),
+            Self::Vanished => f.write_str("the controller stopped showing that it runs, and showed no end"),
+            Self::Undocumented(word) => write!(f, "the controller shows the undocumented status {word:#06x}"),
+            Self::Interrupted => f.write_str("its end was not seen after the stop input went off"),
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use super::polling::{Heard, Polling};
 use super::transaction::{Outcome, Requester};
-use super::view::{Input, State, Statistics, View};
+use super::view::{Details, Input, State, View};
 use super::{Bus, Token};
 use crate::devicenet::Now;
 use crate::devicenet::can::Frame;
@@ -84,16 +84,6 @@ pub(super) struct Connection {
 
 impl Connection {
     pub(super) fn new(own: Mac, settings: Settings) -> Self {
-        let view = View {
-            state: State::Opening,
-            generation: 0,
-            size: None,
-            input: None,
-            sent: 0,
-            error: None,
-            rate: None,
-            statistics: Statistics::default(),
-        };
         Self {
             requester: Requester::new(own, settings.slave, settings.timeout),
             settings,
@@ -108,7 +98,7 @@ impl Connection {
             asking: None,
             replies: VecDeque::new(),
             keep_alive: Now::ZERO,
-            view,
+            view: View::new(Details::default()),
             has_changed: true,
         }
     }
@@ -131,11 +121,7 @@ impl Connection {
 
     /// Shows this image from the next poll on; see [`Scanner::set_image`](super::Scanner::set_image).
     pub(super) fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Error> {
-        match self.view.state {
-            State::Open if self.view.generation == generation => {}
-            State::Closing | State::Closed => return Err(Error::Ended),
-            _ => return Err(Error::Outdated),
-        }
+        self.view.check(generation)?;
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
             return Err(Error::Settings(format!("the image has {size} bytes, not {len}")));
@@ -385,12 +371,12 @@ impl Connection {
             let known = sizes.collect::<Vec<_>>().join(", ");
             return Err(Error::Size { mac, produced, consumed, known });
         };
-        if self.view.size.is_some_and(|size| size != profile.resting.len()) {
-            let known = format!("the {} from before", self.view.size.unwrap_or_default());
+        if self.view.details.size.is_some_and(|size| size != profile.resting.len()) {
+            let known = format!("the {} from before", self.view.details.size.unwrap_or_default());
             return Err(Error::Size { mac, produced, consumed, known });
         }
         self.image.clone_from(&profile.resting);
-        self.view.size = Some(profile.resting.len());
+        self.view.details.size = Some(profile.resting.len());
         Ok(u16::try_from(images.rate.as_millis()).unwrap_or(u16::MAX))
     }
 
@@ -401,9 +387,9 @@ impl Connection {
         }
         self.phase = Phase::Open;
         self.view.generation += 1;
-        if let (Purpose::Images(images), Some(size)) = (&self.settings.purpose, self.view.size) {
+        if let (Purpose::Images(images), Some(size)) = (&self.settings.purpose, self.view.details.size) {
             let rate = Duration::from_millis(rate.into());
-            self.view.rate = Some(rate);
+            self.view.details.rate = Some(rate);
             self.polling = Some(Polling::new(now, self.settings.slave, size, images.cycle, rate));
             // What is shown now is the resting image: a change of this generation.
             self.revision += 1;
@@ -486,7 +472,7 @@ impl Connection {
     }
 
     fn set_error(&mut self, error: Error) {
-        self.view.error = Some(error);
+        self.view.trouble = Some(error);
         self.has_changed = true;
     }
 

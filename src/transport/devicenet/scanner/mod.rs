@@ -19,7 +19,7 @@ mod view;
 use self::connection::Connection;
 use self::finder::Finder;
 pub use self::finder::Found;
-pub use self::view::{Input, State, Statistics, View};
+pub use self::view::{Details, Input, State, Statistics, View, Views};
 
 /// Between the questions whether a MAC is free, and before the master is on line.
 const CHECK: Duration = Duration::from_secs(1);

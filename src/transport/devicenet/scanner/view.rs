@@ -1,38 +1,17 @@
 //! What can be seen of a connection.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use crate::devicenet::Now;
 use crate::devicenet::error::Error;
+use crate::image::view;
+pub use crate::image::view::{Input, State};
 
-/// How a connection is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum State {
-    /// Being opened for the first time.
-    Opening,
-    /// Images travel, or questions can be asked.
-    Open,
-    /// Lost, and being opened again.
-    Lost,
-    /// Being closed.
-    Closing,
-    /// At its end: closed, or never opened.
-    Closed,
-}
+/// What can be seen of a connection. What is sent has left when a poll with it was answered.
+pub type View = view::View<Error, Statistics, Details>;
+/// The same as it changes.
+pub type Views = view::Views<Error, Statistics, Details>;
 
-/// An image from the slave.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// The bytes.
-    pub image: Arc<[u8]>,
-    /// When it came.
-    pub at: Now,
-    /// In which generation.
-    pub generation: u32,
-}
-
-/// What was counted, over all generations.
+/// What was counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Polls sent.
@@ -49,23 +28,11 @@ pub struct Statistics {
     pub skipped: u64,
 }
 
-/// All that can be seen of a connection.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
-    /// How it is doing.
-    pub state: State,
-    /// Counts the openings; 0 before the first.
-    pub generation: u32,
-    /// Bytes of its images both ways, once they are known: that of one of the profiles.
+/// What only DeviceNet has to see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Details {
+    /// Bytes of the images both ways, once they are known: that of one of the profiles.
     pub size: Option<usize>,
-    /// The newest image of the slave. It stays when the connection is lost: compare the generation.
-    pub input: Option<Input>,
-    /// The newest change of what is shown that a poll which was answered has carried.
-    pub sent: u64,
-    /// Why it was lost, or not opened, the last time.
-    pub error: Option<Error>,
     /// The packet rate that the slave keeps.
     pub rate: Option<Duration>,
-    /// What was counted.
-    pub statistics: Statistics,
 }

@@ -82,7 +82,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
         world.run(MS * 500);
     }
     let view = world.view();
-    assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.error);
+    assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.trouble);
     assert_eq!(shown, taken);
     // Those that were late because an answer was waited for aside, there is a poll every 20 ms.
     let all = world.now.saturating_sub(start).as_millis() / 20;

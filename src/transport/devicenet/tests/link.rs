@@ -46,7 +46,7 @@ fn a_connection_begins_with_the_known_frames() {
     );
     assert_eq!(got[19], "3C5#0041000000000000");
     let view = world.view();
-    assert_eq!((view.size, view.rate, view.generation), (Some(48), Some(MS * 100), 1));
+    assert_eq!((view.details.size, view.details.rate, view.generation), (Some(48), Some(MS * 100), 1));
     // The very first image that the controller gets is the one at rest.
     assert_eq!(world.mirror().history[0].1, resting(48));
     let checked = world.trace.iter().position(|(_, frame)| frame.id() == 0x42E).unwrap();
@@ -89,7 +89,7 @@ fn closing_releases_both_connections() {
     world.until(SECOND * 3, |world| world.view().state == State::Closed);
     assert_eq!(world.devices[0].master(), None);
     assert_eq!(world.mirror().gone.len(), 1);
-    assert_eq!(world.view().error, None);
+    assert_eq!(world.view().trouble, None);
     let last: Vec<String> = frames(&world).into_iter().rev().take(2).collect();
     assert!(last[0].ends_with("CC") && last[1].ends_with("4C030103"), "{last:?}");
 }
@@ -100,7 +100,7 @@ fn refused(device: Device<Mirror>) -> Error {
     world.scanner.open(LINK, images(5)).unwrap();
     world.until(SECOND * 20, |world| world.view().state == State::Closed);
     assert!(world.trace.iter().all(|(_, frame)| frame.id() != 0x42D), "nothing was polled");
-    world.view().error.unwrap()
+    world.view().trouble.unwrap()
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn another_masters_slave_is_not_taken() {
     other.scanner.open(LINK, images(5)).unwrap();
     // Its own master has fallen silent, and the poll times out; but the explicit connection lives 10 s.
     other.until(SECOND * 5, |world| world.view().state == State::Closed);
-    assert_eq!(other.view().error, Some(Error::Owned { mac: mac(5) }));
+    assert_eq!(other.view().trouble, Some(Error::Owned { mac: mac(5) }));
 }
 
 /// A process with the same MAC was killed: its connections are released and allocated again.
@@ -167,7 +167,7 @@ fn a_lost_link_begins_again_at_rest() {
     let lost = world.until(SECOND, |world| world.view().state == State::Lost);
     let took = lost.saturating_sub(cut);
     assert!((MS * 380..MS * 430).contains(&took), "four times the packet rate: {took:?}");
-    assert!(matches!(world.view().error, Some(Error::Lost { after, .. }) if after == MS * 400));
+    assert!(matches!(world.view().trouble, Some(Error::Lost { after, .. }) if after == MS * 400));
     assert_eq!(world.scanner.set_image(LINK, 1, &[9; 48]), Err(Error::Outdated));
     world.run(SECOND);
     assert_eq!(world.mirror().gone.len(), 1, "the slave has noticed, too");
@@ -205,7 +205,7 @@ fn bus_off_and_an_unplugged_adapter_are_losses() {
     let mut world = World::linked(48, 1);
     let now = world.now;
     world.scanner.handle_health(now, Health { state: BusState::Off, ..Health::default() });
-    assert_eq!((world.view().state, world.view().error), (State::Lost, Some(Error::BusOff)));
+    assert_eq!((world.view().state, world.view().trouble), (State::Lost, Some(Error::BusOff)));
     world.run(SECOND * 3);
     assert_eq!(world.view().state, State::Lost, "nothing is sent meanwhile");
     let now = world.now;
@@ -215,7 +215,7 @@ fn bus_off_and_an_unplugged_adapter_are_losses() {
     let gone = PortError::Gone { path: "/dev/ttyACM0".to_owned(), why: "unplugged".to_owned() };
     let now = world.now;
     world.scanner.fail(now, &Error::Port(gone.clone()));
-    assert_eq!((world.view().state, world.view().error), (State::Lost, Some(Error::Port(gone))));
+    assert_eq!((world.view().state, world.view().trouble), (State::Lost, Some(Error::Port(gone))));
     world.run(SECOND * 3);
     assert_eq!(world.view().state, State::Lost);
     world.trace.clear();

@@ -49,7 +49,7 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
         let network = Network::open(&adapter(place, 1), Tap::default()).await.unwrap();
         let mut connection = network.connect(images(5)).await.unwrap();
         let view = connection.view();
-        assert_eq!((view.size, view.generation), (Some(48), 1));
+        assert_eq!((view.details.size, view.generation), (Some(48), 1));
         let mut image = resting(48);
         image[32..].fill(0x5A);
         let change = connection.set_image(1, &image).unwrap();
@@ -100,7 +100,7 @@ async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
     let mut connection = network.connect(images(5)).await.unwrap();
     drop(first);
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert!(matches!(view.error, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.error);
+    assert!(matches!(view.trouble, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.trouble);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
         // The system may hold the port for a moment.
@@ -157,7 +157,7 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     let mut connection = network.connect(images(5)).await.unwrap();
     hub.with(|device, _| device.misbehave(Some(DeviceFault::BusOff)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert!(matches!(view.error, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.error);
+    assert!(matches!(view.trouble, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.trouble);
 }
 
 /// What python-can sends to open an adapter: C while it is closed, an empty line, O twice.

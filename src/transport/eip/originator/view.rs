@@ -1,41 +1,18 @@
 //! What can be seen of a connection.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use super::super::Now;
 use super::super::class1::{Consumer, Producer};
 use super::super::error::EipError;
+use crate::image::view;
+pub use crate::image::view::{Input, State};
 
-/// How a connection is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum State {
-    /// Being opened for the first time.
-    Opening,
-    /// Images travel.
-    Open,
-    /// Lost, and being opened again.
-    Lost,
-    /// Being closed.
-    Closing,
-    /// At its end: closed, or never opened.
-    Closed,
-}
+/// What can be seen of a connection.
+pub type View = view::View<EipError, Statistics, Details>;
+/// The same as it changes.
+pub type Views = view::Views<EipError, Statistics, Details>;
 
-/// An image from the device.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// The bytes.
-    pub image: Arc<[u8]>,
-    /// The number of its datagram.
-    pub sequence: u32,
-    /// When it came.
-    pub at: Now,
-    /// In which generation.
-    pub generation: u32,
-}
-
-/// What was counted, over all generations.
+/// What was counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Datagrams sent.
@@ -66,23 +43,11 @@ impl Statistics {
     }
 }
 
-/// All that can be seen of a connection.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
-    /// How it is doing.
-    pub state: State,
-    /// Counts the openings; 0 before the first.
-    pub generation: u32,
-    /// The newest image of the device. It stays when the connection is lost: compare the generation.
-    pub input: Option<Input>,
-    /// The newest change of what is sent that went out at least once.
-    pub sent: u64,
+/// What only EtherNet/IP has to see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Details {
     /// Whether the device is told to run.
     pub run: bool,
-    /// Why it was lost, or not opened, the last time; while it is open, what went wrong on a socket here.
-    pub trouble: Option<EipError>,
     /// The intervals that the device keeps: to it, from it.
     pub intervals: Option<(Duration, Duration)>,
-    /// What was counted.
-    pub statistics: Statistics,
 }

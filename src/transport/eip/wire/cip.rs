@@ -36,7 +36,7 @@ pub struct Request<'a> {
 impl<'a> Request<'a> {
     /// Reads a message.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let service = reader.u8("service")?;
         let words = reader.u8("words of the path")?;
         let path = Path::parse(reader.take(usize::from(words) * 2, "path")?)
@@ -109,7 +109,7 @@ pub struct Reply<'a> {
 impl<'a> Reply<'a> {
     /// Reads a message.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let service = reader.u8("reply service")?;
         if service & service::REPLY == 0 {
             return Err(reader.wrong("reply service", 1, service));
@@ -134,8 +134,8 @@ impl<'a> Reply<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     #[test]
     fn a_read_of_an_attribute() {

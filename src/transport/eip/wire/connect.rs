@@ -150,7 +150,7 @@ impl Open {
 
     /// Reads the data of a request.
     pub fn parse(data: &[u8], large: bool) -> Result<Self, WireError> {
-        let mut reader = Reader::new(data);
+        let mut reader = Reader::little(data);
         reader.take(PATIENCE.len(), "time-out of the request")?;
         let o_t_id = reader.u32("O->T connection id")?;
         let t_o_id = reader.u32("T->O connection id")?;
@@ -189,7 +189,7 @@ pub struct Opened {
 impl Opened {
     /// Reads the data of a reply.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(data);
+        let mut reader = Reader::little(data);
         let o_t_id = reader.u32("O->T connection id")?;
         let t_o_id = reader.u32("T->O connection id")?;
         let triad = Triad::read(&mut reader)?;
@@ -227,7 +227,7 @@ pub struct Refused {
 impl Refused {
     /// Reads the data of a reply.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(data);
+        let mut reader = Reader::little(data);
         Ok(Self { triad: Triad::read(&mut reader)?, remaining: reader.u8("remaining path").ok() })
     }
 
@@ -263,7 +263,7 @@ impl Close {
 
     /// Reads the data of a request.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(data);
+        let mut reader = Reader::little(data);
         reader.take(PATIENCE.len(), "time-out of the request")?;
         let triad = Triad::read(&mut reader)?;
         let words = reader.u8("words of the connection path")?;
@@ -286,7 +286,7 @@ pub struct Closed {
 impl Closed {
     /// Reads the data of a reply.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
-        Ok(Self { triad: Triad::read(&mut Reader::new(data))? })
+        Ok(Self { triad: Triad::read(&mut Reader::little(data))? })
     }
 
     /// The data of a reply: nothing is added.
@@ -303,8 +303,9 @@ fn manager(service: u8, data: &[u8]) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Frame, Key, Reply, RrData, Segment, Status, hex};
+    use super::super::{Frame, Key, Reply, RrData, Segment, Status};
     use super::*;
+    use crate::testing::hex;
 
     fn cyclic(size: u16) -> Flow {
         Flow { rpi_us: 20_000, net: Net::PointToPoint, size, variable: false, priority: 2, redundant: false }

@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
 
     /// Reads a message that is all there, as [`Frames`] cuts them or a datagram holds one.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let command = Command(reader.u16("command")?);
         let len = usize::from(reader.u16("length")?);
         let session = reader.u32("session")?;
@@ -126,8 +126,9 @@ impl Frames {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Problem, hex};
+    use super::super::Problem;
     use super::*;
+    use crate::testing::hex;
 
     /// Volume 2, 2-4.4; the same bytes are in the captures that come with cpppo.
     #[test]

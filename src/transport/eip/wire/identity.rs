@@ -61,7 +61,7 @@ impl Identity {
     }
 
     fn parse_item(bytes: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         reader.u16("protocol version")?;
         let address = sockaddr(reader.take(16, "socket address")?)?;
         let mut identity = Self::read(&mut reader)?;
@@ -72,7 +72,7 @@ impl Identity {
 
     /// Reads what the identity object gives for all its attributes, which has no address and here no state.
     pub fn parse_attributes(bytes: &[u8], address: SocketAddrV4) -> Result<Self, WireError> {
-        Ok(Self { address, ..Self::read(&mut Reader::new(bytes))? })
+        Ok(Self { address, ..Self::read(&mut Reader::little(bytes))? })
     }
 
     fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
@@ -136,7 +136,7 @@ impl Services {
     pub fn parse(data: &[u8]) -> Result<Option<Self>, WireError> {
         let items = Item::parse_all(data)?;
         let Some(item) = items.iter().find(|item| item.kind == SERVICES_ITEM) else { return Ok(None) };
-        let mut reader = Reader::new(item.data);
+        let mut reader = Reader::little(item.data);
         reader.u16("protocol version")?;
         let flags = reader.u16("capability flags")?;
         Ok(Some(Self { flags, name: text(reader.rest()) }))
@@ -160,8 +160,9 @@ fn text(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Command, Frame, hex};
+    use super::super::{Command, Frame};
     use super::*;
+    use crate::testing::hex;
 
     /// A PowerFlex 753, from cpppo's tests (enip_test.py, `listident_1_rpy`; two lengths that the device has wrong are
     /// corrected there).

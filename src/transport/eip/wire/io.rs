@@ -24,7 +24,7 @@ impl<'a> Cyclic<'a> {
         let items = Item::parse_all(bytes)?;
         // In this order: 2 bytes of count, then type and length of each.
         let [address, data] = items[..] else {
-            let mut reader = Reader::new(bytes);
+            let mut reader = Reader::little(bytes);
             let count = reader.u16("item count")?;
             return Err(reader.wrong("item count", 2, count));
         };
@@ -33,16 +33,15 @@ impl<'a> Cyclic<'a> {
             (data, kind::CONNECTED_DATA, "data item", 6 + address.data.len()),
         ] {
             if item.kind != wanted {
-                let problem = super::Problem::Value { found: item.kind.into() };
-                return Err(WireError { field, offset, problem });
+                return Err(WireError::value(field, offset, item.kind));
             }
         }
         let inside = |offset| move |error: WireError| WireError { offset: error.offset + offset, ..error };
-        let mut reader = Reader::new(address.data);
+        let mut reader = Reader::little(address.data);
         let id = reader.u32("connection id").map_err(inside(6))?;
         let sequence = reader.u32("sequence number").map_err(inside(6))?;
         reader.end("end of the address").map_err(inside(6))?;
-        let mut reader = Reader::new(data.data);
+        let mut reader = Reader::little(data.data);
         let count = reader.u16("sequence count").map_err(inside(10 + address.data.len()))?;
         Ok(Self { id, sequence, count, body: reader.rest() })
     }
@@ -62,8 +61,8 @@ impl<'a> Cyclic<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     /// The sizes that a 48-byte image makes on the wire: 72 to the target, 68 back.
     #[test]

@@ -44,7 +44,7 @@ impl<'a> Item<'a> {
 
     /// Reads the count and the items; nothing may follow.
     pub fn parse_all(bytes: &'a [u8]) -> Result<Vec<Self>, WireError> {
-        Self::read_all(&mut Reader::new(bytes))
+        Self::read_all(&mut Reader::little(bytes))
     }
 
     fn read_all(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
@@ -106,7 +106,7 @@ impl<'a> RrData<'a> {
 
     /// Reads the data of a frame; nothing may follow the items that are counted.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
         let items = Item::read_all(&mut reader)?;
         let address = |kind| items.iter().find(|item| item.kind == kind).map(|item| sockaddr(item.data)).transpose();
@@ -117,7 +117,7 @@ impl<'a> RrData<'a> {
     /// Reads the data of an answer, as devices send it: some put items behind those that they count, such as a socket
     /// address behind a refusal. Those count as well where they can be read, and are no fault where they cannot.
     pub fn parse_answer(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
         let mut items = Item::read_counted(&mut reader)?;
         let room = usize::from(MOST_ITEMS).saturating_sub(items.len());
@@ -157,7 +157,7 @@ impl<'a> RrData<'a> {
 
 /// Reads a socket address, which is big-endian (volume 2, 2-6.3.3).
 pub(super) fn sockaddr(bytes: &[u8]) -> Result<SocketAddrV4, WireError> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = Reader::little(bytes);
     let family = u16::from_be_bytes(reader.array("address family")?);
     if family != AF_INET {
         return Err(reader.wrong("address family", 2, family));
@@ -179,8 +179,8 @@ pub(super) fn sockaddr_bytes(address: SocketAddrV4) -> [u8; 16] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     #[test]
     fn addresses_travel_beside_the_message() {

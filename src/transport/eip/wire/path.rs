@@ -91,7 +91,7 @@ impl Path {
 
     /// Reads all of the bytes.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::little(bytes);
         let mut segments = Vec::new();
         while !reader.is_empty() {
             segments.push(segment(&mut reader)?);
@@ -223,8 +223,8 @@ fn pad(out: &mut Vec<u8>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     /// Volume 1, C-1.4.2: the forms of logical segments; C-1.4.5: the key.
     #[test]

@@ -20,7 +20,7 @@ mod answer;
 mod view;
 
 use answer::{acknowledged, data};
-pub use view::{Input, State, Statistics, View};
+pub use view::{Details, Input, State, Statistics, View, Views};
 
 /// How long a slave may take to get ready.
 const READY: Duration = Duration::from_secs(5);
@@ -105,18 +105,12 @@ impl Master {
     /// When no link can be as the settings want it.
     pub fn new(now: Now, settings: Settings) -> Result<Self, ProfibusError> {
         let timing = settings.timing()?;
-        let view = View {
-            state: State::Opening,
-            generation: 0,
-            input: None,
-            sent: 0,
-            error: None,
+        let details = Details {
             diagnosis: None,
             configuration: None,
             echoes: false,
             cycle: timing.cycle,
             watchdog: timing.watchdog.time(),
-            statistics: Statistics::default(),
         };
         Ok(Self {
             requester: Requester::new(settings.master, settings.rate, timing.slot, settings.retries),
@@ -137,7 +131,7 @@ impl Master {
             pending: None,
             settings,
             timing,
-            view,
+            view: View::new(details),
             has_changed: true,
         })
     }
@@ -145,13 +139,11 @@ impl Master {
     /// What there is to see.
     pub fn view(&self) -> View {
         let counted = self.requester.counted();
-        let statistics = Statistics {
-            repeated: counted.repeated,
-            noise: counted.noise,
-            unexpected: counted.unexpected,
-            ..self.view.statistics
-        };
-        View { statistics, echoes: self.requester.echoes(), ..self.view.clone() }
+        let mut view = self.view.clone();
+        let Statistics { repeated, noise, unexpected, .. } = &mut view.statistics;
+        (*repeated, *noise, *unexpected) = (counted.repeated, counted.noise, counted.unexpected);
+        view.details.echoes = self.requester.echoes();
+        view
     }
 
     /// Whether the view has changed since the last call, counters aside.
@@ -169,11 +161,7 @@ impl Master {
             let (len, size) = (image.len(), self.settings.output_size);
             return Err(ProfibusError::Settings(format!("an image of {len} bytes where {size} belong")));
         }
-        match self.view.state {
-            State::Open if generation == self.view.generation => {}
-            State::Closing | State::Closed => return Err(ProfibusError::Ended),
-            _ => return Err(ProfibusError::Outdated),
-        }
+        self.view.check(generation)?;
         self.image = image.to_vec();
         self.changes += 1;
         self.pending = Some(self.changes);
@@ -186,7 +174,7 @@ impl Master {
             State::Closing | State::Closed => {}
             _ if self.locked => {
                 self.set_state(State::Closing);
-                self.view.error = None;
+                self.view.trouble = None;
                 self.jobs.clear();
                 self.requester.forget(self.settings.station);
                 self.requester.wait(now + self.timing.slot);
@@ -205,7 +193,7 @@ impl Master {
                 self.listen_until(Now::MAX);
             }
             State::Opening | State::Closing => {
-                self.view.error = Some(error);
+                self.view.trouble = Some(error);
                 self.end();
             }
         }
@@ -258,7 +246,7 @@ impl Master {
                 request(self, sap::SET_PRM, self.parameters().emit())
             }
             Step::Check => {
-                let configuration = self.view.configuration.clone().unwrap_or_default();
+                let configuration = self.view.details.configuration.clone().unwrap_or_default();
                 request(self, sap::CHK_CFG, configuration)
             }
             Step::Data => return self.work(now),
@@ -433,8 +421,8 @@ impl Master {
             asked,
             why: error.to_string(),
         })?;
-        if self.view.diagnosis.as_ref() != Some(&diagnosis) {
-            self.view.diagnosis = Some(diagnosis.clone());
+        if self.view.details.diagnosis.as_ref() != Some(&diagnosis) {
+            self.view.details.diagnosis = Some(diagnosis.clone());
             self.has_changed = true;
         }
         Ok(diagnosis)
@@ -460,7 +448,7 @@ impl Master {
         let asked = sap::name(Some(sap::GET_CFG));
         let wanted = data(station, asked, answer);
         self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
-        self.view.configuration = match (&self.settings.configuration, wanted) {
+        self.view.details.configuration = match (&self.settings.configuration, wanted) {
             // A slave may have its default configuration until it is given another.
             (Some(set), _) => Some(set.clone()),
             (None, wanted) => {
@@ -493,7 +481,7 @@ impl Master {
             return Err(ProfibusError::ParameterFault { station, sent });
         }
         if diagnosis.has(Flag::ConfigurationFault) {
-            let sent = self.view.configuration.clone().unwrap_or_default();
+            let sent = self.view.details.configuration.clone().unwrap_or_default();
             return Err(ProfibusError::ConfigurationFault { station, sent, wanted: self.wanted.clone() });
         }
         let is_ready = !diagnosis.has(Flag::NotReady) && !diagnosis.has(Flag::Static);
@@ -549,7 +537,7 @@ impl Master {
         self.view.input = Some(Input { image: image.into(), at: now, generation });
         self.has_changed = true;
         if self.view.state != State::Open {
-            self.view.error = None;
+            self.view.trouble = None;
             self.set_state(State::Open);
         }
         Ok(())
@@ -568,9 +556,9 @@ impl Master {
         let has_left = self.view.state == State::Open
             && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
         // The reason of a loss is worth more than why it lasts.
-        let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.error.is_some();
+        let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.trouble.is_some();
         if !is_known || must_be_quiet {
-            self.view.error = Some(error);
+            self.view.trouble = Some(error);
         }
         if self.view.state == State::Opening || was_closing {
             // A slave that may be ours is set free, unless that is what failed, or others speak.

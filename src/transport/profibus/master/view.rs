@@ -1,39 +1,18 @@
 //! What can be seen of a link.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use super::super::Now;
 use super::super::error::ProfibusError;
 use super::super::wire::Diagnosis;
+use crate::image::view;
+pub use crate::image::view::{Input, State};
 
-/// How a link is doing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum State {
-    /// Being opened for the first time.
-    Opening,
-    /// Images travel.
-    Open,
-    /// Lost, and being opened again.
-    Lost,
-    /// Being closed.
-    Closing,
-    /// At its end: closed, or never opened.
-    Closed,
-}
+/// What can be seen of a link.
+pub type View = view::View<ProfibusError, Statistics, Details>;
+/// The same as it changes.
+pub type Views = view::Views<ProfibusError, Statistics, Details>;
 
-/// An image from the slave.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// The bytes.
-    pub image: Arc<[u8]>,
-    /// When it came.
-    pub at: Now,
-    /// In which generation.
-    pub generation: u32,
-}
-
-/// What was counted, over all generations.
+/// What was counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Exchanges that were asked for, without repetitions.
@@ -50,19 +29,9 @@ pub struct Statistics {
     pub skipped: u64,
 }
 
-/// All that can be seen of a link.
+/// What only PROFIBUS has to see.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
-    /// How it is doing.
-    pub state: State,
-    /// Counts the openings; 0 before the first.
-    pub generation: u32,
-    /// The newest image of the slave. It stays when the link is lost: compare the generation.
-    pub input: Option<Input>,
-    /// The newest change of what is sent that has left.
-    pub sent: u64,
-    /// Why it was lost, or not opened, the last time.
-    pub error: Option<ProfibusError>,
+pub struct Details {
     /// What the slave said of itself the last time.
     pub diagnosis: Option<Diagnosis>,
     /// The configuration that is in force, or that the slave wants.
@@ -73,6 +42,4 @@ pub struct View {
     pub cycle: Duration,
     /// How long the slave waits for us.
     pub watchdog: Duration,
-    /// What was counted.
-    pub statistics: Statistics,
 }

@@ -15,12 +15,12 @@ use super::master::{Master, State, View};
 use super::rates::{RATES, Rate};
 use super::settings::Settings;
 use super::slave::{Setup, Slave, SlaveFault};
-use super::wire::testing::hex;
 use super::wire::{Piece, Stream, Telegram};
 use crate::fault::LineFaultSpec;
 use crate::image::ImagePeer;
 use crate::line::Wire;
 use crate::sim::Peer;
+use crate::testing::hex;
 
 const MS: Duration = Duration::from_millis(1);
 const SEC: Duration = Duration::from_secs(1);
@@ -132,14 +132,14 @@ impl World {
 
     fn open(&mut self) -> View {
         let view = self.run(10 * SEC, |view| view.state != State::Opening);
-        assert_eq!(view.state, State::Open, "{:?}", view.error);
+        assert_eq!(view.state, State::Open, "{:?}", view.trouble);
         view
     }
 
     fn fails(&mut self) -> String {
         let view = self.run(30 * SEC, |view| view.state == State::Closed);
         assert_eq!(view.state, State::Closed);
-        view.error.expect("an error").to_string()
+        view.trouble.expect("an error").to_string()
     }
 }
 
@@ -178,7 +178,7 @@ fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
     assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(7))]);
     world.master.close(world.now);
     let view = world.run(SEC, |view| view.state == State::Closed);
-    assert_eq!((view.error, world.slave.owner()), (None, None));
+    assert_eq!((view.trouble, world.slave.owner()), (None, None));
     assert_eq!(world.slave.peer().history.last(), Some(&None));
     assert_eq!(world.sent.last().unwrap().1[7..16], hex("3D 3E 40 00 00 00 12 34 00")[..]);
 }
@@ -221,7 +221,7 @@ fn faults_that_repetitions_heal_do_no_harm() {
         let change = world.master.set_image(view.generation, &image(1)).unwrap();
         let view = world.run(SEC, |view| view.sent >= change);
         let view = world.run(SEC, |now| now.statistics.sent >= view.statistics.sent + 20);
-        assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.error);
+        assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.trouble);
         assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
         // A repeated request is answered, and not done again.
         assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
@@ -237,7 +237,7 @@ fn a_slave_that_restarts_is_shown_the_resting_image_and_not_an_old_command() {
     world.run(100 * MS, |_| false);
     world.slave.restart(world.now);
     let lost = world.run(SEC, |view| view.state == State::Lost);
-    assert!(matches!(lost.error, Some(ProfibusError::Left { .. })), "{:?}", lost.error);
+    assert!(matches!(lost.trouble, Some(ProfibusError::Left { .. })), "{:?}", lost.trouble);
     let outdated = world.master.set_image(view.generation, &image(9));
     assert_eq!(outdated, Err(ProfibusError::Outdated));
     let again = world.run(10 * SEC, |view| view.state == State::Open);
@@ -264,7 +264,7 @@ fn a_silent_slave_is_lost_and_found_again() {
     let view = world.open();
     world.slave.misbehave(Some(SlaveFault::Mute));
     let lost = world.run(SEC, |view| view.state == State::Lost);
-    assert!(lost.error.unwrap().to_string().contains("did not answer Data_Exchange (4 attempts"));
+    assert!(lost.trouble.unwrap().to_string().contains("did not answer Data_Exchange (4 attempts"));
     world.slave.misbehave(None);
     let again = world.run(5 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
@@ -297,7 +297,7 @@ fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
     world.run(100 * MS, |_| false);
     world.master.handle(world.now, &hex("10 07 04 49 54 16"));
     let lost = world.master.view();
-    assert_eq!(lost.error.unwrap().to_string(), "another master, station 4, is on the bus (it sent a request)");
+    assert_eq!(lost.trouble.unwrap().to_string(), "another master, station 4, is on the bus (it sent a request)");
     let (said, until) = (world.sent.len(), world.now + 3 * SEC);
     while world.now < until {
         world.run(500 * MS, |_| false);
@@ -312,7 +312,7 @@ fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
 fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     let mut world = World::new("500k", "echo");
     let view = world.open();
-    assert!(view.echoes);
+    assert!(view.details.echoes);
     let view = world.run(SEC, |view| view.statistics.sent >= 20);
     assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
     // Crossed wires or a dead slave behind such an adapter are not taken for answers.
@@ -345,7 +345,7 @@ fn a_full_line_is_within_a_tenth_of_its_bits() {
         let view = world.open();
         let (start, before) = (world.now, view.statistics.received);
         let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
-        assert_eq!(view.statistics.received, before + 100, "{:?}", view.error);
+        assert_eq!(view.statistics.received, before + 100, "{:?}", view.trouble);
         let cycle = world.now.saturating_sub(start) / 100;
         // Two telegrams of 57 characters, the pause before a request, and the time before an answer.
         let bits = rate.pace().time(2 * 57) + rate.bits(33 + 11);

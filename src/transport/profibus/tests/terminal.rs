@@ -91,7 +91,7 @@ async fn images_go_both_ways_over_a_terminal_and_the_slave_is_free_in_the_end() 
     let generation = connection.view().generation;
     connection.set_image(generation, &image(3)).unwrap();
     while connection.view().input.is_none_or(|input| input.image[0] != 3) {
-        connection.changed().await;
+        connection.views.changed().await;
     }
     connection.close().await.unwrap();
     let slave = served.slave.lock().unwrap();
@@ -127,11 +127,11 @@ async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
     let mut connection = Connection::open(settings(), opener, None).await.unwrap();
     drop(first);
     while connection.view().state != State::Lost {
-        connection.changed().await;
+        connection.views.changed().await;
     }
-    assert!(matches!(connection.view().error, Some(ProfibusError::Gone { .. })), "{:?}", connection.view().error);
+    assert!(matches!(connection.view().trouble, Some(ProfibusError::Gone { .. })), "{:?}", connection.view().trouble);
     while connection.view().state != State::Open {
-        connection.changed().await;
+        connection.views.changed().await;
     }
     assert_eq!(connection.view().generation, 2);
     connection.close().await.unwrap();

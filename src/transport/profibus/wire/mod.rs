@@ -3,7 +3,7 @@
 //! Parsing takes what stations send: eight bytes of data come in either of two forms. Emitting writes one form of each.
 //! Sections below are those of EN 50170, volume 2.
 
-use thiserror::Error;
+pub use crate::bytes::{Problem, WireError};
 
 mod configuration;
 mod control;
@@ -63,65 +63,6 @@ pub mod sap {
 pub const BROADCAST: u8 = 127;
 /// The highest address that a station can have.
 pub const MAX_STATION: u8 = 125;
-
-/// Bytes that are no telegram or no such data, with the field that says so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("{field} at offset {offset}: {problem}")]
-pub struct WireError {
-    /// The field.
-    pub field: &'static str,
-    /// Where it begins, from the start of the telegram or data.
-    pub offset: usize,
-    /// What is wrong with it.
-    pub problem: Problem,
-}
-
-/// What can be wrong with a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum Problem {
-    /// The bytes end before it does.
-    #[error("needs {needed} bytes, {present} are there")]
-    Short {
-        /// Its length.
-        needed: usize,
-        /// What is left.
-        present: usize,
-    },
-    /// A value that it cannot have.
-    #[error("is {found:#04x}")]
-    Value {
-        /// The value.
-        found: u8,
-    },
-    /// Another value than the rest of the telegram asks for.
-    #[error("is {found:#04x}, not {expected:#04x}")]
-    Differs {
-        /// The value.
-        found: u8,
-        /// The value that fits.
-        expected: u8,
-    },
-}
-
-impl WireError {
-    const fn short(field: &'static str, offset: usize, needed: usize, present: usize) -> Self {
-        Self { field, offset, problem: Problem::Short { needed, present } }
-    }
-
-    const fn value(field: &'static str, offset: usize, found: u8) -> Self {
-        Self { field, offset, problem: Problem::Value { found } }
-    }
-}
-
-#[cfg(test)]
-pub(super) mod testing {
-    /// Bytes from their digits.
-    pub fn hex(text: &str) -> Vec<u8> {
-        let digits: Vec<u8> = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
-        let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
-        digits.chunks(2).map(byte).collect()
-    }
-}
 
 #[cfg(test)]
 mod tests;

@@ -104,7 +104,7 @@ impl Parameters {
         let watchdog = if station & 0x08 == 0 {
             None
         } else {
-            let zero = WireError::value("watchdog factor", 1, 0);
+            let zero = WireError::value("watchdog factor", 1, 0_u8);
             Some(Watchdog::from_factors([first, second]).ok_or(zero)?)
         };
         Ok(Self {

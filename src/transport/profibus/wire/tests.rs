@@ -5,8 +5,8 @@ use std::time::Duration;
 use profirust::fdl;
 use proptest::prelude::*;
 
-use super::testing::hex;
 use super::*;
+use crate::testing::hex;
 
 /// A start of master 2 with slave 5, whose ident number is made up: who sends, bytes, service access point, data. Each
 /// line was read by two independent codecs.

@@ -170,8 +170,8 @@ impl Channel {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::wire::hex;
     use super::*;
+    use crate::testing::hex;
 
     const FIRST: &str = concat!(
         "0001 0000 11 11 FFFF FFFE 0022 0002 001E 0100 0001 00000000 0001 0001 00000101 00000001 A800",

@@ -15,7 +15,7 @@ use super::alarms::Alarms;
 use super::client::Outcome;
 use super::cyclic::{Consumer, Producer};
 use super::view::Step;
-use super::{Action, Controller, Io, Phase, refused};
+use super::{Action, Controller, Io, Phase};
 
 const CONNECT: &str = "Connect";
 const WRITE: &str = "Write";
@@ -27,7 +27,7 @@ impl Controller {
     pub(super) fn answered(&mut self, now: Now, outcome: Outcome) {
         if let Phase::Releasing(trouble) = &self.phase {
             let trouble = trouble.clone();
-            let failed = match refused(RELEASE, outcome) {
+            let failed = match outcome.blocks(RELEASE) {
                 // It had ended before.
                 Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
@@ -54,7 +54,7 @@ impl Controller {
     }
 
     fn connected(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
-        let blocks = refused(CONNECT, outcome)?;
+        let blocks = outcome.blocks(CONNECT)?;
         let responses =
             Response::parse_all(&blocks).map_err(|error| ProfinetError::Malformed { what: CONNECT, error })?;
         let senseless = |why| ProfinetError::Senseless { what: CONNECT, why };
@@ -112,7 +112,7 @@ impl Controller {
     }
 
     fn written(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
-        let blocks = refused(WRITE, outcome)?;
+        let blocks = outcome.blocks(WRITE)?;
         let statuses =
             record::parse_write_answer(&blocks).map_err(|error| ProfinetError::Malformed { what: WRITE, error })?;
         if let Some((_, status)) = statuses.iter().find(|(_, status)| *status != 0) {
@@ -123,7 +123,7 @@ impl Controller {
     }
 
     fn parameters_ended(&mut self, now: Now, outcome: Outcome) -> Result<(), ProfinetError> {
-        let blocks = refused(PRM_END, outcome)?;
+        let blocks = outcome.blocks(PRM_END)?;
         let malformed = |error| ProfinetError::Malformed { what: PRM_END, error };
         let blocks = block::walk(&blocks).map_err(malformed)?;
         let senseless = |why| ProfinetError::Senseless { what: PRM_END, why };

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::super::Now;
+use super::super::error::ProfinetError;
 use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, Reply, flag};
+use super::super::wire::status::Status;
 use super::super::wire::{Order, Uuid, WireError};
 
 /// How long to wait for an answer.
@@ -23,6 +25,22 @@ pub enum Outcome {
     Malformed(WireError),
     /// It did not answer in all this time.
     Silent(Duration),
+}
+
+impl Outcome {
+    /// The blocks of the answer.
+    ///
+    /// # Errors
+    /// When it is not the answer that was hoped for.
+    pub fn blocks(self, what: &'static str) -> Result<Vec<u8>, ProfinetError> {
+        match self {
+            Self::Answer(0, blocks) => Ok(blocks),
+            Self::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
+            Self::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
+            Self::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
+            Self::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
+        }
+    }
 }
 
 /// What to send, or what came.

@@ -11,10 +11,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use self::alarms::{Alarms, Heard};
-use self::client::{Client, Outcome};
+use self::client::Client;
 use self::cyclic::{Consumer, Producer, Verdict};
 use self::numbers::Numbers;
-use self::view::{Device, Input, State, Statistics, Step, View};
+use self::view::{Details, Device, Input, State, Statistics, Step, View};
 use super::Now;
 use super::error::{ProfinetError, Unusable};
 use super::settings::Settings;
@@ -141,16 +141,6 @@ impl Controller {
     /// If no connection can be as `settings` say.
     pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
         settings.check()?;
-        let view = View {
-            state: State::Opening,
-            step: Step::Resolve,
-            generation: 0,
-            input: None,
-            sent: 0,
-            trouble: None,
-            device: None,
-            statistics: Statistics::default(),
-        };
         Ok(Self {
             image: settings.resting.clone(),
             settings,
@@ -163,7 +153,7 @@ impl Controller {
             is_over: false,
             tries: 0,
             before: Statistics::default(),
-            view,
+            view: View::new(Details { step: Step::Resolve, device: None }),
             has_changed: true,
             alarms: VecDeque::new(),
             actions: VecDeque::new(),
@@ -173,7 +163,7 @@ impl Controller {
     /// What there is to see now.
     pub fn view(&self) -> View {
         let mut view = self.view.clone();
-        view.device.clone_from(&self.device);
+        view.details.device.clone_from(&self.device);
         view.statistics = self.statistics();
         view
     }
@@ -215,11 +205,7 @@ impl Controller {
     /// # Errors
     /// If the connection is not up in this generation, or the image has another size.
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
-        match self.view.state {
-            State::Open if generation == self.view.generation => {}
-            State::Closing | State::Closed => return Err(ProfinetError::Ended),
-            _ => return Err(ProfinetError::Outdated),
-        }
+        self.view.check(generation)?;
         if image.len() != self.image.len() {
             let (len, size) = (image.len(), self.image.len());
             return Err(ProfinetError::Impossible(format!("the output image has {size} bytes, not {len}")));
@@ -435,7 +421,7 @@ impl Controller {
                 self.tries = 0;
                 self.view.generation = self.view.generation.wrapping_add(1);
                 self.view.trouble = None;
-                self.view.input = Some(Input { image: image.into(), at: now });
+                self.view.input = Some(Input { image: image.into(), at: now, generation: self.view.generation });
                 self.show(State::Open);
             }
             (Phase::Data, Verdict::Image(image)) => {
@@ -446,7 +432,7 @@ impl Controller {
                         image.into()
                     }
                 };
-                self.view.input = Some(Input { image, at: now });
+                self.view.input = Some(Input { image, at: now, generation: self.view.generation });
             }
             (Phase::Data, Verdict::Unusable(why)) => {
                 // What was meant for before must not go on by itself when data is good again.
@@ -536,7 +522,7 @@ impl Controller {
     }
 
     fn set_step(&mut self, step: Step) {
-        self.view.step = step;
+        self.view.details.step = step;
         self.has_changed = true;
         if let Some(ar) = &mut self.ar {
             ar.step = step;
@@ -551,16 +537,5 @@ impl Controller {
     /// The address of the device, if it is known.
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
-    }
-}
-
-/// What came of a call, where it is not the answer that was hoped for.
-fn refused(what: &'static str, outcome: Outcome) -> Result<Vec<u8>, ProfinetError> {
-    match outcome {
-        Outcome::Answer(0, blocks) => Ok(blocks),
-        Outcome::Answer(status, _) => Err(ProfinetError::Refused { what, status: Status(status) }),
-        Outcome::Rejected(status) => Err(ProfinetError::Rejected { what, status }),
-        Outcome::Malformed(error) => Err(ProfinetError::Malformed { what, error }),
-        Outcome::Silent(after) => Err(ProfinetError::NoAnswer { what, after }),
     }
 }

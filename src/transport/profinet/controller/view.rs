@@ -1,26 +1,16 @@
 //! What there is to see of a connection.
 
 use std::net::Ipv4Addr;
-use std::sync::Arc;
 
-use super::super::Now;
 use super::super::error::ProfinetError;
 use super::super::wire::Mac;
+use crate::image::view;
+pub use crate::image::view::{Input, State};
 
-/// How far a connection is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum State {
-    /// It is being opened, for the first time or again.
-    Opening,
-    /// Data goes both ways.
-    Open,
-    /// The device runs, but its data cannot be used, or it is lost: it opens itself again.
-    Lost,
-    /// It is being closed.
-    Closing,
-    /// It is closed.
-    Closed,
-}
+/// What there is to see of a connection. There is an image of the device only while it is up.
+pub type View = view::View<ProfinetError, Statistics, Details>;
+/// The same as it changes.
+pub type Views = view::Views<ProfinetError, Statistics, Details>;
 
 /// How far the opening of a connection is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -39,15 +29,6 @@ pub enum Step {
     Ready,
     /// Usable data is to come.
     Data,
-}
-
-/// What the device shows.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Input {
-    /// Its image.
-    pub image: Arc<[u8]>,
-    /// When it came.
-    pub at: Now,
 }
 
 /// Who the device is.
@@ -80,23 +61,11 @@ pub struct Statistics {
     pub losses: u64,
 }
 
-/// What there is to see of a connection.
+/// What only PROFINET has to see.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
-    /// How far it is.
-    pub state: State,
+pub struct Details {
     /// How far its opening is.
     pub step: Step,
-    /// How often it was up; 0 before the first time.
-    pub generation: u32,
-    /// What the device shows; `None` unless it is up.
-    pub input: Option<Input>,
-    /// The last change of the output image that has left.
-    pub sent: u64,
-    /// What went wrong last.
-    pub trouble: Option<ProfinetError>,
     /// The device, once it was found.
     pub device: Option<Device>,
-    /// What was counted.
-    pub statistics: Statistics,
 }

@@ -1,28 +1,17 @@
 //! A device on a real interface: its frames, its calls, its clock, in a thread.
 
 use std::fmt;
-use std::io::{ErrorKind, Read as _, Write as _};
-use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
-use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
-
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use socket2::Socket;
+use std::time::Instant;
 
 use super::super::Now;
 use super::super::controller::Action;
 use super::super::error::ProfinetError;
 use super::super::interface::Interface;
-use super::super::wire::rpc;
+use super::super::sockets::{BUFFER, Sockets};
 use super::{Application, Device, Setup};
-
-/// Frames or datagrams taken at once before the clock is looked at.
-const AT_ONCE: usize = 64;
-/// Room for the longest datagram.
-const BUFFER: usize = 65_536;
 
 /// A device that answers on an interface until it is dropped. On a real card it hears requests to all only if the card
 /// lets them through: `ip maddress add 01:0e:cf:00:00:00 dev IFACE`.
@@ -33,9 +22,7 @@ pub struct Server<A> {
 
 struct Inner<A> {
     start: Instant,
-    raw: Socket,
-    udp: UdpSocket,
-    bell: UnixStream,
+    sockets: Sockets,
     device: Mutex<Device<A>>,
     is_over: AtomicBool,
 }
@@ -53,38 +40,25 @@ impl<A: Application + Send + 'static> Server<A> {
     /// # Errors
     /// When the interface cannot be used, or its sockets cannot be had.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
-        let raw = interface.raw_socket()?;
-        interface.check()?;
-        let ip = interface.address()?;
-        let failed = |error: &std::io::Error| ProfinetError::local("UDP socket for calls", error);
-        let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
-            ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
-            _ => failed(&error),
-        })?;
-        udp.set_nonblocking(true).map_err(|error| failed(&error))?;
-        let (bell, heard) = UnixStream::pair().map_err(|error| failed(&error))?;
-        for end in [&bell, &heard] {
-            end.set_nonblocking(true).map_err(|error| failed(&error))?;
-        }
+        let (sockets, ip) = Sockets::open(interface)?;
         let setup = Setup { mac: interface.mac, ip: Some(ip), takes_ip: false, ..setup };
         let inner = Arc::new(Inner {
             start: Instant::now(),
-            raw,
-            udp,
-            bell,
+            sockets,
             device: Mutex::new(Device::new(setup, application)),
             is_over: AtomicBool::new(false),
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet-device".to_owned());
-        let thread = thread.spawn(move || runs.run(heard)).map_err(|error| failed(&error))?;
+        let thread =
+            thread.spawn(move || runs.run()).map_err(|error| ProfinetError::local("thread of the device", &error))?;
         Ok(Self { inner, thread: Some(thread) })
     }
 
     /// Does something with the device, and what follows from it.
     pub fn with<T>(&self, change: impl FnOnce(&mut Device<A>, Now) -> T) -> T {
         let result = change(&mut self.inner.device(), self.inner.start.elapsed());
-        self.inner.ring();
+        self.inner.sockets.ring();
         result
     }
 }
@@ -92,7 +66,7 @@ impl<A: Application + Send + 'static> Server<A> {
 impl<A> Drop for Server<A> {
     fn drop(&mut self) {
         self.inner.is_over.store(true, Ordering::SeqCst);
-        self.inner.ring();
+        self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has said so already.
             let _ = thread.join();
@@ -101,33 +75,21 @@ impl<A> Drop for Server<A> {
 }
 
 impl<A> Inner<A> {
-    fn ring(&self) {
-        // Where the buffer is full it is awake.
-        let _ = (&self.bell).write(&[0]);
-    }
-
     fn device(&self) -> std::sync::MutexGuard<'_, Device<A>> {
         self.device.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl<A: Application> Inner<A> {
-    fn run(&self, mut bell: UnixStream) {
+    fn run(&self) {
         let mut buffer = vec![0; BUFFER];
         while !self.is_over.load(Ordering::SeqCst) {
-            let wait = self.turn().map(|next| next.saturating_sub(self.start.elapsed()));
-            let wait = wait.map(|wait| Timespec::try_from(wait).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
-            let mut sources = [
-                PollFd::new(&self.raw, PollFlags::IN),
-                PollFd::new(&self.udp, PollFlags::IN),
-                PollFd::new(&bell, PollFlags::IN),
-            ];
-            if poll(&mut sources, wait.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
-                // Nothing else would slow it down.
-                std::thread::park_timeout(Duration::from_millis(1));
-            }
-            while bell.read(&mut buffer).is_ok_and(|read| read > 0) {}
-            self.hear(&mut buffer);
+            self.sockets.wait(self.turn().map(|next| next.saturating_sub(self.start.elapsed())));
+            self.sockets.hear(
+                &mut buffer,
+                |bytes| self.device().frame(self.start.elapsed(), bytes),
+                |from, bytes| self.device().datagram(self.start.elapsed(), from, bytes),
+            );
         }
     }
 
@@ -136,26 +98,10 @@ impl<A: Application> Inner<A> {
         while let Some(action) = device.poll(self.start.elapsed()) {
             // What cannot be sent is lost, as on any cable.
             let _ = match action {
-                Action::Frame(bytes) => (&self.raw).write(&bytes),
-                Action::Datagram(to, bytes) => self.udp.send_to(&bytes, to),
+                Action::Frame(bytes) => self.sockets.send_frame(&bytes),
+                Action::Datagram(to, bytes) => self.sockets.send_datagram(to, &bytes),
             };
         }
         device.wake()
-    }
-
-    fn hear(&self, buffer: &mut [u8]) {
-        for _ in 0..AT_ONCE {
-            let Ok(length) = (&self.raw).read(buffer) else { break };
-            self.device().frame(self.start.elapsed(), &buffer[..length]);
-        }
-        for _ in 0..AT_ONCE {
-            let (length, from): (usize, SocketAddrV4) = match self.udp.recv_from(buffer) {
-                Ok((length, SocketAddr::V4(from))) => (length, from),
-                Ok(_) => continue,
-                Err(error) if error.kind() == ErrorKind::ConnectionRefused => continue,
-                Err(_) => break,
-            };
-            self.device().datagram(self.start.elapsed(), from, &buffer[..length]);
-        }
     }
 }

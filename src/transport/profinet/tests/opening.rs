@@ -37,7 +37,7 @@ fn images_travel_both_ways() {
     assert!(world.view().sent < change);
     world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *turned(&image(3))));
     assert_eq!((world.view().sent, generation), (change, 1));
-    let device = world.view().device.unwrap();
+    let device = world.view().details.device.unwrap();
     assert_eq!((device.mac, device.address, device.id), (THERE, ADDRESS, (0xFFFF, 1)));
 }
 

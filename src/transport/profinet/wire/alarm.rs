@@ -86,7 +86,7 @@ impl Rta {
     /// # Errors
     /// When it is no RTA of version 1, or cut short.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(payload);
+        let mut reader = Reader::big(payload);
         let destination = reader.u16("AlarmDstEndpoint")?;
         let source = reader.u16("AlarmSrcEndpoint")?;
         let kind = reader.u8("PDUType")?;
@@ -94,7 +94,7 @@ impl Rta {
         let sequence = reader.u16("SendSeqNum")?;
         let acknowledged = reader.u16("AckSeqNum")?;
         let length = reader.u16("VarPartLen")?;
-        let mut data = Reader { at: 0, ..Reader::new(reader.take(usize::from(length), "RTA-SDU")?) };
+        let mut data = Reader { at: 0, ..Reader::big(reader.take(usize::from(length), "RTA-SDU")?) };
         let pdu = match kind {
             0x11 => Pdu::Data(data.rest().to_vec()),
             0x12 => Pdu::Nack,
@@ -164,9 +164,9 @@ impl Notification {
         let priority = match block.kind {
             BlockType::ALARM_HIGH => Priority::High,
             BlockType::ALARM_LOW => Priority::Low,
-            other => return Err(Reader::new(data).wrong("BlockType", 0, other.0)),
+            other => return Err(Reader::big(data).wrong("BlockType", 0, other.0)),
         };
-        let mut reader = Reader::new(block.body);
+        let mut reader = Reader::big(block.body);
         let kind = reader.u16("AlarmType")?;
         let api = reader.u32("API")?;
         let slot = reader.u16("SlotNumber")?;
@@ -241,8 +241,8 @@ impl Acknowledgement {
         let block = first_block(data)?;
         let fits = |priority: &Priority| block_type(*priority).answer() == block.kind;
         let priority = Priority::ALL.into_iter().find(fits);
-        let priority = priority.ok_or(Reader::new(data).wrong("BlockType", 0, block.kind.0))?;
-        let mut reader = Reader::new(block.body);
+        let priority = priority.ok_or(Reader::big(data).wrong("BlockType", 0, block.kind.0))?;
+        let mut reader = Reader::big(block.body);
         Ok(Self {
             priority,
             kind: reader.u16("AlarmType")?,
@@ -268,7 +268,7 @@ impl Acknowledgement {
 }
 
 fn first_block(data: &[u8]) -> Result<Block<'_>, WireError> {
-    block::walk(data)?.into_iter().next().ok_or(Reader::new(data).missing("block"))
+    block::walk(data)?.into_iter().next().ok_or(Reader::big(data).missing("block"))
 }
 
 const fn block_type(priority: Priority) -> BlockType {
@@ -312,8 +312,8 @@ pub const fn wants_parameters(kind: u16) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     /// notes, alarms: a diagnosis and what was answered to it.
     #[test]

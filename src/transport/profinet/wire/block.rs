@@ -68,7 +68,7 @@ pub struct Block<'a> {
 /// # Errors
 /// When a block is longer than what is left.
 pub fn walk(bytes: &[u8]) -> Result<Vec<Block<'_>>, WireError> {
-    let mut reader = Reader::new(bytes);
+    let mut reader = Reader::big(bytes);
     let mut blocks = Vec::new();
     while reader.left() > 0 {
         blocks.push(read(&mut reader)?);
@@ -146,7 +146,7 @@ impl Control {
     /// # Errors
     /// When it is cut short.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
-        let mut reader = Reader::new(block.body);
+        let mut reader = Reader::big(block.body);
         reader.u16("reserved")?;
         let ar = reader.uuid("ARUUID")?;
         let session_key = reader.u16("SessionKey")?;
@@ -171,8 +171,8 @@ impl Control {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     fn uuid() -> Uuid {
         Uuid(hex("11111111222233334444555555555555").try_into().unwrap())

@@ -4,6 +4,11 @@ use super::block::{self, Block, BlockType};
 use super::frame::{ETHER_TYPE, TAG_HIGH, TAG_LOW};
 use super::{Mac, Reader, Uuid, WireError, Writer, count16, text};
 
+mod modules;
+
+pub use self::modules::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, SubmoduleDiff};
+use self::modules::{read_diff, read_expected, write_diff, write_expected};
+
 /// ARProperties of a connection that starts in advanced mode: active, with the controller as parameter server.
 pub const ADVANCED: u32 = 0x4000_0011;
 /// The same in legacy mode.
@@ -105,45 +110,6 @@ pub struct AlarmCr {
     pub tags: (u16, u16),
 }
 
-/// A module that is expected in a slot.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ExpectedModule {
-    /// The profile; 0.
-    pub api: u32,
-    /// The slot.
-    pub slot: u16,
-    /// Its kind.
-    pub ident: u32,
-    /// What is in it.
-    pub submodules: Vec<ExpectedSubmodule>,
-}
-
-/// A submodule that is expected.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ExpectedSubmodule {
-    /// The subslot.
-    pub subslot: u16,
-    /// Its kind.
-    pub ident: u32,
-    /// Bits 0 and 1: 0 no data, 1 input, 2 output, 3 both.
-    pub properties: u16,
-    /// Its data.
-    pub data: Vec<DataDescription>,
-}
-
-/// Data of a submodule in one direction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct DataDescription {
-    /// 1 input, 2 output.
-    pub direction: u16,
-    /// Bytes.
-    pub length: u16,
-    /// Bytes of the consumer's status.
-    pub consumer: u8,
-    /// Bytes of the provider's status.
-    pub provider: u8,
-}
-
 /// A block of Connect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Request {
@@ -169,7 +135,7 @@ impl Request {
     }
 
     fn parse(block: &Block<'_>) -> Result<Self, WireError> {
-        let mut reader = Reader::new(block.body);
+        let mut reader = Reader::big(block.body);
         Ok(match block.kind {
             BlockType::AR => Self::Ar(Ar::read(&mut reader)?),
             BlockType::IOCR => Self::Iocr(Iocr::read(&mut reader)?),
@@ -353,60 +319,6 @@ impl AlarmCr {
     }
 }
 
-fn read_expected(reader: &mut Reader<'_>) -> Result<Vec<ExpectedModule>, WireError> {
-    let count = reader.u16("NumberOfAPIs")?;
-    (0..count)
-        .map(|_| {
-            let api = reader.u32("API")?;
-            let slot = reader.u16("SlotNumber")?;
-            let ident = reader.u32("ModuleIdentNumber")?;
-            reader.u16("ModuleProperties")?;
-            let count = reader.u16("NumberOfSubmodules")?;
-            let submodules = (0..count).map(|_| read_submodule(reader)).collect::<Result<_, _>>()?;
-            Ok(ExpectedModule { api, slot, ident, submodules })
-        })
-        .collect()
-}
-
-fn read_submodule(reader: &mut Reader<'_>) -> Result<ExpectedSubmodule, WireError> {
-    let subslot = reader.u16("SubslotNumber")?;
-    let ident = reader.u32("SubmoduleIdentNumber")?;
-    let properties = reader.u16("SubmoduleProperties")?;
-    let descriptions = if properties & 3 == 3 { 2 } else { 1 };
-    let data = (0..descriptions)
-        .map(|_| {
-            Ok(DataDescription {
-                direction: reader.u16("DataDescription")?,
-                length: reader.u16("SubmoduleDataLength")?,
-                consumer: reader.u8("LengthIOCS")?,
-                provider: reader.u8("LengthIOPS")?,
-            })
-        })
-        .collect::<Result<_, _>>()?;
-    Ok(ExpectedSubmodule { subslot, ident, properties, data })
-}
-
-fn write_expected(modules: &[ExpectedModule], out: &mut Writer) {
-    out.u16(count16(modules.len()));
-    for module in modules {
-        out.u32(module.api);
-        out.u16(module.slot);
-        out.u32(module.ident);
-        out.u16(0);
-        out.u16(count16(module.submodules.len()));
-        for submodule in &module.submodules {
-            out.u16(submodule.subslot);
-            out.u32(submodule.ident);
-            out.u16(submodule.properties);
-            for data in &submodule.data {
-                out.u16(data.direction);
-                out.u16(data.length);
-                out.put(&[data.consumer, data.provider]);
-            }
-        }
-    }
-}
-
 /// A block of the answer to Connect; a ModuleDiffBlock may also come with ApplicationReady.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {
@@ -443,53 +355,6 @@ pub enum Response {
     Other(BlockType),
 }
 
-/// A module that is not as expected.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ModuleDiff {
-    /// Its slot.
-    pub slot: u16,
-    /// The kind that is there.
-    pub ident: u32,
-    /// 0 none, 1 wrong, 2 proper, 3 substitute.
-    pub state: u16,
-    /// What is in it.
-    pub submodules: Vec<SubmoduleDiff>,
-}
-
-/// A submodule that is not as expected.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SubmoduleDiff {
-    /// Its subslot.
-    pub subslot: u16,
-    /// The kind that is there.
-    pub ident: u32,
-    /// With bit 15: bits 11 to 14 are 0 fine, 1 substitute, 2 wrong, 3 none.
-    pub state: u16,
-}
-
-impl SubmoduleDiff {
-    /// Bits 11 to 14, where they are told; without bit 15 the whole of it is 0 none, 1 wrong, 2 proper, 3 substitute.
-    const fn ident_info(&self) -> u16 {
-        match (self.state & 0x8000 != 0, self.state) {
-            (true, state) => (state >> 11) & 0xF,
-            (false, 0) => 3,
-            (false, 1) => 2,
-            (false, 2 | 7) => 0,
-            (false, _) => 1,
-        }
-    }
-
-    /// Whether it is the one that is expected, or one that does the same.
-    pub const fn is_usable(&self) -> bool {
-        self.ident_info() < 2
-    }
-
-    /// Whether there is none.
-    pub const fn is_missing(&self) -> bool {
-        self.ident_info() == 3
-    }
-}
-
 impl Response {
     /// Reads what an answer to Connect carries, in its order.
     ///
@@ -504,7 +369,7 @@ impl Response {
     /// # Errors
     /// When it is cut short.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
-        let mut reader = Reader::new(block.body);
+        let mut reader = Reader::big(block.body);
         let reader = &mut reader;
         Ok(match BlockType(block.kind.0) {
             BlockType(0x8101) => {
@@ -569,44 +434,5 @@ impl Response {
             Self::Other(kind) => *kind,
         };
         block::emit(kind, &out.bytes)
-    }
-}
-
-fn read_diff(reader: &mut Reader<'_>) -> Result<Vec<ModuleDiff>, WireError> {
-    let mut modules = Vec::new();
-    for _ in 0..reader.u16("NumberOfAPIs")? {
-        reader.u32("API")?;
-        for _ in 0..reader.u16("NumberOfModules")? {
-            let slot = reader.u16("SlotNumber")?;
-            let ident = reader.u32("ModuleIdentNumber")?;
-            let state = reader.u16("ModuleState")?;
-            let count = reader.u16("NumberOfSubmodules")?;
-            let submodules = (0..count)
-                .map(|_| {
-                    let subslot = reader.u16("SubslotNumber")?;
-                    let ident = reader.u32("SubmoduleIdentNumber")?;
-                    Ok(SubmoduleDiff { subslot, ident, state: reader.u16("SubmoduleState")? })
-                })
-                .collect::<Result<_, WireError>>()?;
-            modules.push(ModuleDiff { slot, ident, state, submodules });
-        }
-    }
-    Ok(modules)
-}
-
-fn write_diff(modules: &[ModuleDiff], out: &mut Writer) {
-    out.u16(1);
-    out.u32(0);
-    out.u16(count16(modules.len()));
-    for module in modules {
-        out.u16(module.slot);
-        out.u32(module.ident);
-        out.u16(module.state);
-        out.u16(count16(module.submodules.len()));
-        for submodule in &module.submodules {
-            out.u16(submodule.subslot);
-            out.u32(submodule.ident);
-            out.u16(submodule.state);
-        }
     }
 }

@@ -30,7 +30,7 @@ impl<'a> Cyclic<'a> {
     /// # Errors
     /// When there is less.
     pub fn parse(payload: &'a [u8], length: usize) -> Result<Self, WireError> {
-        let mut reader = Reader::new(payload);
+        let mut reader = Reader::big(payload);
         Ok(Self {
             data: reader.take(length, "data")?,
             counter: reader.u16("cycle counter")?,

@@ -4,7 +4,7 @@
 
 use std::net::Ipv4Addr;
 
-use super::{Problem, Reader, WireError, Writer, count16, text};
+use super::{Reader, WireError, Writer, count16, text};
 
 /// Most bytes of blocks in a frame.
 const MOST: usize = 1416;
@@ -171,7 +171,7 @@ impl Dcp {
     /// # Errors
     /// When it is no DCP, or ends in the middle of a block.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(payload);
+        let mut reader = Reader::big(payload);
         let service = match reader.u8("ServiceID")? {
             3 => Service::Get,
             4 => Service::Set,
@@ -189,7 +189,7 @@ impl Dcp {
         let delay = reader.u16("ResponseDelay")?;
         let length = reader.u16("DCPDataLength")?;
         let start = reader.at;
-        let mut inner = Reader::new(reader.take(usize::from(length), "blocks")?);
+        let mut inner = Reader::big(reader.take(usize::from(length), "blocks")?);
         let is_list = service == Service::Get && kind == Kind::Request;
         let blocks =
             read_blocks(&mut inner, is_list).map_err(|error| WireError { offset: error.offset + start, ..error })?;
@@ -238,7 +238,7 @@ impl Dcp {
             if block.setting == Setting::RESPONSE {
                 continue;
             }
-            let mut reader = Reader::new(&block.data);
+            let mut reader = Reader::big(&block.data);
             let info = reader.u16("BlockInfo")?;
             match block.setting {
                 Setting::IP => station.ip = Some((IpSuite::read(&mut reader)?, IpOrigin(info))),
@@ -271,11 +271,7 @@ impl Dcp {
 fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, WireError> {
     let mut blocks = Vec::new();
     if reader.left() > MOST {
-        return Err(WireError {
-            field: "DCPDataLength",
-            offset: 0,
-            problem: Problem::Value { found: u32::try_from(reader.left()).unwrap_or(u32::MAX) },
-        });
+        return Err(WireError::value("DCPDataLength", 0, u32::try_from(reader.left()).unwrap_or(u32::MAX)));
     }
     while reader.left() > 0 {
         let setting = Setting(reader.u8("option")?, reader.u8("suboption")?);
@@ -320,7 +316,7 @@ impl IpSuite {
     /// # Errors
     /// When there are fewer than 12.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
-        Self::read(&mut Reader::new(bytes))
+        Self::read(&mut Reader::big(bytes))
     }
 
     fn read(reader: &mut Reader<'_>) -> Result<Self, WireError> {
@@ -438,9 +434,10 @@ fn is_port(label: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Mac;
     use super::super::frame::{Frame, id};
-    use super::super::{Mac, hex};
     use super::*;
+    use crate::testing::hex;
 
     const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const THERE: Mac = Mac([2, 0, 0, 0, 0, 2]);

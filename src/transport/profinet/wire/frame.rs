@@ -56,7 +56,7 @@ impl<'a> Frame<'a> {
     /// # Errors
     /// When it is none of PROFINET.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::big(bytes);
         let destination = reader.mac("destination")?;
         let source = reader.mac("source")?;
         let mut kind = reader.u16("type")?;
@@ -92,8 +92,9 @@ impl<'a> Frame<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Problem, hex};
+    use super::super::Problem;
     use super::*;
+    use crate::testing::hex;
 
     #[test]
     fn frames_are_padded_and_read_with_and_without_a_tag() {

@@ -7,7 +7,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use thiserror::Error;
+use crate::bytes::Reader;
+pub use crate::bytes::{Order, Problem, WireError};
 
 pub mod alarm;
 pub mod block;
@@ -20,40 +21,6 @@ pub mod rpc;
 pub mod status;
 #[cfg(test)]
 mod tests;
-
-/// Bytes that are no such message, with the field that says so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("{field} at offset {offset}: {problem}")]
-pub struct WireError {
-    /// The field.
-    pub field: &'static str,
-    /// Where it begins, from the start of the message or block it belongs to.
-    pub offset: usize,
-    /// What is wrong with it.
-    pub problem: Problem,
-}
-
-/// What can be wrong with a field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-pub enum Problem {
-    /// The message ends before it does.
-    #[error("needs {needed} bytes, {present} are there")]
-    Short {
-        /// Its length.
-        needed: usize,
-        /// What is left of the message.
-        present: usize,
-    },
-    /// A value that it cannot have.
-    #[error("is {found:#x}")]
-    Value {
-        /// The value.
-        found: u32,
-    },
-    /// Something that must be there is not.
-    #[error("is missing")]
-    Missing,
-}
 
 /// The address of a network card.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -149,63 +116,7 @@ impl fmt::Debug for Uuid {
     }
 }
 
-/// The order of bytes in an RPC header.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Order {
-    /// As everywhere else; what is sent from here.
-    #[default]
-    Big,
-    /// As Siemens controllers call.
-    Little,
-}
-
-/// Reads a message field by field.
-#[derive(Debug, Clone, Copy)]
-struct Reader<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    order: Order,
-}
-
-impl<'a> Reader<'a> {
-    const fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, order: Order::Big }
-    }
-
-    fn left(&self) -> usize {
-        self.bytes.len().saturating_sub(self.at)
-    }
-
-    fn take(&mut self, len: usize, field: &'static str) -> Result<&'a [u8], WireError> {
-        let rest = self.bytes.get(self.at..).unwrap_or_default();
-        let Some(taken) = rest.get(..len) else {
-            let problem = Problem::Short { needed: len, present: rest.len() };
-            return Err(WireError { field, offset: self.at, problem });
-        };
-        self.at += len;
-        Ok(taken)
-    }
-
-    fn array<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], WireError> {
-        let mut out = [0; N];
-        out.copy_from_slice(self.take(N, field)?);
-        Ok(out)
-    }
-
-    fn u8(&mut self, field: &'static str) -> Result<u8, WireError> {
-        self.array(field).map(u8::from_be_bytes)
-    }
-
-    fn u16(&mut self, field: &'static str) -> Result<u16, WireError> {
-        let bytes = self.array(field)?;
-        Ok(if self.order == Order::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
-    }
-
-    fn u32(&mut self, field: &'static str) -> Result<u32, WireError> {
-        let bytes = self.array(field)?;
-        Ok(if self.order == Order::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
-    }
-
+impl Reader<'_> {
     fn mac(&mut self, field: &'static str) -> Result<Mac, WireError> {
         self.array(field).map(Mac)
     }
@@ -213,22 +124,6 @@ impl<'a> Reader<'a> {
     fn uuid(&mut self, field: &'static str) -> Result<Uuid, WireError> {
         let uuid = Uuid(self.array(field)?);
         Ok(if self.order == Order::Big { uuid } else { uuid.swapped() })
-    }
-
-    fn rest(&mut self) -> &'a [u8] {
-        let rest = self.bytes.get(self.at..).unwrap_or_default();
-        self.at = self.bytes.len();
-        rest
-    }
-
-    /// The error of a field of `len` bytes that was just read.
-    fn wrong(&self, field: &'static str, len: usize, found: impl Into<u32>) -> WireError {
-        let problem = Problem::Value { found: found.into() };
-        WireError { field, offset: self.at.saturating_sub(len), problem }
-    }
-
-    fn missing(&self, field: &'static str) -> WireError {
-        WireError { field, offset: self.at, problem: Problem::Missing }
     }
 }
 
@@ -286,15 +181,9 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[cfg(test)]
-pub(super) fn hex(text: &str) -> Vec<u8> {
-    let digits: Vec<u8> = text.bytes().filter(u8::is_ascii_hexdigit).collect();
-    let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
-    digits.chunks(2).map(byte).collect()
-}
-
-#[cfg(test)]
 mod unit {
     use super::*;
+    use crate::testing::hex;
 
     #[test]
     fn mac_addresses_read_as_they_print() {

@@ -1,7 +1,7 @@
 //! Records: settings and facts of a submodule, by number.
 
 use super::block::{self, BlockType};
-use super::{Problem, Reader, Uuid, WireError, Writer, count16, count32, text};
+use super::{Reader, Uuid, WireError, Writer, count16, count32, text};
 
 /// Numbers of records.
 pub mod index {
@@ -45,13 +45,13 @@ impl Record {
     /// # Errors
     /// When it is another block, or shorter than it says.
     pub fn parse(bytes: &[u8], kind: BlockType) -> Result<(Self, &[u8]), WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::big(bytes);
         let found = reader.u16("BlockType")?;
         if found != kind.0 {
             return Err(reader.wrong("BlockType", 2, found));
         }
         let length = reader.u16("BlockLength")?;
-        let mut body = Reader::new(reader.take(usize::from(length), "block")?);
+        let mut body = Reader::big(reader.take(usize::from(length), "block")?);
         body.u16("BlockVersion")?;
         let sequence = body.u16("SeqNumber")?;
         let ar = body.uuid("ARUUID")?;
@@ -71,9 +71,8 @@ impl Record {
     pub fn parse_answer(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::READ.answer())?;
         let length = usize::try_from(record.length).unwrap_or(usize::MAX);
-        let short = Problem::Short { needed: length, present: rest.len() };
-        let found = rest.get(..length);
-        Ok((record, found.ok_or(WireError { field: "record", offset: FIXED + BLOCK_HEADER, problem: short })?))
+        let short = WireError::short("record", FIXED + BLOCK_HEADER, length, rest.len());
+        Ok((record, rest.get(..length).ok_or(short)?))
     }
 
     /// The block of a call or an answer, with the status of an answer to Write, and what follows it.
@@ -102,7 +101,7 @@ impl Record {
     /// When it is another block, or cut short.
     pub fn write_status(bytes: &[u8]) -> Result<(Self, u32, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::WRITE.answer())?;
-        let mut reader = Reader { at: 44, ..Reader::new(bytes) };
+        let mut reader = Reader { at: 44, ..Reader::big(bytes) };
         Ok((record, reader.u32("PNIOStatus")?, rest))
     }
 }
@@ -168,8 +167,7 @@ pub fn parse_write(bytes: &[u8]) -> Result<(Record, Vec<Parameter>), WireError> 
 
 fn parameter<'a>(record: &Record, data: &'a [u8]) -> Result<(Parameter, &'a [u8]), WireError> {
     let length = usize::try_from(record.length).unwrap_or(usize::MAX);
-    let problem = Problem::Short { needed: length, present: data.len() };
-    let short = WireError { field: "record", offset: FIXED + BLOCK_HEADER, problem };
+    let short = WireError::short("record", FIXED + BLOCK_HEADER, length, data.len());
     let (data, rest) = data.split_at_checked(length).ok_or(short)?;
     let Record { slot, subslot, index, .. } = *record;
     Ok((Parameter { slot, subslot, index, data: data.to_vec() }, rest))
@@ -229,7 +227,7 @@ impl Im0 {
     pub fn parse(record: &[u8]) -> Result<Self, WireError> {
         let blocks = block::walk(record)?;
         let found = blocks.iter().find(|block| block.kind == BlockType::IM0);
-        let mut reader = Reader::new(found.ok_or(Reader::new(record).missing("I&M0"))?.body);
+        let mut reader = Reader::big(found.ok_or(Reader::big(record).missing("I&M0"))?.body);
         Ok(Self {
             vendor: reader.u16("vendor")?,
             order_id: text(reader.take(20, "order id")?),
@@ -282,8 +280,8 @@ pub struct RealModule {
 pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError> {
     let blocks = block::walk(record)?;
     let found = blocks.iter().find(|block| block.kind == BlockType::REAL_IDENTIFICATION);
-    let found = found.ok_or(Reader::new(record).missing("RealIdentificationData"))?;
-    let mut reader = Reader::new(found.body);
+    let found = found.ok_or(Reader::big(record).missing("RealIdentificationData"))?;
+    let mut reader = Reader::big(found.body);
     let mut modules = Vec::new();
     // Version 1.0 has no APIs.
     let apis = if found.version.1 == 0 { 1 } else { reader.u16("NumberOfAPIs")? };

@@ -123,7 +123,7 @@ impl<'a> Datagram<'a> {
     /// # Errors
     /// When it is no RPC of version 4, or shorter than it says.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
-        let mut reader = Reader::new(bytes);
+        let mut reader = Reader::big(bytes);
         let version = reader.u8("RPC version")?;
         if version != 4 {
             return Err(reader.wrong("RPC version", 1, version));
@@ -231,7 +231,7 @@ impl<'a> Reply<'a> {
     /// # Errors
     /// When lengths are longer than what is there.
     pub fn parse(body: &'a [u8], order: Order) -> Result<Self, WireError> {
-        let mut reader = Reader::new(body);
+        let mut reader = Reader::big(body);
         reader.order = order;
         let status = reader.u32("PNIOStatus")?;
         // What refuses may end behind its status.
@@ -251,7 +251,7 @@ impl<'a> Reply<'a> {
 }
 
 fn read_ndr(body: &[u8], order: Order) -> Result<(u32, &[u8]), WireError> {
-    let mut reader = Reader::new(body);
+    let mut reader = Reader::big(body);
     reader.order = order;
     let first = reader.u32("ArgsMaximum")?;
     let length = reader.u32("ArgsLength")?;
@@ -277,8 +277,8 @@ fn write_ndr(first: u32, room: u32, blocks: &[u8], order: Order) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hex;
     use super::*;
+    use crate::testing::hex;
 
     fn header(order: Order) -> Header {
         Header {

@@ -13,7 +13,8 @@ use super::dcp::Dcp;
 use super::frame::{ETHER_TYPE, Frame, TAG_HIGH, id};
 use super::record::{self, Im0, Parameter, RealModule, Record, index};
 use super::rpc::{self, Call, Datagram, Kind, Reply, operation};
-use super::{Mac, Order, Uuid, hex};
+use super::{Mac, Order, Uuid};
+use crate::testing::hex;
 
 /// Lengths of Ethernet, IPv4 and UDP headers.
 const UDP_PAYLOAD: usize = 42;

@@ -9,7 +9,7 @@ use ratatui::symbols::Marker;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line};
 
-use super::pen::{Pen, after, line_of, width};
+use super::painter::{Painter, after, line_of, width};
 use super::whole;
 use crate::command::fleet::top::model::Moment;
 use crate::command::fleet::top::track::window;
@@ -44,13 +44,13 @@ impl Chart<'_> {
 }
 
 /// Draws it: a heading, the greatest and the least value in `side` columns at the left, and the line.
-pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Moment, every: Duration) {
-    let (quiet, style) = (pen.palette.quiet(), pen.palette.heading());
+pub fn draw(painter: &mut Painter<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Moment, every: Duration) {
+    let (quiet, style) = (painter.palette.quiet(), painter.palette.heading());
     let time = window(every);
     let heading = line_of(area, 0);
-    pen.paint(heading, style);
-    pen.parts(heading, &[(chart.of, style), ("  ", style), (chart.what, style)]);
-    pen.right(heading, &format!("last {}", whole(time)), style);
+    painter.paint(heading, style);
+    painter.parts(heading, &[(chart.of, style), ("  ", style), (chart.what, style)]);
+    painter.right(heading, &format!("last {}", whole(time)), style);
     if area.height < 3 || chart.points.is_empty() {
         return;
     }
@@ -58,31 +58,31 @@ pub fn draw(pen: &mut Pen<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Mo
     let side = side.min(area.width / 2);
     let first = line_of(area, 1);
     let last = line_of(area, area.height - 1);
-    pen.right(Rect { width: side, ..first }, &top, quiet);
-    pen.right(Rect { width: side, ..last }, &bottom, quiet);
+    painter.right(Rect { width: side, ..first }, &top, quiet);
+    painter.right(Rect { width: side, ..last }, &bottom, quiet);
     for line in 1..area.height {
         let place = after(line_of(area, line), side);
-        pen.left(Rect { width: place.width.min(2), ..place }, " │", quiet);
+        painter.left(Rect { width: place.width.min(2), ..place }, " │", quiet);
     }
     let picture = after(Rect { y: first.y, height: area.height - 1, ..area }, side + 2);
-    let color = pen.palette.tone(Tone::Good).fg.unwrap_or_default();
-    plot(pen, picture, chart.points, (now.as_secs_f64(), time.as_secs_f64()), color);
+    let color = painter.palette.tone(Tone::Good).fg.unwrap_or_default();
+    plot(painter, picture, chart.points, (now.as_secs_f64(), time.as_secs_f64()), color);
 }
 
-fn plot(pen: &mut Pen<'_>, area: Rect, points: &VecDeque<(f64, f64)>, (now, long): (f64, f64), color: Color) {
-    let area = area.intersection(pen.buffer.area);
+fn plot(painter: &mut Painter<'_>, area: Rect, points: &VecDeque<(f64, f64)>, (now, long): (f64, f64), color: Color) {
+    let area = area.intersection(painter.buffer.area);
     if area.is_empty() {
         return;
     }
     let (least, most) = range(points);
-    let marker = if pen.palette.is_unicode { Marker::Braille } else { Marker::Custom('*') };
+    let marker = if painter.palette.is_unicode { Marker::Braille } else { Marker::Custom('*') };
     let canvas = Canvas::default().marker(marker).x_bounds([now - long, now]).y_bounds([least, most]);
     let canvas = canvas.paint(|context| {
         for ((x1, y1), (x2, y2)) in points.iter().zip(points.iter().skip(1)) {
             context.draw(&Line::new(*x1, *y1, *x2, *y2, color));
         }
     });
-    canvas.render(area, pen.buffer);
+    canvas.render(area, painter.buffer);
 }
 
 /// The least and the greatest value, apart also where nothing changes.

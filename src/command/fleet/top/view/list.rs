@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::pen::{Pen, after, line_of, width};
+use super::painter::{Painter, after, line_of, width};
 use super::{answer, pace};
 use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Sort, Trouble};
 use crate::output::view::Tone;
@@ -35,19 +35,19 @@ const PAST: usize = 12;
 const LEVELS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
 
 /// The first line: how many there are, and how they are.
-pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let robots = model.robots();
     let count = |trouble| robots.iter().filter(|seen| seen.trouble() == trouble).count();
     let (silent, alarms) = (count(Trouble::Silent), count(Trouble::Alarm));
     let waiting = robots.iter().filter(|seen| seen.contact == Contact::Waiting).count();
     let plural = if robots.len() == 1 { "" } else { "s" };
     let mut parts = vec![
-        (" armctl top".to_owned(), pen.palette.accent()),
+        (" armctl top".to_owned(), painter.palette.accent()),
         (format!("  {} robot{plural}", robots.len()), Style::new()),
     ];
     let mut told = |count: usize, what: &str, tone| {
         if count > 0 {
-            parts.push((format!(" · {count} {what}"), pen.palette.tone(tone)));
+            parts.push((format!(" · {count} {what}"), painter.palette.tone(tone)));
         }
     };
     told(robots.len() - silent - waiting, "answer", Tone::Good);
@@ -55,27 +55,27 @@ pub fn head(pen: &mut Pen<'_>, line: Rect, model: &Model) {
     told(silent, "silent", Tone::Bad);
     told(waiting, "waiting", Tone::Warning);
     if !model.filter.is_empty() && !model.is_typing {
-        parts.push((format!(" · only '{}'", model.filter), pen.palette.accent()));
+        parts.push((format!(" · only '{}'", model.filter), painter.palette.accent()));
     }
     if model.sort != Sort::Given {
-        parts.push((format!(" · {}", model.sort.name()), pen.palette.quiet()));
+        parts.push((format!(" · {}", model.sort.name()), painter.palette.quiet()));
     }
     let parts: Vec<(&str, Style)> = parts.iter().map(|(text, style)| (text.as_str(), *style)).collect();
-    pen.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
-    pace(pen, line, model);
+    painter.parts(Rect { width: line.width.saturating_sub(14), ..line }, &parts);
+    pace(painter, line, model);
 }
 
 /// Headings, robots, and at the end the trouble of the one at the cursor in full.
-pub fn body(pen: &mut Pen<'_>, area: Rect, model: &Model, now: Moment) {
+pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     let columns = columns(area.width, model.robots());
     let heading = line_of(area, 0);
-    pen.paint(heading, pen.palette.heading());
-    let style = pen.palette.heading();
+    painter.paint(heading, painter.palette.heading());
+    let style = painter.palette.heading();
     for (column, place) in &columns {
         if column.is_right() {
-            pen.right(on(*place, heading), column.title(), style);
+            painter.right(on(*place, heading), column.title(), style);
         } else {
-            pen.left(on(*place, heading), column.title(), style);
+            painter.left(on(*place, heading), column.title(), style);
         }
     }
     let room = Rect { y: area.y.saturating_add(1), height: area.height.saturating_sub(2), ..area };
@@ -86,17 +86,17 @@ pub fn body(pen: &mut Pen<'_>, area: Rect, model: &Model, now: Moment) {
         let line = line_of(room, line);
         let Some(seen) = model.robots().get(*robot) else { continue };
         for (column, place) in &columns {
-            column.draw(pen, on(*place, line), seen, now, model);
+            column.draw(painter, on(*place, line), seen, now, model);
         }
         if *robot == model.cursor {
-            pen.left(Rect { width: line.width.min(1), ..line }, "▌", pen.palette.accent());
-            pen.paint(after(line, 1), Style::new().add_modifier(Modifier::BOLD));
+            painter.left(Rect { width: line.width.min(1), ..line }, "▌", painter.palette.accent());
+            painter.paint(after(line, 1), Style::new().add_modifier(Modifier::BOLD));
         }
     }
     if listed.is_empty() {
-        pen.left(after(line_of(room, 1), 2), "no robot fits the filter", pen.palette.quiet());
+        painter.left(after(line_of(room, 1), 2), "no robot fits the filter", painter.palette.quiet());
     } else if area.height > 2 {
-        trouble(pen, line_of(area, area.height - 1), model);
+        trouble(painter, line_of(area, area.height - 1), model);
     }
 }
 
@@ -106,7 +106,7 @@ fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
 }
 
 /// What is wrong with the robot at the cursor.
-fn trouble(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let Some(seen) = model.chosen() else { return };
     let (text, tone) = if let Contact::Fails(failure) = &seen.contact {
         let hint = failure.hint.as_ref().map(|hint| format!("; {hint}")).unwrap_or_default();
@@ -115,8 +115,8 @@ fn trouble(pen: &mut Pen<'_>, line: Rect, model: &Model) {
         let (alarm, tone) = seen.alarm();
         (if alarm.is_empty() { seen.place.clone() } else { format!("{}: {alarm}", seen.name) }, tone)
     };
-    let style = if tone == Tone::Plain { pen.palette.quiet() } else { pen.palette.tone(tone) };
-    pen.left(after(line, 1), &text, style);
+    let style = if tone == Tone::Plain { painter.palette.quiet() } else { painter.palette.tone(tone) };
+    painter.left(after(line, 1), &text, style);
 }
 
 /// The columns that there is room for, with place and width.
@@ -182,8 +182,8 @@ impl Column {
         matches!(self, Self::Position { .. } | Self::Answer)
     }
 
-    fn draw(self, pen: &mut Pen<'_>, place: Rect, seen: &Seen, now: Moment, model: &Model) {
-        let palette = pen.palette;
+    fn draw(self, painter: &mut Painter<'_>, place: Rect, seen: &Seen, now: Moment, model: &Model) {
+        let palette = painter.palette;
         let line = seen.sample().map(|sample| &sample.line);
         let is_old = seen.is_old(now, model.every);
         // What is old stands back.
@@ -208,37 +208,37 @@ impl Column {
             Self::Alarm => {
                 let (text, tone) = seen.alarm();
                 let style = if tone == Tone::Plain { palette.quiet() } else { palette.tone(tone) };
-                pen.left(place, &text, style);
+                painter.left(place, &text, style);
                 return;
             }
-            Self::Position { decimals } => return position(pen, place, seen, decimals, plain),
+            Self::Position { decimals } => return position(painter, place, seen, decimals, plain),
             Self::Answer => {
-                let (text, style) = answer(pen, seen, now, model.every);
-                pen.right(place, &text, style);
+                let (text, style) = answer(painter, seen, now, model.every);
+                painter.right(place, &text, style);
                 return;
             }
-            Self::Past => return past(pen, place, seen),
+            Self::Past => return past(painter, place, seen),
         };
-        pen.left(place, text, style);
+        painter.left(place, text, style);
     }
 }
 
 /// Three coordinates, each in a column of its own.
-fn position(pen: &mut Pen<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
-    let Some(sample) = seen.sample() else { return pen.right(place, "-", pen.palette.quiet()) };
+fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
+    let Some(sample) = seen.sample() else { return painter.right(place, "-", painter.palette.quiet()) };
     let Some(at) = sample.line.position else {
         let why = if sample.line.not_asked.is_some() { "not asked" } else { "-" };
-        return pen.right(place, why, pen.palette.quiet());
+        return painter.right(place, why, painter.palette.quiet());
     };
     let columns = (place.width.saturating_sub(2)) / 3;
     for (index, value) in (0..).zip([at.x_mm, at.y_mm, at.z_mm]) {
         let column = after(place, index * (columns + 1));
-        pen.right(Rect { width: columns.min(column.width), ..column }, &format!("{value:.decimals$}"), style);
+        painter.right(Rect { width: columns.min(column.width), ..column }, &format!("{value:.decimals$}"), style);
     }
 }
 
 /// The times of the last answers, the tallest being the longest.
-fn past(pen: &mut Pen<'_>, place: Rect, seen: &Seen) {
+fn past(painter: &mut Painter<'_>, place: Rect, seen: &Seen) {
     let last = seen.answers.iter().rev().take(PAST).rev();
     let longest = last.clone().max().copied().unwrap_or_default().as_secs_f64();
     let signs = last.map(|time| {
@@ -248,7 +248,7 @@ fn past(pen: &mut Pen<'_>, place: Rect, seen: &Seen) {
     });
     let signs: String = signs.collect();
     debug_assert!(width(&signs) <= PAST);
-    pen.left(place, &signs, pen.palette.quiet());
+    painter.left(place, &signs, painter.palette.quiet());
 }
 
 #[cfg(test)]

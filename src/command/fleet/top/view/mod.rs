@@ -3,7 +3,7 @@
 mod chart;
 mod detail;
 mod list;
-mod pen;
+mod painter;
 
 use std::time::Duration;
 
@@ -16,8 +16,8 @@ use ratatui::widgets::{Clear, Widget as _};
 use super::keys::{Explained, KEYS};
 use super::model::{Model, Moment, Seen};
 use crate::output::view::Tone;
-pub use pen::Palette;
-use pen::{Pen, after, line_of, to_ascii, width};
+pub use painter::Palette;
+use painter::{Painter, after, line_of, to_ascii, width};
 
 /// Draws everything.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {
@@ -26,21 +26,21 @@ pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette)
 }
 
 fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: Palette) {
-    let mut pen = Pen { buffer, palette };
+    let mut painter = Painter { buffer, palette };
     let [head, body, foot] = rows(area);
     if let Some(seen) = model.chosen().filter(|_| model.is_open) {
-        detail::head(&mut pen, head, model, seen, now);
-        detail::body(&mut pen, body, model, seen, now);
+        detail::head(&mut painter, head, model, seen, now);
+        detail::body(&mut painter, body, model, seen, now);
     } else {
-        list::head(&mut pen, head, model);
-        list::body(&mut pen, body, model, now);
+        list::head(&mut painter, head, model);
+        list::body(&mut painter, body, model, now);
     }
-    keys(&mut pen, foot, model);
+    keys(&mut painter, foot, model);
     if model.has_help {
-        help(&mut pen, area);
+        help(&mut painter, area);
     }
     if !palette.is_unicode {
-        to_ascii(pen.buffer);
+        to_ascii(painter.buffer);
     }
 }
 
@@ -53,24 +53,24 @@ fn rows(area: Rect) -> [Rect; 3] {
 }
 
 /// How often robots are looked at, and whether the picture stands still, at the end of the first line.
-fn pace(pen: &mut Pen<'_>, line: Rect, model: &Model) {
+fn pace(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let pace = format!("every {:?} ", model.every);
-    pen.right(line, &pace, pen.palette.quiet());
+    painter.right(line, &pace, painter.palette.quiet());
     if model.is_paused() {
         let taken = u16::try_from(pace.len()).unwrap_or_default();
         let room = Rect { width: line.width.saturating_sub(taken + 1), ..line };
-        let style = pen.palette.tone(Tone::Warning).add_modifier(Modifier::REVERSED);
-        pen.right(room, " PAUSED ", style);
+        let style = painter.palette.tone(Tone::Warning).add_modifier(Modifier::REVERSED);
+        painter.right(room, " PAUSED ", style);
     }
 }
 
 /// The last line: what keys do, as many as there is room for; or the filter that is being typed.
-fn keys(pen: &mut Pen<'_>, line: Rect, model: &Model) {
-    let (accent, quiet) = (pen.palette.accent(), pen.palette.quiet());
+fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
+    let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
     if model.is_typing {
         let parts = [(" filter: ", accent), (model.filter.as_str(), Style::new()), ("█", accent)];
-        let taken = pen.parts(line, &parts);
-        pen.left(after(line, taken + 2), "Enter keeps it, Esc shows all again", quiet);
+        let taken = painter.parts(line, &parts);
+        painter.left(after(line, taken + 2), "Enter keeps it, Esc shows all again", quiet);
         return;
     }
     let counts = |key: &&Explained| !key.short.is_empty() && if model.is_open { key.counts.1 } else { key.counts.0 };
@@ -87,7 +87,7 @@ fn keys(pen: &mut Pen<'_>, line: Rect, model: &Model) {
             continue;
         }
         let place = after(line, at);
-        pen.parts(
+        painter.parts(
             Rect { width: place.width.min(columns), ..place },
             &[(key.key, accent), (" ", quiet), (key.short, quiet)],
         );
@@ -96,7 +96,7 @@ fn keys(pen: &mut Pen<'_>, line: Rect, model: &Model) {
 }
 
 /// All keys with what they do, over everything else.
-fn help(pen: &mut Pen<'_>, area: Rect) {
+fn help(painter: &mut Painter<'_>, area: Rect) {
     const KEY: u16 = 8;
     let columns = KEYS.iter().map(|key| width(key.full)).max().unwrap_or_default();
     let wanted =
@@ -108,8 +108,8 @@ fn help(pen: &mut Pen<'_>, area: Rect) {
         width: columns,
         height: lines,
     };
-    Clear.render(place, pen.buffer);
-    frame(pen, place);
+    Clear.render(place, painter.buffer);
+    frame(painter, place);
     let inside = Rect {
         x: place.x.saturating_add(3).min(place.right()),
         y: place.y.saturating_add(1).min(place.bottom()),
@@ -117,32 +117,32 @@ fn help(pen: &mut Pen<'_>, area: Rect) {
         height: place.height.saturating_sub(2),
     };
     let bold = Style::new().add_modifier(Modifier::BOLD);
-    pen.left(line_of(inside, 0), "Nothing here can move a robot or change anything.", bold);
+    painter.left(line_of(inside, 0), "Nothing here can move a robot or change anything.", bold);
     for (line, key) in (2..).zip(&KEYS) {
         let line = line_of(inside, line);
-        pen.left(Rect { width: line.width.min(KEY), ..line }, key.key, pen.palette.accent());
-        pen.left(after(line, KEY), key.full, Style::new());
+        painter.left(Rect { width: line.width.min(KEY), ..line }, key.key, painter.palette.accent());
+        painter.left(after(line, KEY), key.full, Style::new());
     }
 }
 
 /// A border.
-fn frame(pen: &mut Pen<'_>, area: Rect) {
+fn frame(painter: &mut Painter<'_>, area: Rect) {
     use ratatui::widgets::Block;
 
-    Block::bordered().border_style(pen.palette.quiet()).render(area, pen.buffer);
+    Block::bordered().border_style(painter.palette.quiet()).render(area, painter.buffer);
 }
 
 /// When a robot answered last, and how fast: `4.1 ms`, or `12s ago` where it is late.
-fn answer(pen: &Pen<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
-    let Some(age) = seen.age(now) else { return ("-".to_owned(), pen.palette.quiet()) };
+fn answer(painter: &Painter<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
+    let Some(age) = seen.age(now) else { return ("-".to_owned(), painter.palette.quiet()) };
     if seen.sample().is_none() || seen.is_old(now, every) {
         let tone = if seen.sample().is_none() { Tone::Bad } else { Tone::Warning };
-        return (format!("{} ago", short(age)), pen.palette.tone(tone));
+        return (format!("{} ago", short(age)), painter.palette.tone(tone));
     }
     match seen.sample().and_then(|sample| sample.answered_in) {
         Some(time) => (milliseconds(time), Style::new()),
         // Nothing is asked: the controller shows itself.
-        None => ("live".to_owned(), pen.palette.quiet()),
+        None => ("live".to_owned(), painter.palette.quiet()),
     }
 }
 

@@ -1,29 +1,24 @@
 //! A link that a session holds: what others show, and whose turn it is.
 
+use armctl_controller::yrcx::answer::Status;
+use armctl_controller::yrcx::image::{Image, Output};
+use armctl_controller::{Now, Risk};
+use armctl_transport::session::client::SessionBusy;
+use armctl_transport::session::wire::Change;
 use tokio::time::Instant;
 
-use super::{Link, Transport};
-use crate::command::frame::attach::session_busy;
-use crate::command::yrcx::connect::endpoint;
-use crate::controller::yrcx::answer::Status;
-use crate::controller::yrcx::describe::{answer_summary, command_summary};
-use crate::controller::yrcx::image::{Image, Output};
-use crate::controller::{Now, Risk};
-use crate::failure::{Failure, Kind};
-use crate::settings::Robot;
-use crate::transport::session::client::SessionBusy;
-use crate::transport::session::wire::Change;
+use super::error::Error;
+use super::{Client, Event, Transport};
 
-impl Link {
+impl Client {
     /// Finds out whether a session holds the link, and takes over what it shows. Who asks takes no command of the
     /// controller then: the session has it.
-    pub(super) fn join(&mut self, robot: &Robot) {
+    pub(super) fn join(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
         if link.shown().is_none() {
             return;
         }
         (self.is_shared, self.is_held, self.is_up) = (true, true, link.is_up());
-        self.is_owner = endpoint(robot).is_ok_and(|endpoint| endpoint.is_owner());
         self.shown_now();
     }
 
@@ -49,19 +44,19 @@ impl Link {
     }
 
     /// Becomes the only one who moves the robot, before something does.
-    pub(super) async fn claim_motion(&mut self, risk: Risk) -> Result<(), Failure> {
+    pub(super) async fn claim_motion(&mut self, risk: Risk) -> Result<(), Error> {
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
         if risk < Risk::Motion {
             return Ok(());
         }
-        link.claim_motion().await.map_err(|busy| session_busy(&self.label, &busy))
+        link.claim_motion().await.map_err(Error::Session)
     }
 
     /// Waits until nobody else gives a remote command.
-    pub(super) async fn take_turn(&mut self) -> Result<(), Failure> {
+    pub(super) async fn take_turn(&mut self) -> Result<(), Error> {
         self.is_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
-        link.take(Instant::now() + self.timeout).await.map_err(|busy| session_busy(&self.label, &busy))
+        link.take(Instant::now() + self.timeout).await.map_err(Error::Session)
     }
 
     /// Lets others give a remote command once the last one has ended.
@@ -74,16 +69,16 @@ impl Link {
     }
 
     /// Whether the link can come back.
-    pub(super) fn still_there(&self) -> Result<(), Failure> {
+    pub(super) fn still_there(&self) -> Result<(), Error> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
-            Some(why) => Err(session_busy(&self.label, &SessionBusy::Ended(why.to_owned()))),
+            Some(why) => Err(Error::Session(SessionBusy::Ended(why.to_owned()))),
             None => Ok(()),
         }
     }
 
     /// Sees to it that a command that another client left to itself has ended: to take it away would stop what it does.
-    pub(super) async fn end_others(&mut self) -> Result<(), Failure> {
+    pub(super) async fn end_others(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {
             return Ok(());
@@ -95,17 +90,12 @@ impl Link {
                 Status::Running => {
                     self.is_over = true;
                     self.give_turn();
-                    let what = command_summary(&words);
-                    let message = format!("{}: another client's command is still under way: {what}", self.label);
-                    return Err(Failure::new(Kind::NoAnswer, message).hint(
-                        "wait for its end; `yrcx stop` stops a motion, and `yrcx io get` tells how the controller stands",
-                    ));
+                    return Err(Error::OthersUnderWay { words: Box::new(words) });
                 }
                 // It may not have been taken yet.
                 Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
                 _ => {
-                    let (what, end) = (command_summary(&words), answer_summary(&seen));
-                    self.screen.note(&format!("{}: another client had left {what}; it ended: {end}", self.label));
+                    self.watcher.event(Event::LeftByOthers { words, answer: seen });
                     return Ok(());
                 }
             }

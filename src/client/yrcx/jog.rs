@@ -2,22 +2,19 @@
 
 use std::time::Duration;
 
+use armctl_controller::yrcx::alarm::STOP_INPUT;
+use armctl_controller::yrcx::answer::Answer;
+use armctl_controller::yrcx::image::Image;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::session::Outcome;
+use armctl_controller::yrcx::signal::input;
 use tokio::time::Instant;
 
-use super::driver::LONG;
-use super::{Done, Link, Transport};
-use crate::command::frame::dry_run::Reason;
-use crate::command::frame::interrupt::abandoned;
-use crate::command::yrcx::refusal;
-use crate::controller::yrcx::alarm::STOP_INPUT;
-use crate::controller::yrcx::answer::Answer;
-use crate::controller::yrcx::image::Image;
-use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::procedure::Procedure;
-use crate::controller::yrcx::session::Outcome;
-use crate::controller::yrcx::signal::input;
-use crate::controller::yrcx::table::Pace;
-use crate::failure::{Failure, Kind};
+use super::error::{Cut, Error};
+use super::turns::LONG;
+use super::{Client, Done, Transport};
+use crate::Reason;
 
 /// Faults of the link that are survived while a jog is being stopped. A link that has none but faults is given up.
 const MOST_FAULTS: u32 = 100;
@@ -28,17 +25,18 @@ pub(super) struct Seen {
     /// Whether it had not ended before it was stopped.
     is_stopped: bool,
     /// What ended it before its time.
-    cut: Option<Failure>,
+    cut: Option<Cut>,
 }
 
-impl Link {
-    /// Jogs for `time` from the moment that the command leaves, or until it is dropped and halted; stops it, and says
-    /// where the robot is. That the stop input ended it is no refusal then.
+impl Client {
+    /// Jogs for `time` from the moment that the command leaves, or until the call is dropped, after which
+    /// [`stop`](Self::stop) must follow; stops it, and says where the robot is. That the stop input ended it is no refusal
+    /// then.
     ///
     /// # Errors
-    ///
-    /// The jog was refused, ended by itself, or was not seen to end: the stop input stays off then.
-    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Failure> {
+    /// The jog was refused, ended by itself, or was not seen to end: the stop input stays off then. [`Error::Cut`] if
+    /// something else ended it before its time.
+    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
         self.admit(order.row().id, order.risk())?;
         if self.is_dry() {
             self.note(order, Reason::default());
@@ -48,34 +46,26 @@ impl Link {
             return Ok(Done::default());
         }
         let Seen { outcome, is_stopped, cut } = self.see_through(order, time).await?;
-        let given = self.given(order.row(), outcome);
-        let done = given.and_then(|given| match given.answer {
+        let done = self.reply(outcome).and_then(|reply| match reply.answer {
             Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
-                Ok(Done { values: positions, elapsed: given.elapsed, replaced: None })
+                Ok(Done { values: positions, elapsed: reply.elapsed })
             }
-            _ => given.done(order),
+            _ => reply.done(order),
         });
-        match (cut, done) {
-            (None, done) => done,
-            (Some(cut), Ok(done)) => {
-                let place = refusal::stopped(order, &done.values);
-                Err(Failure { message: format!("{}; {STOPPED}{place}", cut.message), ..cut })
-            }
-            (Some(cut), Err(failure)) => {
-                Err(Failure { message: format!("{}; {}", cut.message, failure.message), ..failure })
-            }
-        }
+        let Some(by) = cut.map(Box::new) else { return done };
+        let ended = done.map(|done| done.values).map_err(Box::new);
+        Err(Error::Cut { by, order: Box::new(order.clone()), ended })
     }
 
     /// Jogs, and stops. An exchange that does not end as it should leaves the stop input off.
-    pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Failure> {
-        let key = abandoned();
+    pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Error> {
+        let let_go = (self.let_go.0)();
         self.start(order).await?;
         self.bequeath_stop(true);
         let cut = tokio::select! {
             biased;
-            key = key => Some(Failure::new(Kind::Interrupted, key)),
-            gone = self.go_on(time) => gone.err(),
+            how = let_go => Some(Cut::Abandoned(how)),
+            gone = self.go_on(time) => gone.err().map(Cut::Line),
         };
         let (now, is_stopped) = (self.now(), self.exchange.is_some());
         if let Some(exchange) = &mut self.exchange {
@@ -86,9 +76,7 @@ impl Link {
             faults += u32::from(self.turn().await.is_err());
         }
         let Some(outcome) = self.ended.take() else {
-            let why = cut.map(|cut| format!("{}; ", cut.message)).unwrap_or_default();
-            let message = format!("{why}the axis may still move: nothing reaches the controller any more");
-            return Err(Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop"));
+            return Err(Error::StillMoving { cut: cut.map(Box::new) });
         };
         self.await_link(&outcome).await;
         self.bequeath_stop(false);
@@ -106,7 +94,7 @@ impl Link {
     }
 
     /// Turns until the jog has gone on for its time, or has ended.
-    async fn go_on(&mut self, time: Option<Duration>) -> Result<(), Failure> {
+    async fn go_on(&mut self, time: Option<Duration>) -> Result<(), Error> {
         while let Some(exchange) = &self.exchange {
             let until = match time.zip(exchange.sent()) {
                 Some((time, sent)) => self.started + sent + time,
@@ -119,12 +107,4 @@ impl Link {
         }
         Ok(())
     }
-
-    /// Whether a jog is under way.
-    pub(super) fn is_jogging(&self) -> bool {
-        self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == Pace::Jog)
-    }
 }
-
-/// What became of what was stopped.
-pub(super) const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";

@@ -50,14 +50,14 @@ impl Palette {
 
 /// Draws text into the buffer of a picture; what is outside of it is left out.
 #[derive(Debug)]
-pub struct Pen<'a> {
+pub struct Painter<'a> {
     /// Where to.
     pub buffer: &'a mut Buffer,
     /// With what.
     pub palette: Palette,
 }
 
-impl Pen<'_> {
+impl Painter<'_> {
     /// Text at the left of a line; returns the columns that it took.
     pub fn left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
         let line = line.intersection(self.buffer.area);
@@ -154,16 +154,16 @@ pub fn to_ascii(buffer: &mut Buffer) {
 mod tests {
     use super::*;
 
-    fn drawn(columns: u16, draw: impl FnOnce(&mut Pen<'_>, Rect)) -> String {
+    fn drawn(columns: u16, draw: impl FnOnce(&mut Painter<'_>, Rect)) -> String {
         let area = Rect::new(0, 0, columns, 1);
         let mut buffer = Buffer::empty(area);
-        draw(&mut Pen { buffer: &mut buffer, palette: Palette { has_color: false, is_unicode: true } }, area);
+        draw(&mut Painter { buffer: &mut buffer, palette: Palette { has_color: false, is_unicode: true } }, area);
         // The cell behind a wide character is a blank of its own.
         buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
     }
 
     fn left(columns: u16, text: &str) -> String {
-        drawn(columns, |pen, line| _ = pen.left(line, text, Style::new()))
+        drawn(columns, |painter, line| _ = painter.left(line, text, Style::new()))
     }
 
     #[test]
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn numbers_stand_on_the_right() {
-        let right = |text: &str| drawn(5, |pen, line| pen.right(line, text, Style::new()));
+        let right = |text: &str| drawn(5, |painter, line| painter.right(line, text, Style::new()));
         assert_eq!(right("1.0"), "  1.0");
         assert_eq!(right("1234567"), "1234…");
     }

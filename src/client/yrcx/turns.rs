@@ -1,50 +1,53 @@
-//! The turns of a link: poll what is under way, show what it wants shown, wait for what happens.
+//! The turns of a client: poll what is under way, show what it wants shown, wait for what happens.
 
 use std::time::Duration;
 
+use armctl_controller::Now;
+use armctl_controller::yrcx::answer::Answer;
+use armctl_controller::yrcx::image::{Image, Words};
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::register::general;
+use armctl_controller::yrcx::sequence::{self, Sequence};
+use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
+use armctl_controller::yrcx::signal::{input, output};
+use armctl_controller::yrcx::table::Pace;
+use armctl_transport::image::{Event as Passed, LinkError};
 use tokio::time::Instant;
 
-use super::{Given, LEAVE_WITHIN, Link, Transport};
-use crate::command::yrcx::{hold, refusal};
-use crate::controller::Now;
-use crate::controller::yrcx::answer::Answer;
-use crate::controller::yrcx::image::{Image, Words};
-use crate::controller::yrcx::order::Order;
-use crate::controller::yrcx::register::general;
-use crate::controller::yrcx::sequence::{self, Sequence};
-use crate::controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
-use crate::controller::yrcx::signal::{input, output};
-use crate::controller::yrcx::table::Pace;
-use crate::failure::{Failure, Kind};
-use crate::transport::image::{Event, LinkError};
+use super::error::Error;
+use super::hold::after_loss;
+use super::{Client, Event, Reply, Transport};
 
 /// A session that waits for nothing is asked again after this.
 pub(super) const LONG: Duration = Duration::from_secs(3600);
+/// How long the last change may take to leave before the connection is closed.
+const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
-impl Link {
-    /// After an opening: shows the resting image, and waits until the controller has shown something.
-    pub(super) async fn begin(&mut self) -> Result<(), Failure> {
+impl Client {
+    /// Waits until the controller has shown something, and, where this client commands it, has been shown the resting
+    /// image: emergency stop and stop inputs on, all else off.
+    ///
+    /// # Errors
+    /// [`Error::Silent`] if it shows nothing within the time-out.
+    pub async fn ready(&mut self) -> Result<(), Error> {
         let until = Instant::now() + self.timeout;
         while self.input.is_none() || (self.is_owner && self.output.last_sent().is_none()) {
             if Instant::now() >= until {
-                return Err(self.silent());
+                return Err(Error::Silent);
             }
             self.turn_until(until).await?;
         }
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
             // Whoever only reads is not told by the board that it reads something else.
-            self.screen.note(
-                "warning: CPU OK (SO(01)) is off: the controller does not work, or the URL names something else than what \
-                 it shows (`armctl robots check`)",
-            );
+            self.watcher.event(Event::CpuNotOk);
         }
         Ok(())
     }
 
     /// Begins a remote command.
-    pub(super) async fn start(&mut self, order: &Order) -> Result<(), Failure> {
+    pub(super) async fn start(&mut self, order: &Order) -> Result<(), Error> {
         if !self.has_commands() {
-            return Err(refusal::no_commands(&self.label, order.row()));
+            return Err(Error::SignalsAlone { command: order.command() });
         }
         self.catch_up().await?;
         self.claim_motion(order.risk()).await?;
@@ -59,14 +62,14 @@ impl Link {
     }
 
     /// Has the words of remote commands for itself: nothing is under way there.
-    pub(super) async fn have_words(&mut self) -> Result<(), Failure> {
+    pub(super) async fn have_words(&mut self) -> Result<(), Error> {
         self.end_earlier().await?;
         self.take_turn().await?;
         self.end_others().await
     }
 
     /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
-    async fn end_earlier(&mut self) -> Result<(), Failure> {
+    async fn end_earlier(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
             self.turn_until(Instant::now()).await?;
         }
@@ -75,28 +78,25 @@ impl Link {
             if exchange.order().is_continuous() {
                 exchange.interrupt(now);
             } else if exchange.is_running() {
-                let id = exchange.order().row().id;
-                return Err(Failure::new(Kind::NoAnswer, format!("{}: {id} is still under way", self.label)).hint(
-                    "a controller carries out one remote command at a time; `yrcx io set stop=off` stops a motion",
-                ));
+                return Err(Error::UnderWay { command: exchange.order().command() });
             }
             self.turn().await?;
         }
         if let Some(outcome) = self.ended.take().filter(|outcome| outcome.ended != Ended::Stopped) {
-            let row = outcome.row;
-            let refused = |given: Given| match given.answer {
-                Answer::Refused { alarm, .. } => Err(refusal::refused(row, alarm)),
-                Answer::Done(_) | Answer::Running(_) => Ok(()),
-            };
-            if let Err(failure) = self.given(row, outcome).and_then(refused) {
-                self.screen.note(&format!("warning: {failure}"));
+            let command = outcome.row.command;
+            match self.reply(outcome) {
+                Ok(Reply { answer: Answer::Refused { alarm, .. }, .. }) => {
+                    self.watcher.event(Event::BrokenOff(command, alarm));
+                }
+                Ok(_) => {}
+                Err(error) => self.watcher.event(Event::Unanswered(error)),
             }
         }
         Ok(())
     }
 
     /// Turns until the remote command has ended.
-    pub(super) async fn until_ended(&mut self) -> Result<Outcome, Failure> {
+    pub(super) async fn until_ended(&mut self) -> Result<Outcome, Error> {
         loop {
             if let Some(outcome) = self.ended.take() {
                 self.await_link(&outcome).await;
@@ -119,10 +119,9 @@ impl Link {
     }
 
     /// Begins a procedure.
-    pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Failure> {
+    pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Error> {
         if self.sequence.is_some() {
-            return Err(Failure::new(Kind::NoAnswer, format!("{}: other signals are being switched", self.label))
-                .hint("wait for the end of it"));
+            return Err(Error::SignalsUnderWay);
         }
         if let Some(image) = &self.input {
             sequence.handle(self.now(), image);
@@ -133,7 +132,7 @@ impl Link {
     }
 
     /// Turns until the procedure has ended.
-    pub(super) async fn until_finished(&mut self) -> Result<sequence::Outcome, Failure> {
+    pub(super) async fn until_finished(&mut self) -> Result<sequence::Outcome, Error> {
         loop {
             if let Some(outcome) = self.finished.take() {
                 return Ok(outcome);
@@ -153,14 +152,18 @@ impl Link {
     }
 
     /// Takes what has happened since the last turn, without waiting.
-    pub(super) async fn catch_up(&mut self) -> Result<(), Failure> {
+    pub(super) async fn catch_up(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         while self.event(now).await? {}
         self.still_there()
     }
 
-    /// Lets what is over in a moment end, and the last change leave. A motion that was left alone is not waited for.
-    pub(super) async fn leave(&mut self) -> Result<(), Failure> {
+    /// Lets what is over in a moment end, and the last change leave, for a second at most. A motion that was left alone
+    /// is not waited for.
+    ///
+    /// # Errors
+    /// What went wrong with the line meanwhile.
+    pub async fn leave(&mut self) -> Result<(), Error> {
         self.abandon_sequence();
         if self.is_dry() || !self.is_owner {
             return Ok(());
@@ -183,12 +186,12 @@ impl Link {
     }
 
     /// One turn. Returns when something has happened, or was due.
-    pub(super) async fn turn(&mut self) -> Result<(), Failure> {
+    pub(super) async fn turn(&mut self) -> Result<(), Error> {
         self.turn_until(Instant::now() + LONG).await
     }
 
     /// The same, but not longer than `until`.
-    pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Failure> {
+    pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Error> {
         let mut due = until;
         if !self.in_flight {
             let next = self.poll();
@@ -238,56 +241,53 @@ impl Link {
     }
 
     /// Hands what is to be shown to the transport, if it is not what is shown already.
-    fn show(&mut self) -> Result<(), Failure> {
+    fn show(&mut self) -> Result<(), Error> {
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
         if !self.is_up || !self.is_owner || self.shown == Some(self.output.next) {
             return Ok(());
         }
-        let shown = link.show(&self.output.next.to_link(self.size));
-        shown.map_err(|error| Failure::local(error.to_string()))?;
+        link.show(&self.output.next.to_link(self.size))?;
         self.shown = Some(self.output.next);
         self.in_flight = true;
         Ok(())
     }
 
     /// Waits for the next event and passes it on; whether there was one before `until`.
-    async fn event(&mut self, until: Instant) -> Result<bool, Failure> {
-        let Transport::Image(link) = &mut self.transport else { return Ok(false) };
+    async fn event(&mut self, until: Instant) -> Result<bool, Error> {
+        let link = match &mut self.transport {
+            Transport::Image(link) => link,
+            Transport::Notes(_) => return Err(Error::NotKnown),
+            Transport::Nothing => return Err(Error::Silent),
+        };
         let event = link.next(until).await;
         let now = self.now();
         match event {
-            Event::Timeout => return Ok(false),
-            Event::Sent => {
+            Passed::Timeout => return Ok(false),
+            Passed::Sent => {
                 self.in_flight = false;
                 self.output.sent(now);
-                self.trace.sent(&self.output.next);
+                self.watcher.event(Event::Shown(self.output.next));
             }
-            Event::Image(bytes) => self.take(now, &bytes)?,
-            Event::Lost(error) => self.lost(now, &error),
-            Event::Reopened => {
+            Passed::Image(bytes) => self.take(now, &bytes)?,
+            Passed::Lost(why) => self.lost(now, why),
+            Passed::Reopened => {
                 self.is_up = true;
                 if self.is_shared {
                     self.shown_now();
                 } else {
-                    self.output.next = hold::after_loss(&self.output.next);
+                    self.output.next = after_loss(&self.output.next);
                 }
-                let stop = if input::STOP.is_on(&self.output.next) { "on" } else { "off" };
-                let stop = if self.is_owner { format!("; the stop input SI(06) is {stop}") } else { String::new() };
-                self.screen.note(&format!("{}: the link is open again{stop}", self.label));
+                let stop = self.is_owner.then(|| input::STOP.is_on(&self.output.next));
+                self.watcher.event(Event::Reopened { stop });
             }
-            Event::Shown(change) => self.shown_by_others(now, &change),
+            Passed::Shown(change) => self.shown_by_others(now, &change),
         }
         Ok(true)
     }
 
-    fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Failure> {
-        let Some(image) = Image::from_link(bytes) else {
-            let message = format!("{}: the controller shows {} bytes, fewer than an image", self.label, bytes.len());
-            return Err(
-                Failure::new(Kind::Malformed, message).hint("check the sizes in the URL: `armctl robots check`")
-            );
-        };
-        self.trace.received(&image);
+    fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Error> {
+        let image = Image::from_link(bytes).ok_or(Error::NoImage { bytes: bytes.len() })?;
+        self.watcher.event(Event::Seen(image));
         self.input = Some(image);
         if let Some(exchange) = &mut self.exchange {
             exchange.handle(now, &image);
@@ -298,12 +298,8 @@ impl Link {
         Ok(())
     }
 
-    fn lost(&mut self, now: Now, why: &LinkError) {
-        let again = if self.still_there().is_ok() { "; it is being opened again" } else { "" };
-        self.screen.note(&format!("{}: the link was lost: {why}{again}", self.label));
-        if let LinkError::Lost { outputs, .. } = why {
-            self.screen.detail(1, &format!("{}: the controller: {outputs}", self.label));
-        }
+    fn lost(&mut self, now: Now, why: LinkError) {
+        self.watcher.event(Event::Lost { why, is_reopening: self.still_there().is_ok() });
         self.totals.losses += 1;
         self.is_up = false;
         self.in_flight = false;

@@ -7,7 +7,7 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until};
 
 use crate::command::face::Watch;
-use crate::command::face::sample::{Depth, Sample};
+use crate::command::face::sample::{Detail, Sample};
 use crate::command::families;
 use crate::command::{Access, ConnectMode};
 use crate::failure::Failure;
@@ -15,7 +15,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 
 /// What a look came to, and which robot it was.
-pub type News = (usize, Result<Sample, Failure>);
+pub type Update = (usize, Result<Sample, Failure>);
 
 /// How all robots are looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub async fn follow(
     screen: Screen,
     delay: Duration,
     mut pace: watch::Receiver<Pace>,
-    news: mpsc::Sender<News>,
+    updates: mpsc::Sender<Update>,
 ) {
     let mut start = Instant::now() + delay;
     loop {
@@ -53,15 +53,15 @@ pub async fn follow(
         };
         let failure = match opened {
             Err(failure) => Some(failure),
-            Ok(mut eye) => {
-                let failure = look_on(index, &mut *eye, &mut pace, &news).await;
+            Ok(mut poller) => {
+                let failure = look_on(index, &mut *poller, &mut pace, &updates).await;
                 // Nothing was changed: how the end of it went is nobody's concern.
-                let _closed = eye.close(&screen).await;
+                let _closed = poller.close(&screen).await;
                 failure
             }
         };
         let Some(failure) = failure else { return };
-        if news.send((index, Err(failure))).await.is_err() {
+        if updates.send((index, Err(failure))).await.is_err() {
             return;
         }
         start = Instant::now() + AGAIN.max(pace.borrow().every);
@@ -71,21 +71,21 @@ pub async fn follow(
 /// Looks until something fails, or it is over.
 async fn look_on(
     index: usize,
-    eye: &mut dyn Watch,
+    poller: &mut dyn Watch,
     pace: &mut watch::Receiver<Pace>,
-    news: &mpsc::Sender<News>,
+    updates: &mpsc::Sender<Update>,
 ) -> Option<Failure> {
     let mut ticks = Ticks::new(Instant::now(), pace.borrow().every);
     loop {
         let Pace { open, .. } = *pace.borrow_and_update();
-        let depth = if open == Some(index) { Depth::Whole } else { Depth::Line };
+        let detail = if open == Some(index) { Detail::Full } else { Detail::Summary };
         let looked = tokio::select! {
             biased;
             () = over(pace.clone()) => return None,
-            looked = eye.look(depth) => looked,
+            looked = poller.look(detail) => looked,
         };
         let told = match looked {
-            Ok(sample) => news.send((index, Ok(sample))).await,
+            Ok(sample) => updates.send((index, Ok(sample))).await,
             Err(failure) => return Some(failure),
         };
         if told.is_err() {
@@ -101,7 +101,7 @@ async fn look_on(
                     if changed.is_err() || is_over {
                         return None;
                     }
-                    if open == Some(index) && depth == Depth::Line {
+                    if open == Some(index) && detail == Detail::Summary {
                         break;
                     }
                     if every != ticks.every {
@@ -173,13 +173,13 @@ mod tests {
     fn started(
         robots: &[Robot],
         pace: &watch::Sender<Pace>,
-    ) -> (mpsc::Receiver<News>, Vec<impl Future<Output = ()> + use<>>) {
+    ) -> (mpsc::Receiver<Update>, Vec<impl Future<Output = ()> + use<>>) {
         let screen = Screen::new(Format::Table, ColorChoice::Never, true, 0);
-        let (tell, news) = mpsc::channel(8);
+        let (tell, updates) = mpsc::channel(8);
         let follow = |(index, robot): (usize, &Robot)| {
             follow(index, robot.clone(), screen, Duration::ZERO, pace.subscribe(), tell.clone())
         };
-        (news, robots.iter().enumerate().map(follow).collect())
+        (updates, robots.iter().enumerate().map(follow).collect())
     }
 
     #[tokio::test(start_paused = true)]
@@ -187,11 +187,11 @@ mod tests {
         for open in [None, Some(0), Some(1), Some(2)] {
             let (pace, _) = watch::channel(Pace { every: EVERY, open, is_over: false });
             let robots = robots(&[]);
-            let (mut news, followers) = started(&robots, &pace);
+            let (mut updates, followers) = started(&robots, &pace);
             let mut samples = vec![Vec::new(); 3];
             let watched = async {
                 while samples.iter().any(|samples: &Vec<Sample>| samples.len() < 3) {
-                    let (index, looked) = news.recv().await.expect("they go on");
+                    let (index, looked) = updates.recv().await.expect("they go on");
                     samples[index].push(looked.expect("a simulator answers"));
                 }
                 pace.send_modify(|pace| pace.is_over = true);
@@ -202,7 +202,7 @@ mod tests {
                 assert!(sample.line.reachable && sample.line.mode.is_some() && sample.line.position.is_some());
                 assert_eq!(sample.whole.is_some(), open == Some(index));
                 if let Some(whole) = &sample.whole {
-                    assert!(whole.lamps.len() > 8 && whole.axes.len() >= 4, "{whole:?}");
+                    assert!(whole.indicators.len() > 8 && whole.axes.len() >= 4, "{whole:?}");
                     assert!(whole.banks.iter().all(|bank| !bank.groups.is_empty()), "{whole:?}");
                 }
             }
@@ -215,12 +215,12 @@ mod tests {
         // All that is sent to it is lost.
         let mut robots = robots(&["sim:?fault=drop%3D100%25"]);
         robots[3].retries.value = 0;
-        let (mut news, followers) = started(&robots, &pace);
+        let (mut updates, followers) = started(&robots, &pace);
         let begun = Instant::now();
         let watched = async {
             let mut counts = [0; 4];
             loop {
-                let (index, looked) = news.recv().await.expect("they go on");
+                let (index, looked) = updates.recv().await.expect("they go on");
                 counts[index] += 1;
                 assert_eq!(looked.is_err(), index == 3, "{looked:?}");
                 if looked.is_err() {

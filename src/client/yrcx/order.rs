@@ -1,0 +1,174 @@
+//! Remote commands: one order, one answer (chapter 2).
+
+use std::time::Duration;
+
+use armctl_controller::Risk;
+use armctl_controller::yrcx::answer::Answer;
+use armctl_controller::yrcx::image::Words;
+use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::session::{Ended, Exchange, Outcome};
+use armctl_controller::yrcx::signal::input;
+use armctl_controller::yrcx::table::Pace;
+use armctl_controller::yrcx::value::Values;
+use tokio::time::Instant;
+
+use super::error::{Error, Refusal};
+use super::{Client, Event};
+use crate::Reason;
+
+/// What was carried out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Done {
+    /// What the answer holds, by the fields of its row; nothing in a dry run.
+    pub values: Values,
+    /// From the first time that the command was sent to its end.
+    pub elapsed: Duration,
+}
+
+/// A whole answer, good or bad.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reply {
+    /// What the controller says.
+    pub answer: Answer,
+    /// The same as WO0 to WO15.
+    pub words: Words,
+    /// From the first time that the command was sent to its end.
+    pub elapsed: Duration,
+}
+
+impl Reply {
+    /// What was carried out, or why it was not.
+    pub(super) fn of(self, order: &Order) -> Result<Done, Refusal> {
+        match self.answer {
+            Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
+            Answer::Refused { alarm, positions } => Err(Refusal { order: order.clone(), alarm, positions }),
+        }
+    }
+
+    /// The same, with a refusal as an error.
+    pub(super) fn done(self, order: &Order) -> Result<Done, Error> {
+        self.of(order).map_err(|refusal| Box::new(refusal).into())
+    }
+}
+
+impl Client {
+    /// Gives a remote command and waits for its end; a refusal is an error. Only what reads is given again, within the
+    /// time-out. A dry run notes it.
+    ///
+    /// # Errors
+    /// [`Error::Refused`] with the alarm; [`Error::NotSent`] and [`Error::NoAnswer`], after which it may be given again
+    /// without harm; [`Error::OutcomeUnknown`], after which it must not.
+    pub async fn ask(&mut self, order: &Order) -> Result<Done, Error> {
+        self.raw(order).await?.done(order)
+    }
+
+    /// The same; a refusal is an answer.
+    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<Done, Refusal>, Error> {
+        Ok(self.raw(order).await?.of(order))
+    }
+
+    /// The same with the whole answer, good or bad.
+    pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
+        self.admit(order.row().id, order.risk())?;
+        if self.is_dry() {
+            self.note(order, Reason::default());
+            if order.risk() == Risk::Read {
+                return Err(Error::NotKnown);
+            }
+            let answer = Answer::Done(Values::default());
+            return Ok(Reply { answer, words: Words::default(), elapsed: Duration::ZERO });
+        }
+        let until = Instant::now() + self.timeout;
+        let mut repetitions = if order.risk() == Risk::Read { self.retries } else { 0 };
+        loop {
+            let outcome = self.converse(order).await?;
+            match outcome.ended {
+                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && Instant::now() < until => repetitions -= 1,
+                _ => return self.reply(outcome),
+            }
+        }
+    }
+
+    /// Gives a remote command and waits until it has ended, or the controller is seen to carry it out (`None`): it then
+    /// goes on, and the client gives no other until it ends.
+    ///
+    /// # Errors
+    /// [`Error::NotHeld`] where the end of the connection would stop it; else those of [`ask`](Self::ask).
+    pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Error> {
+        if !self.is_held {
+            return Err(Error::NotHeld);
+        }
+        if self.is_dry() {
+            return self.ask(order).await.map(Some);
+        }
+        self.admit(order.row().id, order.risk())?;
+        self.start(order).await?;
+        loop {
+            if let Some(outcome) = self.ended.take() {
+                return self.reply(outcome)?.done(order).map(Some);
+            }
+            if self.exchange.as_ref().is_some_and(Exchange::is_running) {
+                return Ok(None);
+            }
+            self.turn().await?;
+        }
+    }
+
+    /// One command, one answer.
+    async fn converse(&mut self, order: &Order) -> Result<Outcome, Error> {
+        if order.row().pace == Pace::Jog {
+            return Ok(self.see_through(order, None).await?.outcome);
+        }
+        self.start(order).await?;
+        let outcome = self.until_ended().await?;
+        self.count(order, &outcome);
+        Ok(outcome)
+    }
+
+    /// Takes note of how an order ended.
+    pub(super) fn count(&mut self, order: &Order, outcome: &Outcome) {
+        self.totals.commands += 1;
+        self.totals.waited += outcome.elapsed;
+        if let Some(status) = outcome.leftover {
+            self.watcher.event(Event::Leftover(order.command(), status));
+        }
+        if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
+            self.watcher.event(Event::NotReleased(order.command()));
+        }
+        // Motions have ended with their answer; a program has begun.
+        self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
+    }
+
+    /// What came of an exchange that has ended.
+    pub(super) fn reply(&self, outcome: Outcome) -> Result<Reply, Error> {
+        match outcome.ended {
+            Ended::Answered(answer) => {
+                Ok(Reply { answer, words: outcome.words.unwrap_or_default(), elapsed: outcome.elapsed })
+            }
+            _ => Err(self.unanswered(&outcome)),
+        }
+    }
+
+    /// Why an exchange that has ended has no answer.
+    pub(super) fn unanswered(&self, outcome: &Outcome) -> Error {
+        let command = outcome.row.command;
+        match outcome.ended {
+            Ended::NotSent(why) => Error::NotSent { command, why },
+            Ended::NoAnswer(why) => Error::NoAnswer { command, why },
+            Ended::OutcomeUnknown(why) => {
+                let stop = self.is_up.then(|| input::STOP.is_on(&self.output.next));
+                Error::OutcomeUnknown { command, why, stop, is_stop_held: outcome.stop_held }
+            }
+            Ended::Answered(_) | Ended::Stopped => Error::NoReport { what: outcome.row.id },
+        }
+    }
+
+    /// The check before something leaves, and whether this connection may command at all.
+    pub(super) fn admit(&self, name: &str, risk: Risk) -> Result<(), Error> {
+        self.permit(name, risk)?;
+        if !self.is_owner && !self.is_dry() {
+            return Err(Error::NotCommanding { what: name.to_owned() });
+        }
+        Ok(())
+    }
+}

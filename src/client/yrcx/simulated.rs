@@ -1,0 +1,35 @@
+//! The simulated controller at the end of a link in this process.
+
+use std::time::Duration;
+
+use armctl_controller::yrcx::image::Image;
+use armctl_controller::yrcx::simulator::{Simulator, Start};
+use armctl_transport::image::ImagePeer;
+
+/// A simulated controller.
+#[derive(Debug)]
+pub struct Simulated(pub Simulator);
+
+impl Simulated {
+    /// One that begins like this.
+    pub fn new(start: Start) -> Self {
+        Self(Simulator::new(start))
+    }
+}
+
+impl ImagePeer for Simulated {
+    fn input(&mut self, now: Duration, image: Option<&[u8]>) {
+        // A link carries whole images; anything else would be nobody's.
+        let image = image.and_then(Image::from_link);
+        self.0.input(now, image.as_ref());
+    }
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        self.0.advance(now);
+        Some(self.0.output().to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0.wake()
+    }
+}

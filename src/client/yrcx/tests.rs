@@ -1,0 +1,196 @@
+//! The client as a library, on simulators and peers in virtual time.
+
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use armctl_controller::yrcx::order::{Draft, Order};
+use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::session::Silence;
+use armctl_controller::yrcx::signal::output;
+use armctl_controller::yrcx::value::Key;
+use armctl_transport::image::ImagePeer;
+use tokio::time::{sleep, timeout};
+
+use super::*;
+
+async fn simulated(risk: Risk) -> Client {
+    Client::simulated(Start::default(), Options::default().granting(risk)).await.unwrap()
+}
+
+fn order(draft: Draft) -> Order {
+    draft.build().unwrap()
+}
+
+fn point(number: i32) -> Order {
+    order(Command::PointGet.order().with(Key::Point, number))
+}
+
+fn motion() -> Order {
+    order(Command::MovePtp.order().with(Key::Point, 1).with(Key::SpeedPercent, 1))
+}
+
+fn jog() -> Order {
+    order(Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, 0).with(Key::Report, 1))
+}
+
+/// Shows the same image whatever it is shown; nothing from a moment on, if it is to go then.
+#[derive(Debug)]
+struct Deaf(Option<Duration>);
+
+impl ImagePeer for Deaf {
+    fn input(&mut self, _: Duration, _: Option<&[u8]>) {}
+
+    fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
+        let mut image = Image::default();
+        output::CPU_OK.set(&mut image, true);
+        self.0.is_none_or(|gone| now < gone).then(|| image.to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        self.0
+    }
+}
+
+async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
+    let link = ImageLink::in_process(Box::new(Deaf(gone)));
+    Client::connect(link, Options::default().granting(risk)).await.unwrap()
+}
+
+#[tokio::test(start_paused = true)]
+async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+    let mut client = simulated(Risk::Motion).await;
+    client.carry_out(Procedure::run()).await.unwrap();
+    client.grant(Grant::default());
+    let denied = client.ask(&motion()).await.unwrap_err();
+    assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Motion), "{denied}");
+    assert_eq!(client.totals().commands, 0);
+    assert!(output::PROGRAM_RUNNING.is_on(&client.look().await.unwrap()));
+    assert_eq!(client.stop().await.unwrap(), Stopped::Started);
+    assert!(!output::PROGRAM_RUNNING.is_on(&client.look().await.unwrap()));
+    assert!(client.ask(&motion()).await.is_err(), "a stop grants nothing");
+    assert_eq!(client.stop().await.unwrap(), Stopped::Nothing);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_refusal_is_an_answer_or_an_error() {
+    let mut client = simulated(Risk::Read).await;
+    let refusal = client.try_ask(&point(7)).await.unwrap().unwrap_err();
+    assert_eq!(refusal.order, point(7));
+    let error = client.ask(&point(7)).await.unwrap_err();
+    assert!(matches!(error, Error::Refused(again) if *again == refusal));
+    assert_eq!(client.raw(&point(7)).await.unwrap().words[1..3], [refusal.alarm.group, refusal.alarm.category]);
+    assert_eq!(client.ask(&point(1)).await.unwrap().values.axes(), Some([100_000, 100_000, 0, 0]));
+    assert_eq!(client.close().await.unwrap().commands, 4);
+}
+
+#[tokio::test(start_paused = true)]
+async fn silence_after_a_change_is_not_silence_after_a_question() {
+    let mut client = deaf(Risk::Write, None).await;
+    let silent = client.ask(&point(1)).await.unwrap_err();
+    assert!(matches!(&silent, Error::NoAnswer { why: Silence::NotTaken, .. }), "{silent}");
+    let before = client.totals().commands;
+    let unknown = client.ask(&order(Command::AlarmReset.order())).await.unwrap_err();
+    assert!(matches!(&unknown, Error::OutcomeUnknown { command: Command::AlarmReset, .. }), "{unknown}");
+    assert_eq!(client.totals().commands, before + 1, "what changes something leaves once");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_dry_run_notes_orders_and_knows_no_answers() {
+    let mut client = Client::dry_run(Options::default().granting(Risk::Motion));
+    client.ask(&motion()).await.unwrap();
+    assert!(matches!(client.ask(&point(1)).await, Err(Error::NotKnown)));
+    assert!(matches!(client.look().await, Err(Error::NotKnown)));
+    client.carry_out(Procedure::run()).await.unwrap();
+    let plan = client.take_plan();
+    let words: Vec<_> = plan.frames.iter().filter_map(|frame| frame["wi"][0].as_str()).collect();
+    assert_eq!(words, ["0x0001", "0x0101"]);
+    assert_eq!(plan.frames.last().unwrap()["about"], "auto-start (SI(12)) off");
+    assert_eq!(client.stop().await.unwrap(), Stopped::Nothing);
+    let mut reader = Client::dry_run(Options::default());
+    assert!(matches!(reader.ask(&motion()).await, Err(Error::NotAuthorized(_))));
+    assert_eq!(reader.take_plan(), Plan::default());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_motion_that_is_dropped_goes_on_until_it_is_stopped() {
+    let mut client = simulated(Risk::Motion).await;
+    assert!(timeout(Duration::from_millis(300), client.ask(&motion())).await.is_err());
+    let stopped = client.stop().await.unwrap();
+    assert!(matches!(&stopped, Stopped::Motion { order, .. } if **order == motion()), "{stopped:?}");
+    assert!(client.begin(&motion()).await.unwrap().is_none(), "it goes on by itself");
+    let busy = client.ask(&point(1)).await.unwrap_err();
+    assert!(matches!(busy, Error::UnderWay { command: Command::MovePtp }), "{busy}");
+    assert!(matches!(client.stop().await.unwrap(), Stopped::Motion { .. }));
+    assert!(client.ask(&point(1)).await.is_ok());
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_jog_ends_after_its_time_or_when_it_is_let_go() {
+    let mut client = simulated(Risk::Motion).await;
+    let jogged = client.jog(&jog(), Some(Duration::from_millis(500))).await.unwrap();
+    let place = jogged.values.axes().unwrap();
+    assert!(place[0] > 0, "{place:?}");
+    client.let_go_at(|| {
+        Box::pin(async {
+            sleep(Duration::from_millis(500)).await;
+            "gone for lunch"
+        })
+    });
+    let cut = client.jog(&jog(), None).await.unwrap_err();
+    let Error::Cut { by, ended: Ok(values), .. } = &cut else { panic!("{cut}") };
+    assert!(matches!(**by, Cut::Abandoned("gone for lunch")));
+    assert!(values.axes().unwrap()[0] > place[0]);
+    assert!(!client.is_jogging());
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_only_looks_sees_and_gives_no_commands() {
+    let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
+    let options = Options { commands: false, ..Options::default() };
+    let mut client = Client::connect(link, options).await.unwrap();
+    assert!(output::CPU_OK.is_on(&client.look().await.unwrap()) && client.shown().is_none());
+    assert!(matches!(client.ask(&point(1)).await, Err(Error::NotCommanding { .. })));
+    let mut apart = Client::apart(Options::default());
+    assert!(matches!(apart.look().await, Err(Error::Silent)));
+    assert!(matches!(apart.ask(&point(1)).await, Err(Error::NotCommanding { .. })));
+}
+
+/// Remembers what it is told.
+#[derive(Debug, Default)]
+struct Onlooker(Arc<Mutex<Vec<Event>>>);
+
+impl Watcher<Event> for Onlooker {
+    fn event(&mut self, event: Event) {
+        self.0.lock().unwrap().push(event);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_watcher_is_told_images_and_losses() {
+    let link = ImageLink::in_process(Box::new(Deaf(Some(Duration::from_secs(1)))));
+    let mut client = Client::over(link, Options::default());
+    let told = Arc::default();
+    client.watch(Onlooker(Arc::clone(&told)));
+    client.ready().await.unwrap();
+    let lost = client.look_until(|_| false).await.unwrap_err();
+    assert!(matches!(lost, Error::Silent), "{lost}");
+    let told = told.lock().unwrap();
+    let is_shown = |event: &Event| matches!(event, Event::Shown(image) if *image == resting());
+    assert!(told.iter().any(is_shown) && told.iter().any(|event| matches!(event, Event::Seen(_))), "{told:?}");
+    assert!(matches!(told.last(), Some(Event::Lost { is_reopening: true, .. })), "{told:?}");
+    assert_eq!(client.totals().losses, 1);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_controller_that_shows_nothing_is_none() {
+    let link = ImageLink::in_process(Box::new(Deaf(Some(Duration::ZERO))));
+    assert!(matches!(Client::connect(link, Options::default()).await, Err(Error::Silent)));
+}
+
+/// Errors are matched on, sent around, and told.
+#[test]
+fn errors_are_errors() {
+    fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}
+    is_error::<Error>();
+    is_error::<Refusal>();
+}

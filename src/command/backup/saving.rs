@@ -1,0 +1,204 @@
+//! The one way in which a backup is made: what is whole already is kept, each part answers for itself, and the list in the
+//! folder tells at any time how far the work is. A family says which parts there are and reads them.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde_json::Value;
+use tokio::time::Instant;
+
+use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved, State};
+use super::{BackedUp, Item, Items, Making};
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::local::{Target, make_folder, own_folder};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+
+/// How much work may be lost from the list when the power fails.
+const WRITE_EVERY: Duration = Duration::from_secs(1);
+
+/// A backup that is asked for, before the controller is.
+#[derive(Debug)]
+pub struct Task<C> {
+    /// Where it goes.
+    pub folder: PathBuf,
+    /// What goes into it.
+    pub scope: Vec<String>,
+    earlier: Option<Manifest<C>>,
+}
+
+/// A part that was read.
+#[derive(Debug)]
+pub struct Part {
+    /// What goes into its file.
+    pub content: Content,
+    /// What it holds, where that is known only now.
+    pub holds: Option<String>,
+    /// What is not in it.
+    pub left_out: Vec<LeftOut>,
+    /// What the controller does not have, for the list alone.
+    pub absent: Vec<LeftOut>,
+    /// What there is to say beside.
+    pub notes: Vec<String>,
+}
+
+/// What goes into the file of a part.
+#[derive(Debug)]
+pub enum Content {
+    /// This text, under this name.
+    Text(String, String),
+    /// What is there already.
+    File(Saved),
+}
+
+impl Part {
+    /// With nothing to say of it.
+    pub fn new(content: Content) -> Self {
+        Self { content, holds: None, left_out: Vec::new(), absent: Vec::new(), notes: Vec::new() }
+    }
+}
+
+impl<C: About> Task<C> {
+    /// Looks at what is in the folder, which tells what is asked for where nobody says.
+    pub fn new(making: Making, robot: &Robot, several: bool) -> Result<Self, Failure> {
+        let Making { folder, scope, resume, force } = making;
+        let folder = own_folder(&folder, &robot.name, several);
+        let earlier: Option<Manifest<C>> = manifest::earlier(&folder, robot, scope.as_deref(), resume, force)?;
+        let scope = scope.or_else(|| earlier.as_ref().map(|earlier| earlier.scope.clone())).unwrap_or_default();
+        Ok(Self { folder, scope, earlier })
+    }
+
+    /// Begins: writes the list at once, to learn whether it can be written. Of what is there already it has what is whole
+    /// and what `is_kept` says of the earlier list and an entry of it.
+    pub fn begin<'a>(
+        &'a self,
+        (screen, robot): (&'a Screen, &Robot),
+        controller: C,
+        is_kept: impl Fn(&Manifest<C>, &Entry) -> bool,
+    ) -> Result<Saving<'a, C>, Failure> {
+        let folder = &self.folder;
+        make_folder(folder)?;
+        let mut list = Manifest::new(robot, controller, self.scope.clone());
+        // What was saved before stays in the list, so that it is kept whenever this is cut off.
+        if let Some(earlier) = &self.earlier {
+            let is_whole = |entry: &&Entry| entry.copy.as_ref().is_some_and(|copy| copy.check(folder).is_ok());
+            let kept = earlier.files.iter().filter(|entry| is_kept(earlier, entry)).filter(is_whole);
+            list.files = kept.cloned().collect();
+        }
+        list.write(folder)?;
+        Ok(Saving { list, folder, screen, items: Vec::new(), written: Instant::now(), is_closed: false })
+    }
+}
+
+/// Waits for a backup, or for Ctrl-C; a failure that ends it tells what is saved.
+pub async fn cut_off_by_ctrl_c<T>(folder: &Path, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with what was saved.
+    let outcome = interruptible(work).await.and_then(|outcome| outcome);
+    outcome.map_err(|failure| match manifest::read::<Value>(folder) {
+        Ok(Some(list)) if failure.kind != Kind::Usage => {
+            cut_off(failure, folder, list.files.iter().filter(|entry| entry.copy.is_some()).count())
+        }
+        _ => failure,
+    })
+}
+
+/// A failure that ended a backup, with what is there already; `saved` files are.
+fn cut_off(failure: Failure, folder: &Path, saved: usize) -> Failure {
+    let message = format!("{}; {saved} files are in {}", failure.message.trim_end_matches('.'), folder.display());
+    let again = "--resume goes on from there";
+    let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}; then {again}"));
+    Failure { message, ..failure }.hint(hint)
+}
+
+/// A backup under way.
+#[derive(Debug)]
+pub struct Saving<'a, C: About> {
+    list: Manifest<C>,
+    folder: &'a Path,
+    screen: &'a Screen,
+    items: Vec<Item>,
+    written: Instant,
+    is_closed: bool,
+}
+
+impl<C: About> Saving<'_, C> {
+    /// What the list says of a part.
+    pub fn entry(&self, name: &str) -> Option<&Entry> {
+        self.list.entry(name)
+    }
+
+    /// What became of each part so far.
+    pub fn items(&self) -> &[Item] {
+        &self.items
+    }
+
+    /// Reads a part into its file, unless it is there. Says whether the next one can be tried.
+    pub async fn part(
+        &mut self,
+        mut entry: Entry,
+        read: impl Future<Output = Result<Part, Failure>>,
+    ) -> Result<bool, Failure> {
+        let mut item = Item::pending(&entry.name);
+        let same = |known: &&Entry| known.name == entry.name && known.name_hex == entry.name_hex;
+        if let Some(Entry { copy: Some(copy), left_out, .. }) = self.list.files.iter().find(same) {
+            item.saved(State::Kept, copy, left_out);
+            self.items.push(item);
+            return Ok(true);
+        }
+        let goes_on = match read.await {
+            Ok(part) => {
+                let copy = match part.content {
+                    Content::Text(file, text) => write_text(self.folder, file, &text)?,
+                    Content::File(copy) => copy,
+                };
+                item.saved(State::Done, &copy, &part.left_out);
+                item.notes = part.notes;
+                entry.copy = Some(copy);
+                entry.holds = part.holds.unwrap_or(entry.holds);
+                entry.left_out = [part.left_out, part.absent].concat();
+                true
+            }
+            Err(failure) => {
+                entry.error = Some(Reason::from(&failure));
+                item.fail(failure)
+            }
+        };
+        self.items.push(item);
+        self.list.files.push(entry);
+        if self.written.elapsed() >= WRITE_EVERY {
+            self.list.write(self.folder)?;
+            self.written = Instant::now();
+        }
+        Ok(goes_on)
+    }
+
+    /// Ends; `rest` was not read.
+    pub fn end(mut self, rest: impl IntoIterator<Item = Item>) -> Result<BackedUp, Failure> {
+        self.is_closed = true;
+        self.items.extend(rest);
+        let items = Items::new(std::mem::take(&mut self.items));
+        self.list.complete = items.is_complete();
+        self.list.write(self.folder)?;
+        Ok(BackedUp::new(self.folder, self.list.scope.clone(), self.list.complete, items))
+    }
+}
+
+impl<C: About> Drop for Saving<'_, C> {
+    /// Ctrl-C, or an error that ended the work early.
+    fn drop(&mut self) {
+        if let (false, Err(failure)) = (self.is_closed, self.list.write(self.folder)) {
+            self.screen.note(&format!("{MANIFEST} was not written: {failure}"));
+        }
+    }
+}
+
+/// Writes a text into a folder, whole or not at all.
+fn write_text(folder: &Path, file: String, text: &str) -> Result<Saved, Failure> {
+    let mut draft = Target::new(folder.join(&file), true)?.begin()?;
+    draft.write(text.as_bytes())?;
+    draft.commit()?;
+    let mut hash = Hash::default();
+    hash.take(text.as_bytes());
+    Ok(Saved { file, bytes: hash.bytes, sha256: hash.hex() })
+}

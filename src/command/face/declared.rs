@@ -1,0 +1,238 @@
+//! What a family says of itself, in its own types. [`Declared`] makes the [`Face`] of it that the house sees.
+
+use std::marker::PhantomData;
+
+use clap::{ArgMatches, Args, Subcommand};
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::layers::Layer;
+use super::overview::OverviewReport;
+use super::sample::{Detail, Sample};
+use super::tool::{Tool, ToolKind};
+use super::words::{self, Typed};
+use super::{Face, HeldLink, Watch};
+use crate::command::backup::{BackedUp, Making, Restored, Restoring};
+use crate::command::decode::Decode;
+use crate::command::frame::connection;
+use crate::command::serve::Serve;
+use crate::command::{Access, AnyContext, CommandSet, Context, Driver, Family, OfflineCommand, SchemaEntry};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::settings::{Robot, target};
+use crate::transport::session::host::Guard;
+
+/// A family, as it is written down in its `face.rs`.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Declaration: Family {
+    /// What stands behind its word.
+    type Commands: CommandSet + Subcommand;
+    /// `armctl decode`.
+    type Decode: Decode + Args + 'static;
+    /// `armctl explain`.
+    type Explain: OfflineCommand + Args + 'static;
+    /// `armctl sim`.
+    type Serve: Serve + Args + 'static;
+    /// Looks for `top`.
+    type Poller: Poller;
+
+    /// Which it is.
+    const NAME: target::Family;
+    /// See [`Face::title`].
+    const TITLE: &'static str;
+    /// What the help says of its word.
+    const ABOUT: &'static str;
+    /// What stands below the help of its word.
+    const AFTER_HELP: &'static str;
+    /// See [`Face::setup`].
+    const SETUP: (&'static str, &'static str);
+    /// See [`Face::start_state`].
+    const START_STATE: &'static str;
+    /// See [`Face::guard`].
+    const GUARD: Guard;
+    /// See [`Face::session_records`].
+    const SESSION_RECORDS: bool = false;
+    /// See [`Face::session_commands`].
+    const SESSION_COMMANDS: bool = false;
+
+    /// See [`Face::urls`].
+    fn urls() -> Vec<(String, &'static str)>;
+    /// See [`Face::codes`].
+    fn codes() -> Vec<(String, String)>;
+
+    /// What can stand between its word and a command.
+    fn arguments(command: clap::Command) -> clap::Command {
+        command
+    }
+    /// What stood there: the robot of the controller, and the words that say the same.
+    fn read_arguments(_matches: &mut ArgMatches) -> Result<(u8, Vec<String>), clap::Error> {
+        Ok((0, Vec::new()))
+    }
+
+    /// A line for `status`.
+    async fn overview(link: &mut Self::Link) -> Result<OverviewReport, Failure>;
+    /// What `robots check` finds.
+    async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure>;
+    /// Opens a link for a session to hold.
+    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
+
+    /// See [`Face::backup_risk`].
+    fn backup_risk(_robot: &Robot) -> Risk {
+        Risk::Read
+    }
+    /// Makes a backup.
+    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
+    /// Writes a backup back.
+    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
+}
+
+/// Looks at a robot again and again, for `top`.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Poller: Sized + 'static {
+    /// Connects.
+    async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
+    /// Looks once.
+    async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
+    /// Closes the connection.
+    async fn close(self, screen: &Screen) -> Result<(), Failure>;
+}
+
+/// The face of a family that is declared.
+pub struct Declared<F>(PhantomData<fn() -> F>);
+
+impl<F> Declared<F> {
+    /// It.
+    pub const FACE: Self = Self(PhantomData);
+}
+
+impl<F: Declaration> Face for Declared<F> {
+    fn family(&self) -> target::Family {
+        F::NAME
+    }
+
+    fn title(&self) -> &'static str {
+        F::TITLE
+    }
+
+    fn urls(&self) -> Vec<(String, &'static str)> {
+        F::urls()
+    }
+
+    fn codes(&self) -> Vec<(String, String)> {
+        F::codes()
+    }
+
+    fn setup(&self) -> (&'static str, &'static str) {
+        F::SETUP
+    }
+
+    fn start_state(&self) -> &'static str {
+        F::START_STATE
+    }
+
+    fn augment(&self, command: clap::Command) -> clap::Command {
+        words::augment::<F::Commands>(F::arguments(command), F::ABOUT).after_help(F::AFTER_HELP)
+    }
+
+    fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
+        F::Commands::lay_out(F::arguments(command), is_named)
+    }
+
+    fn has_command(&self, word: &str) -> bool {
+        words::has_command::<F::Commands>(word)
+    }
+
+    fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
+        let (unit, prefix) = F::read_arguments(matches)?;
+        Ok(Typed { unit, prefix, wish: words::read::<F::Commands>(matches)? })
+    }
+
+    fn schemas(&self) -> Vec<SchemaEntry> {
+        F::Commands::schemas()
+    }
+
+    fn tool(&self, kind: ToolKind) -> Tool {
+        match kind {
+            ToolKind::Decode => Tool::decode::<F::Decode>(),
+            ToolKind::Explain => Tool::explain::<F::Explain>(),
+            ToolKind::Simulate => Tool::simulate::<F::Serve>(),
+        }
+    }
+
+    fn driver(&self) -> &'static dyn Driver {
+        connection::driver::<F>()
+    }
+
+    fn overview<'a>(
+        &self,
+        connection: &'a mut dyn connection::Connection,
+    ) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>> {
+        async move { F::overview(connection::link::<F>(connection)?).await }.boxed_local()
+    }
+
+    fn check<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>> {
+        F::check(robot, access, screen).boxed_local()
+    }
+
+    fn watch<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>> {
+        async move { Ok(Box::new(F::Poller::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
+    }
+
+    fn hold<'a>(
+        &self,
+        robot: &'a Robot,
+        access: &'a Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
+        F::hold(robot, access, screen).boxed_local()
+    }
+
+    fn guard(&self) -> Guard {
+        F::GUARD
+    }
+
+    fn session_records(&self) -> bool {
+        F::SESSION_RECORDS
+    }
+
+    fn session_commands(&self) -> bool {
+        F::SESSION_COMMANDS
+    }
+
+    fn backup_risk(&self, robot: &Robot) -> Risk {
+        F::backup_risk(robot)
+    }
+
+    fn back_up<'a>(&self, context: AnyContext<'a>, making: Making) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+        async move { F::back_up(context.of()?, making).await }.boxed_local()
+    }
+
+    fn restore<'a>(
+        &self,
+        context: AnyContext<'a>,
+        restoring: &'a Restoring,
+    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
+        async move { F::restore(context.of()?, restoring).await }.boxed_local()
+    }
+}
+
+impl<E: Poller> Watch for E {
+    fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
+        Poller::look(self, detail).boxed_local()
+    }
+
+    fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        Poller::close(*self, screen).boxed_local()
+    }
+}

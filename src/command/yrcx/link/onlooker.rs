@@ -1,0 +1,66 @@
+//! Who looks on while the client works: keeps the record of the traffic, and tells what people shall know.
+
+use std::sync::{Arc, Mutex};
+
+use crate::client::Watcher;
+use crate::client::yrcx::Event;
+use crate::command::frame::trace::locked;
+use crate::command::yrcx::failure::failure;
+use crate::command::yrcx::refusal::refused;
+use crate::command::yrcx::trace::Trace;
+use crate::controller::yrcx::describe::{answer_summary, command_summary};
+use crate::output::Screen;
+use crate::transport::image::LinkError;
+
+/// Keeps the record of the traffic, and tells what people shall know.
+#[derive(Debug)]
+pub(super) struct Onlooker {
+    pub(super) trace: Arc<Mutex<Trace>>,
+    pub(super) screen: Screen,
+    pub(super) label: String,
+}
+
+impl Watcher<Event> for Onlooker {
+    fn event(&mut self, event: Event) {
+        let Self { trace, screen, label } = self;
+        match event {
+            Event::Shown(image) => locked(trace).sent(&image),
+            Event::Seen(image) => locked(trace).received(&image),
+            Event::CpuNotOk => screen.note(
+                "warning: CPU OK (SO(01)) is off: the controller does not work, or the URL names something else than what \
+                 it shows (`armctl robots check`)",
+            ),
+            Event::Lost { why, is_reopening } => {
+                let again = if is_reopening { "; it is being opened again" } else { "" };
+                screen.note(&format!("{label}: the link was lost: {why}{again}"));
+                if let LinkError::Lost { outputs, .. } = why {
+                    screen.detail(1, &format!("{label}: the controller: {outputs}"));
+                }
+            }
+            Event::Reopened { stop } => {
+                let state = |on| if on { "on" } else { "off" };
+                let stop = stop.map(|on| format!("; the stop input SI(06) is {}", state(on))).unwrap_or_default();
+                screen.note(&format!("{label}: the link is open again{stop}"));
+            }
+            Event::Leftover(command, status) => {
+                screen.detail(1, &format!("the status was '{status}' before {}; it was reset", command.row().id));
+            }
+            Event::NotReleased(command) => {
+                let id = command.row().id;
+                screen.note(&format!("warning: {id} has ended, but the controller is not ready again"));
+            }
+            Event::BrokenOff(command, alarm) => screen.note(&format!("warning: {}", refused(command.row(), alarm))),
+            Event::Unanswered(error) => screen.note(&format!("warning: {}", failure(label, error))),
+            Event::LeftByOthers { words, answer } => {
+                let (what, end) = (command_summary(&words), answer_summary(&answer));
+                screen.note(&format!("{label}: another client had left {what}; it ended: {end}"));
+            }
+            Event::Stopping => {
+                // From a thread of its own: a terminal that is held must not hold the stop.
+                let screen = *screen;
+                std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
+            }
+            _ => {}
+        }
+    }
+}

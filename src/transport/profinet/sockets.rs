@@ -1,0 +1,98 @@
+//! The sockets of one interface, for a thread that waits for frames, datagrams and its clock at once.
+
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
+use std::os::unix::net::UnixStream;
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use socket2::Socket;
+
+use super::error::ProfinetError;
+use super::interface::Interface;
+use super::wire::dcp::IpSuite;
+use super::wire::rpc;
+
+/// Frames or datagrams taken at once before the clock is looked at.
+const AT_ONCE: usize = 64;
+/// Room that it wants for the longest datagram.
+pub(super) const BUFFER: usize = 65_536;
+
+#[derive(Debug)]
+pub(super) struct Sockets {
+    raw: Socket,
+    udp: UdpSocket,
+    /// A byte in it wakes the thread.
+    bell: UnixStream,
+    heard: UnixStream,
+}
+
+impl Sockets {
+    /// Those of an interface, with its address.
+    ///
+    /// # Errors
+    /// When it cannot be used, or they cannot be had.
+    pub fn open(interface: &Interface) -> Result<(Self, IpSuite), ProfinetError> {
+        let raw = interface.raw_socket()?;
+        interface.check()?;
+        let ip = interface.address()?;
+        let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);
+        let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
+            ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
+            _ => failed(&error),
+        })?;
+        udp.set_nonblocking(true).map_err(|error| failed(&error))?;
+        let (bell, heard) = UnixStream::pair().map_err(|error| failed(&error))?;
+        for end in [&bell, &heard] {
+            end.set_nonblocking(true).map_err(|error| failed(&error))?;
+        }
+        Ok((Self { raw, udp, bell, heard }, ip))
+    }
+
+    pub fn send_frame(&self, bytes: &[u8]) -> io::Result<usize> {
+        (&self.raw).write(bytes)
+    }
+
+    pub fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) -> io::Result<usize> {
+        self.udp.send_to(bytes, to)
+    }
+
+    /// Wakes the thread.
+    pub fn ring(&self) {
+        // Where the buffer is full it is awake.
+        let _ = (&self.bell).write(&[0]);
+    }
+
+    /// Waits for the bell, a frame or a datagram, at most so long.
+    pub fn wait(&self, most: Option<Duration>) {
+        let most = most.map(|most| Timespec::try_from(most).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
+        let mut sources = [
+            PollFd::new(&self.raw, PollFlags::IN),
+            PollFd::new(&self.udp, PollFlags::IN),
+            PollFd::new(&self.heard, PollFlags::IN),
+        ];
+        if poll(&mut sources, most.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
+            // Nothing else would slow it down.
+            std::thread::park_timeout(Duration::from_millis(1));
+        }
+        let mut rings = [0; 64];
+        while (&self.heard).read(&mut rings).is_ok_and(|read| read > 0) {}
+    }
+
+    /// Takes what came, as far as it came at once.
+    pub fn hear(&self, buffer: &mut [u8], mut frame: impl FnMut(&[u8]), mut datagram: impl FnMut(SocketAddrV4, &[u8])) {
+        for _ in 0..AT_ONCE {
+            let Ok(length) = (&self.raw).read(buffer) else { break };
+            frame(&buffer[..length]);
+        }
+        for _ in 0..AT_ONCE {
+            match self.udp.recv_from(buffer) {
+                Ok((length, SocketAddr::V4(from))) => datagram(from, &buffer[..length]),
+                Ok(_) => {}
+                // What a host says of an earlier call (port unreachable) is nothing to the others.
+                Err(error) if error.kind() == ErrorKind::ConnectionRefused => {}
+                Err(_) => break,
+            }
+        }
+    }
+}
