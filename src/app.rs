@@ -3,11 +3,13 @@
 mod batch;
 mod complete;
 mod flags;
-mod leaves;
+#[cfg(test)]
+mod gate_tests;
 mod misplaced;
 mod parser;
 mod prepared;
 mod repl;
+mod typed;
 mod words;
 
 use std::ffi::OsString;
@@ -15,9 +17,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::ValueEnum as _;
-use clap::error::ErrorKind;
 
-use self::parser::Parser;
+use self::parser::{Parser, Refusal};
 use self::prepared::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
 use crate::command::frame::run::RunError;
@@ -43,7 +44,10 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     parser.abandon();
     let cli = match parsed {
         Ok(cli) => cli,
-        Err(error) => return exit(refuse(&args, &error, false)),
+        Err(refusal) => {
+            let pager = args.iter().all(|word| word != "--no-pager");
+            return exit(refuse(&args, &refusal, false, pager));
+        }
     };
     let screen = screen(&cli.globals);
     screen.tells_the_end();
@@ -133,36 +137,25 @@ fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind
 }
 
 /// What the parser has to say: help and version on stdout, mistakes on stderr, as JSON if the line asks for it.
-fn refuse(args: &[OsString], error: &clap::Error, is_json: bool) -> Result<(), Kind> {
+fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
     let is_json = is_json || wants_json(args);
     let format = if is_json { Format::Json } else { Format::Table };
-    let screen = Screen::new(format, color(args), false, 0);
-    let rendered = error.render();
-    if is_text(error) {
-        let text = if screen.stdout_color() { rendered.ansi().to_string() } else { rendered.to_string() };
-        return screen.data(&text).map_err(|failure| tell(&screen, failure.into()));
+    let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
+    match refusal {
+        Refusal::Text(text) => {
+            let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
+            screen.read(&text).map_err(|failure| tell(&screen, failure.into()))
+        }
+        _ if is_json => Err(tell(&screen, refusal.failure().into())),
+        Refusal::Verb(help, _) => {
+            screen.usage(help);
+            Err(Kind::Usage)
+        }
+        Refusal::Mistake(error) => {
+            screen.usage(&error.render());
+            Err(Kind::Usage)
+        }
     }
-    if is_json {
-        return Err(tell(&screen, refusal(error).into()));
-    }
-    screen.usage(&rendered);
-    Err(Kind::Usage)
-}
-
-/// What the parser has to say, as a failure.
-fn refusal(error: &clap::Error) -> Failure {
-    if is_text(error) {
-        return Failure::usage("this prints a text to read").hint("type it at a terminal");
-    }
-    let text = error.render().to_string();
-    let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
-    let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
-    Failure::usage(message).hint(tip)
-}
-
-/// Whether it is no mistake, but help or the version.
-fn is_text(error: &clap::Error) -> bool {
-    matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion)
 }
 
 /// What a command line that was not parsed, such as that of a help, says about colour.

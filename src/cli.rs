@@ -15,7 +15,7 @@ use crate::controller::text::Encoding;
 use crate::gate::OnInterrupt;
 use crate::output::{ColorChoice, Format};
 use crate::settings::duration;
-use crate::settings::target::{Family, Target};
+use crate::settings::target::{Family, Given};
 
 /// Talk to industrial robot controllers from a terminal or a script.
 ///
@@ -108,9 +108,9 @@ pub struct Globals {
     /// Talk to the built-in simulator, in this process
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
-    /// Talk to the controller at URL, such as udp://192.168.1.31 or serial:///dev/ttyUSB0 (ARMCTL_TARGET)
+    /// Talk to the controller at URL, such as udp://192.168.1.31, or at 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
-    pub target: Option<Target>,
+    pub target: Option<Given>,
     /// Talk to a robot of the inventory, by name or pattern (repeatable)
     #[arg(short, long, global = true, value_name = "NAME", add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
@@ -163,6 +163,9 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub color: ColorChoice,
+    /// Print long texts as they are, without the pager (PAGER)
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Output")]
+    pub no_pager: bool,
     /// Record the traffic: a .pcapng file for Wireshark, or - for text on stderr
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
     pub trace: Option<PathBuf>,
@@ -239,6 +242,7 @@ impl Globals {
             quiet,
             verbose,
             color: if self.color == ColorChoice::Auto { all.color } else { self.color },
+            no_pager: self.no_pager || all.no_pager,
             trace: self.trace.or_else(|| all.trace.clone()),
             yes: self.yes || all.yes,
             dry_run: self.dry_run || all.dry_run,
@@ -260,7 +264,7 @@ impl Globals {
         let mut words = Vec::new();
         words.extend(self.sim.then(|| "--sim".to_owned()));
         words.extend(self.all.then(|| "--all".to_owned()));
-        words.extend(self.target.iter().flat_map(|target| named("--target", target.url().to_owned())));
+        words.extend(self.target.iter().flat_map(|target| named("--target", target.to_string())));
         words.extend(self.robot.iter().flat_map(|robot| named("--robot", robot.clone())));
         words.extend(self.tag.iter().flat_map(|tag| named("--tag", tag.clone())));
         words.extend(self.config.iter().flat_map(|path| named("--config", path.display().to_string())));

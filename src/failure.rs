@@ -90,7 +90,8 @@ impl Failure {
 
     /// A mistake on the command line or in a file of settings.
     pub fn usage(message: impl Into<String>) -> Self {
-        Self::new(Kind::Usage, message)
+        let message = message.into();
+        Self { hint: decimal_point(&message), ..Self::new(Kind::Usage, message) }
     }
 
     /// A fault of this program or of the local machine.
@@ -123,7 +124,8 @@ impl Failure {
     /// Adds what to do.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
+        let number = (self.kind == Kind::Usage).then(|| decimal_point(&self.message)).flatten();
+        self.hint = number.or_else(|| Some(hint.into()));
         self
     }
 
@@ -133,6 +135,20 @@ impl Failure {
         self.code = Some(code.into());
         self
     }
+}
+
+/// What to type instead of a number with a decimal comma, if that is what a message refuses: `'2,5' is not a number`.
+pub fn decimal_point(message: &str) -> Option<String> {
+    let quoted = message.split('\'').zip(message.split('\'').skip(1)).skip(1).step_by(2);
+    let refused = quoted.filter(|(_, after)| after.starts_with(" is no") && !after.contains("whole"));
+    let mut numbers = refused.filter_map(|(text, _)| {
+        let (before, after) = text.split_once(',')?;
+        let digits = after.trim_end_matches(|c: char| !c.is_ascii_digit());
+        let is_number =
+            before.parse::<i64>().is_ok() && !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+        is_number.then(|| format!("use a decimal point: {before}.{after}"))
+    });
+    numbers.next()
 }
 
 /// An I/O error without the `(os error 13)` that tells a technician nothing.
@@ -169,6 +185,22 @@ mod tests {
     fn exit_codes_are_those_of_the_contract() {
         let codes: Vec<u8> = Kind::TABLE.iter().map(|(kind, ..)| kind.exit()).collect();
         assert_eq!(codes, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 130]);
+    }
+
+    #[test]
+    fn a_decimal_comma_is_told() {
+        for (message, hint) in [
+            ("x: '2,5' is not a number, 1 to 9 mm", Some("use a decimal point: 2.5")),
+            ("'-12,50mm/s' is no speed", Some("use a decimal point: -12.50mm/s")),
+            ("'2,5' is not a whole number", None),
+            ("'1,2,3' is not a number", None),
+            ("four numbers are wanted, not '1,5'", None),
+            ("robot 'a,b' is not there", None),
+        ] {
+            assert_eq!(Failure::usage(message).hint.as_deref(), hint, "{message}");
+            let hinted = Failure::usage(message).hint("look");
+            assert_eq!(hinted.hint.as_deref(), hint.or(Some("look")), "{message}");
+        }
     }
 
     #[test]

@@ -48,16 +48,6 @@ pub struct Intent {
 }
 
 impl Intent {
-    /// The same for one robot of the controller; 0 is none in particular.
-    #[must_use]
-    pub fn of_unit(mut self, unit: u8) -> Self {
-        let robot = format!("robot {unit}");
-        if unit > 0 && !self.text.is_empty() && !self.text.contains(&robot) {
-            self.text.push_str(&format!(", {robot}"));
-        }
-        self
-    }
-
     /// What may leave before anything was confirmed on the way.
     pub fn granted_at_first(&self) -> Risk {
         match self.confirmation {

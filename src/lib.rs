@@ -21,8 +21,8 @@
 //!
 //! # As a library
 //!
-//! [`client`] is all that a program needs that talks to a controller itself. `examples/` has one for each family whose
-//! client is there; this is `examples/yerc.rs`:
+//! [`client`] is all that a program needs that talks to a controller itself. `examples/` has one for each family;
+//! this is `examples/yerc.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/yerc.rs")]

@@ -1,55 +1,123 @@
-//! Words that are right, and stand in the wrong place: `armctl job select`, `armctl status yerc`, `armctl yerc select`.
+//! Mistakes in a command line, with what to type instead: words in the wrong place or order (`armctl job select`, `armctl
+//! get file`), other words for them, values that are missing, or written with a comma or with blanks.
 
-use std::collections::BTreeSet;
+mod synonyms;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
 
-use clap::Command;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, Command};
 
-use super::leaves::is_dangerous;
+use super::typed::Typed;
+use crate::command::leaves::{self, is_dangerous};
+use crate::controller::Risk;
+use crate::failure::decimal_point;
 use crate::settings::target::Family;
 
 /// More ways than this help nobody.
-const MOST: usize = 3;
+const MOST: usize = 4;
 
-/// The error, with the command lines that the word it is about belongs to, where there are some. What moves a robot, or
-/// deletes or overwrites something, is never proposed: it is too easily typed again.
+/// The error, with what to type instead, where that can be told. What moves a robot, or deletes or overwrites something,
+/// is never proposed: it is too easily typed again.
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
-    let kind = match error.kind() {
-        ErrorKind::InvalidSubcommand => ContextKind::InvalidSubcommand,
-        ErrorKind::UnknownArgument => ContextKind::InvalidArg,
-        _ => return error,
+    let typed = Typed::new(args, whole);
+    let tip = match error.kind() {
+        ErrorKind::InvalidSubcommand => place(&mut error, ContextKind::InvalidSubcommand, &typed, whole),
+        ErrorKind::UnknownArgument => {
+            place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
+        }
+        ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
+        ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| decimal_point(&why.to_string())),
+        _ => None,
     };
-    let Some(ContextValue::String(word)) = error.get(kind) else { return error };
-    let word = word.clone();
-    leave_out_dangerous(&mut error, &path(&word, args, whole), whole);
-    let (safe, dangerous): (Vec<Line>, Vec<Line>) =
-        lines(&word, args, whole).into_iter().partition(|line| !may_do_harm(&words_of(&line.0), whole));
-    let families: BTreeSet<String> =
-        dangerous.iter().filter_map(|line| Some(format!("`armctl {} -h`", words_of(&line.0).first()?))).collect();
-    let mut lines: Vec<String> = safe.into_iter().map(|line| line.shown()).collect();
-    lines.extend(families.into_iter().map(|help| format!("one that {help} lists")));
-    if lines.is_empty() || lines.len() > MOST {
-        return error;
+    if let Some(tip) = tip {
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
-    // What is spelled right is not meant to be a word that only looks like it.
-    error.remove(ContextKind::SuggestedSubcommand);
-    let tip = format!("the command is {}", lines.join(" or "));
-    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     error
 }
 
-/// The words of the command that a wrong word stands behind.
-fn path<'a>(word: &str, args: &'a [OsString], whole: &Command) -> Vec<&'a str> {
-    let mut command = whole;
-    let mut path = Vec::new();
-    for arg in args.iter().skip(1).filter_map(|arg| arg.to_str()).take_while(|arg| *arg != word) {
-        if let Some(below) = command.find_subcommand(arg) {
-            command = below;
-            path.push(arg);
+/// Where the wrong word belongs.
+fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(kind) else { return None };
+    let word = word.clone();
+    leave_out_dangerous(error, &typed.path, whole);
+    if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
+        return None;
+    }
+    let (safe, dangerous): (Vec<Line>, Vec<Line>) =
+        lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
+    let mut of_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
+    for line in &dangerous {
+        if let (Some((_, noun)), Some(risk)) = (words_of(&line.0).split_last(), risk(&line.0, whole)) {
+            of_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    path
+    let dangerous = of_risk
+        .into_iter()
+        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
+    let mut lines: Vec<String> = safe.into_iter().map(|line| line.shown()).collect();
+    lines.extend(dangerous);
+    if lines.is_empty() || lines.len() > MOST {
+        return None;
+    }
+    // What is spelled right is not meant to be a word that only looks like it.
+    error.remove(ContextKind::SuggestedSubcommand);
+    Some(format!("the command is {}", lines.join(" or ")))
+}
+
+/// What a dangerous command does; none for others.
+fn risk(line: &str, whole: &Command) -> Option<&'static str> {
+    let words = words_of(line);
+    if !may_do_harm(&words, whole) {
+        return None;
+    }
+    let most = leaves::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
+    Some(match most.map(|(_, risk)| *risk).max() {
+        Some(Risk::Destroy) => "deletes or overwrites",
+        _ => "moves or powers the robot",
+    })
+}
+
+/// A value of several words that was meant as one, or numbers with blanks between them.
+fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    if word.starts_with("--") || command.has_subcommands() {
+        return None;
+    }
+    let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
+    let at = words.iter().rposition(|other| other == word)?;
+    let is_number = |word: &&str| word.parse::<f64>().is_ok();
+    let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
+    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.path.contains(word))? + 1;
+    // Only the last argument can have been meant to have blanks.
+    let is_of_flag = words[first - 1].starts_with('-');
+    let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
+    let values: Vec<&str> = words[first..].iter().copied().take_while(is_value).skip(others).collect();
+    if values.len() < 2 {
+        return None;
+    }
+    Some(if values.iter().all(is_number) {
+        format!("write numbers with commas and without blanks: {}", values.join(","))
+    } else {
+        let quote = if values.concat().contains('\'') { '"' } else { '\'' };
+        format!("a value with blanks stands in quotes: {quote}{}{quote}", values.join(" "))
+    })
+}
+
+/// What can stand where a value is missing.
+fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
+    let values = command.get_arguments().find(is_missing)?.get_possible_values();
+    let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
+    match names.split_last() {
+        Some((last, others)) if !others.is_empty() => Some(format!("say {} or {last}", others.join(", "))),
+        _ if is_dangerous(&typed.path, false) => None,
+        _ => leaves::examples(&typed.path).next().map(|line| format!("as in `armctl {line}`")),
+    }
 }
 
 /// Whether the command that these words begin is a dangerous one.
@@ -82,33 +150,74 @@ fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) 
 struct Line(String, &'static str);
 
 impl Line {
+    fn new(line: impl Into<String>) -> Self {
+        Self(line.into(), "")
+    }
+
     fn shown(&self) -> String {
         format!("`armctl {}`{}", self.0, self.1)
     }
 }
 
 fn words_of(line: &str) -> Vec<&str> {
-    line.split(' ').filter(|word| *word != "…").collect()
+    line.split(' ').filter(|word| *word != "…" && !word.starts_with('-')).collect()
 }
 
 /// Command lines with the word in its place.
-fn lines(word: &str, args: &[OsString], whole: &Command) -> Vec<Line> {
-    let words: Vec<&str> = args.iter().skip(1).filter_map(|word| word.to_str()).collect();
+fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Line> {
+    let words = typed.words();
     if word.parse::<Family>().is_ok() {
-        let others = words.iter().filter(|other| **other != word && !other.starts_with('-'));
-        let others: Vec<&str> = others.copied().collect();
+        let others: Vec<&str> = words.iter().copied().filter(|other| *other != word).collect();
         let family = whole.find_subcommand(word);
         let exists =
             others.first().is_some_and(|first| family.is_some_and(|family| family.find_subcommand(first).is_some()));
-        return if exists { vec![Line(format!("{word} {}", others.join(" ")), "")] } else { Vec::new() };
+        return if exists { vec![Line::new(format!("{word} {}", others.join(" ")))] } else { Vec::new() };
     }
     let family = words.iter().find_map(|word| word.parse::<Family>().ok());
     if family.is_some() && whole.find_subcommand(word).is_some() {
         return vec![Line(word.to_owned(), ", which is for all families")];
     }
+    let words: Vec<&str> = words.into_iter().filter(|word| word.parse::<Family>().is_err()).collect();
     let families = Family::ALL.into_iter().filter(|other| family.is_none_or(|family| family == *other));
-    let families = families.filter_map(|family| whole.find_subcommand(family.name()));
-    families.flat_map(|family| below(family, word)).collect()
+    let families: Vec<&Command> = families.filter_map(|family| whole.find_subcommand(family.name())).collect();
+    let all =
+        |find: &dyn Fn(&Command) -> Vec<Line>| families.iter().flat_map(|family| find(family)).collect::<Vec<_>>();
+    [
+        all(&|family| turned(family, &words)),
+        said_otherwise(&words, family),
+        all(&|family| other_verb(family, &words)),
+        all(&|family| below(family, word)),
+    ]
+    .into_iter()
+    .find(|lines| !lines.is_empty())
+    .unwrap_or_default()
+}
+
+/// A verb before its noun.
+fn turned(family: &Command, words: &[&str]) -> Vec<Line> {
+    let [verb, noun, ..] = words else { return Vec::new() };
+    let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
+    if exists { vec![Line::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
+}
+
+/// Other words, from the table: the entry that has most of them.
+fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Line> {
+    let typed = |entry: &&(&str, &[&str])| words.starts_with(&entry.0.split(' ').collect::<Vec<_>>());
+    let Some((_, ways)) = synonyms::LINES.iter().filter(typed).max_by_key(|(words, _)| words.len()) else {
+        return Vec::new();
+    };
+    let of = |way: &str| way.split(' ').next().and_then(|word| word.parse::<Family>().ok());
+    let fits = |way: &&&str| of(way).is_none_or(|other| family.is_none_or(|family| family == other));
+    ways.iter().filter(fits).map(|way| Line::new(*way)).collect()
+}
+
+/// A noun with another word for its verb.
+fn other_verb(family: &Command, words: &[&str]) -> Vec<Line> {
+    let [noun, verb, ..] = words else { return Vec::new() };
+    let Some(command) = family.find_subcommand(noun) else { return Vec::new() };
+    let Some((_, verbs)) = synonyms::VERBS.iter().find(|(other, _)| other == verb) else { return Vec::new() };
+    let found = verbs.iter().find(|verb| command.find_subcommand(verb).is_some());
+    found.map(|verb| Line::new(format!("{} {noun} {verb}", family.get_name()))).into_iter().collect()
 }
 
 /// Where a word is a command of a family, or the verb of one of its nouns.
@@ -116,10 +225,10 @@ fn below(family: &Command, word: &str) -> Vec<Line> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {
         let more = if command.has_subcommands() { " …" } else { "" };
-        return vec![Line(format!("{name} {word}{more}"), "")];
+        return vec![Line::new(format!("{name} {word}{more}"))];
     }
     let nouns = family.get_subcommands().filter(|noun| noun.find_subcommand(word).is_some());
-    nouns.map(|noun| Line(format!("{name} {} {word}", noun.get_name()), "")).collect()
+    nouns.map(|noun| Line::new(format!("{name} {} {word}", noun.get_name()))).collect()
 }
 
 #[cfg(test)]
@@ -140,11 +249,10 @@ mod tests {
     #[test]
     fn words_in_the_wrong_place_are_shown_in_theirs() {
         for (line, expected) in [
-            ("armctl alarm list", "the command is `armctl yerc alarm …` or `armctl yrcx alarm …`"),
             ("armctl hlock on", "the command is `armctl yerc hlock`"),
             (
                 "armctl servo on",
-                "the command is one that `armctl toyo -h` lists or one that `armctl yerc -h` lists or one that `armctl yrcx -h` lists",
+                "the command is one that moves or powers the robot: see `armctl toyo -h`, `armctl yerc -h`, `armctl yrcx -h`",
             ),
             ("armctl status yerc", "the command is `armctl yerc status`"),
             ("armctl --sim status toyo", "the command is `armctl toyo status`"),
@@ -157,5 +265,74 @@ mod tests {
         }
         assert_eq!(tip("armctl toyo get"), None);
         assert_eq!(tip("armctl status nonsense"), None);
+    }
+
+    #[test]
+    fn other_words_and_another_order_lead_to_the_command() {
+        for (line, expected) in [
+            ("armctl get file", "`armctl yerc file get`"),
+            ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
+            ("armctl list alarm", "`armctl yerc alarm list`"),
+            ("armctl yerc job list", "`armctl yerc file list`"),
+            ("armctl yerc file ls", "`armctl yerc file list`"),
+            ("armctl yerc io read 1", "`armctl yerc io get`"),
+            (
+                "armctl yerc start COUNT",
+                "`armctl yerc job select` or one that moves or powers the robot: see `armctl yerc job -h`",
+            ),
+            ("armctl yerc job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
+            ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
+            ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
+            ("armctl toyo alarm", "`armctl toyo error show`"),
+            ("armctl yrcx error", "`armctl yrcx info alarm`"),
+            (
+                "armctl version",
+                "`armctl --version` or `armctl yerc info` or `armctl yrcx info version` or `armctl toyo info`",
+            ),
+            ("armctl toyo version", "`armctl --version` or `armctl toyo info`"),
+            ("armctl stop", "`armctl yerc hold on` or `armctl yrcx stop` or `armctl toyo stop`"),
+        ] {
+            assert_eq!(tip(line), Some(format!("the command is {expected}")), "{line}");
+        }
+    }
+
+    #[test]
+    fn the_tables_lead_to_commands() {
+        let whole = Cli::command();
+        let exists = |words: &[&str]| {
+            words
+                .iter()
+                .try_fold(&whole, |command, word| command.find_subcommand(word).or((*word == "on").then_some(command)))
+        };
+        for (_, ways) in synonyms::LINES {
+            for way in *ways {
+                assert!(exists(&words_of(way)).is_some(), "{way}");
+            }
+        }
+        let words: Vec<&str> = synonyms::LINES.iter().map(|(words, _)| *words).collect();
+        assert!(words.is_sorted() && synonyms::VERBS.is_sorted_by_key(|(verb, _)| *verb));
+    }
+
+    #[test]
+    fn values_are_told_as_they_are_to_be_typed() {
+        for (line, expected) in [
+            ("armctl yerc servo", "say on or off"),
+            ("armctl yerc cycle", "say step, once or continuous"),
+            ("armctl yerc job select", "as in `armctl yerc job select WELD`"),
+            ("armctl yerc say BACK AT NOON", "a value with blanks stands in quotes: 'BACK AT NOON'"),
+            ("armctl yrcx comment set 100 WAIT ORG", "a value with blanks stands in quotes: 'WAIT ORG'"),
+            (
+                "armctl yerc move joint --to 400 0 300 180 0 0 --speed 10%",
+                "write numbers with commas and without blanks: 400,0,300,180,0,0",
+            ),
+            ("armctl yerc move relative --z 2,5 --speed 1mm/s", "use a decimal point: 2.5"),
+            ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
+            ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
+        ] {
+            assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
+        }
+        for line in ["armctl yerc job start x", "armctl yerc file delete", "armctl yerc status x"] {
+            assert_eq!(tip(line), None, "{line}");
+        }
     }
 }

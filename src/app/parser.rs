@@ -2,13 +2,17 @@
 
 use std::ffi::OsString;
 
+use clap::builder::StyledStr;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
 use super::misplaced;
+use super::typed::Typed;
 use crate::cli::{Cli, FamilyWord, Top, Words};
+use crate::command::about::page::page;
 use crate::command::common::Common;
 use crate::command::families;
+use crate::failure::Failure;
 use crate::settings::target::Family;
 
 /// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line is tried on the
@@ -18,6 +22,57 @@ pub struct Parser {
     all: Option<Command>,
     /// What was laid out for the last line alone.
     last: Option<Command>,
+}
+
+/// Why a line is no command to run.
+pub enum Refusal {
+    /// It asks for a text: a help, the version.
+    Text(StyledStr),
+    /// It ends before a verb: the help that lists them, and they alone.
+    Verb(StyledStr, String),
+    /// It is wrong.
+    Mistake(clap::Error),
+}
+
+impl Refusal {
+    fn new(error: clap::Error, args: &[OsString], whole: &Command) -> Self {
+        let Typed { mut path, rest } = Typed::new(args, whole);
+        let is_long = args.iter().any(|word| word == "--help");
+        match error.kind() {
+            ErrorKind::DisplayVersion => Self::Text(error.render()),
+            ErrorKind::DisplayHelp => Self::Text(page(whole, &path, is_long)),
+            ErrorKind::InvalidSubcommand if rest.first() == Some(&"help") => {
+                let below = |path: &[&str]| path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
+                for word in &rest[1..] {
+                    path.push(word);
+                    if below(&path).is_none() {
+                        path.pop();
+                    }
+                }
+                Self::Text(page(whole, &path, is_long))
+            }
+            ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+                let command = path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
+                let verbs = command.into_iter().flat_map(Command::get_subcommands).map(Command::get_name);
+                Self::Verb(page(whole, &path, false), verbs.collect::<Vec<_>>().join(", "))
+            }
+            _ => Self::Mistake(misplaced::explained(error, args, whole)),
+        }
+    }
+
+    /// As a failure.
+    pub fn failure(&self) -> Failure {
+        match self {
+            Self::Text(_) => Failure::usage("this prints a text to read").hint("type it at a terminal"),
+            Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
+            Self::Mistake(error) => {
+                let text = error.render().to_string();
+                let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+                let tip = text.lines().find_map(|line| line.trim().strip_prefix("tip: ")).unwrap_or("see --help");
+                Failure::usage(message).hint(tip)
+            }
+        }
+    }
 }
 
 /// Whose command a word is.
@@ -34,7 +89,7 @@ pub enum Owner {
 impl Parser {
     /// Reads a line, the program's name included. What does not parse on the words it names is left to the whole, which
     /// knows more to say about it.
-    pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, clap::Error> {
+    pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, Refusal> {
         let narrowed = match first(args) {
             Some(First::Family(family)) => named(&mut self.last, family, args).map(|words| words.into_top(Top::Family)),
             Some(First::Common) => {
@@ -46,7 +101,7 @@ impl Parser {
             return Ok(cli);
         }
         let all = laid_out::<Top>(&mut self.all);
-        read(all, args).map_err(|error| misplaced::explained(error, args, all))
+        read(all, args).map_err(|error| Refusal::new(error, args, all))
     }
 
     /// Whose command a word is, where it may be one of this family.

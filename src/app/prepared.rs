@@ -6,7 +6,6 @@ use clap::CommandFactory as _;
 
 use super::{flags, screen};
 use crate::cli::{Cli, FamilyWord, Globals, Top};
-use crate::command::AnyCommand;
 use crate::command::common::Common;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
@@ -14,13 +13,14 @@ use crate::command::fleet::robots::check::Check;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
+use crate::command::{AnyCommand, Own};
 use crate::failure::Failure;
 use crate::gate::Gate;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
-use crate::settings::target::Target;
+use crate::settings::target::Given;
 use crate::settings::{Selection, Sessions, Sources};
 
 /// What a command line asks for.
@@ -38,8 +38,8 @@ pub enum Invocation {
 /// What is to be done, and for whom.
 #[allow(clippy::large_enum_variant, reason = "there are few in a process")]
 pub enum Task {
-    /// For robots of a family, and which robot of the controller.
-    Family(u8, Box<dyn AnyCommand>),
+    /// For robots of a family, and what was typed for all its commands.
+    Family(Own, Box<dyn AnyCommand>),
     /// Whatever all families share.
     Common(Common),
 }
@@ -47,10 +47,10 @@ pub enum Task {
 impl From<Top> for Invocation {
     fn from(command: Top) -> Self {
         match command {
-            Top::Family(FamilyWord { family, typed: Typed { unit, prefix, wish } }) => {
-                let prefix = std::iter::once(family.name().to_owned()).chain(prefix).collect();
+            Top::Family(FamilyWord { family, typed: Typed { own, wish } }) => {
+                let prefix = std::iter::once(family.name().to_owned()).chain(own.words()).collect();
                 match wish {
-                    Wish::Command(command) => Self::Task(Task::Family(unit, command)),
+                    Wish::Command(command) => Self::Task(Task::Family(own, command)),
                     Wish::Prompt => Self::Prompt(prefix),
                     Wish::Nothing => Self::Bare(prefix),
                 }
@@ -82,7 +82,7 @@ impl PreparedCommand {
         let need = task.need();
         let mut run = prepare(globals, need, line)?;
         match &task {
-            Task::Family(unit, _) => run.unit = *unit,
+            Task::Family(own, _) => run.own = own.clone(),
             Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
@@ -151,14 +151,14 @@ pub enum Need {
 
 /// Flags, environment and inventory, read once.
 fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
-    let screen = screen(&globals);
+    let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Filter::new).transpose()?;
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
-    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), unit: 0 })
+    Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }
 
 /// Which robots, and their settings; `among` other lines of this process, simulators live on.
@@ -169,7 +169,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         robots: globals.robot,
         tags: globals.tag,
         all: globals.all,
-        environment: variable("ARMCTL_TARGET", |url| url.parse::<Target>().map_err(|failure| failure.message))?,
+        environment: variable("ARMCTL_TARGET", |url| url.parse::<Given>().map_err(|failure| failure.message))?,
         sessions: match (globals.no_session, among) {
             (true, _) => Sessions::None,
             (false, true) => Sessions::OwnSimulators,

@@ -21,7 +21,7 @@ use self::meaning::{Meaning, family_help};
 use self::prompt::{Prompt, Seen, look};
 use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
-use super::parser::Parser;
+use super::parser::{Parser, Refusal};
 use super::prepared::{Invocation, Need, PreparedCommand, sources};
 use super::{refuse, screen, tell, words};
 use crate::cli::{Globals, Words};
@@ -44,8 +44,8 @@ pub fn can_type() -> bool {
 
 /// Nothing but the name of a family was typed where nobody can type: what its commands are.
 pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
-    if let Err(help) = Parser::default().parse(&family_help(prefix)) {
-        screen.usage(&help.render());
+    if let Err(Refusal::Text(help)) = Parser::default().parse(&family_help(prefix)) {
+        screen.usage(&help);
     }
     RunError { told: true, ..Failure::usage("a command is missing").into() }
 }
@@ -209,7 +209,7 @@ impl Repl {
         let Words { globals, command } = match self.meaning.parser.parse(&args) {
             Ok(words) => words,
             Err(error) => {
-                return refuse(&args, &error, self.screen.is_json()).map_or_else(Next::Failed, |()| Next::Line);
+                return refuse(&args, &error, self.screen.is_json(), false).map_or_else(Next::Failed, |()| Next::Line);
             }
         };
         let own = globals.clone();

@@ -18,6 +18,7 @@ pub mod face;
 pub mod families;
 pub mod fleet;
 pub mod frame;
+pub mod leaves;
 pub mod serve;
 pub mod toyo;
 pub mod yerc;
@@ -26,5 +27,5 @@ pub mod yrcx;
 pub(crate) use frame::commands;
 pub use frame::{
     Access, AnyCommand, AnyContext, AnyReport, Command, CommandSet, ConnectMode, Connection, Context, Driver, Entry,
-    Family, Offline, OfflineCommand, Outcome, Report, SchemaEntry, Subcommands, ValueKind,
+    Family, Offline, OfflineCommand, Outcome, Own, OwnArguments, Report, SchemaEntry, Subcommands, ValueKind,
 };

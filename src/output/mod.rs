@@ -8,6 +8,7 @@ pub mod escape;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;
+mod pager;
 pub mod progress;
 pub mod prompt;
 pub mod redraw;
@@ -55,18 +56,25 @@ pub struct Screen {
     /// `-v` 1 summary, `-vv` 2 frames, `-vvv` 3 bytes.
     pub verbosity: u8,
     color: ColorChoice,
+    pager: bool,
 }
 
 impl Screen {
     /// Everything as flags and environment want it.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
-        Self { format, quiet, verbosity, color }
+        Self { format, quiet, verbosity, color, pager: false }
+    }
+
+    /// With a pager for long texts to read, or without.
+    #[must_use]
+    pub fn with_pager(self, pager: bool) -> Self {
+        Self { pager, ..self }
     }
 
     /// Nothing but errors, and those as JSON: for tests.
     #[cfg(test)]
     pub const fn silent() -> Self {
-        Self { format: Format::Json, quiet: true, verbosity: 0, color: ColorChoice::Never }
+        Self { format: Format::Json, quiet: true, verbosity: 0, color: ColorChoice::Never, pager: false }
     }
 
     /// The same, but silent about everything that is not an error.
@@ -192,7 +200,7 @@ impl Screen {
     /// What the parser of the command line has to say about a mistake.
     pub fn usage(&self, text: &clap::builder::StyledStr) {
         let color = self.wants_color(io::stderr().is_terminal());
-        Self::stderr(&if color { text.ansi().to_string() } else { text.to_string() });
+        Self::prose(&if color { text.ansi().to_string() } else { text.to_string() });
     }
 
     /// A line of JSON on stderr.

@@ -96,6 +96,9 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
         };
         if is_whole {
             column.set_constraint(ColumnConstraint::ContentWidth);
+        } else if let Section::Table(table) = section {
+            let least = u16::try_from(least_column(table, index)).unwrap_or(u16::MAX).saturating_add(PADDING);
+            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
         }
     }
     grid.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n")
@@ -203,19 +206,28 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
-/// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
+/// Longest run of hexadecimal digits that keeps together: a frame is broken like nothing else.
 const WORD: usize = 16;
+
+/// What a table may ask for a word, such as an address, that has to stay whole.
+const LONGEST: usize = 60;
+
+/// The width of a column below which it would break words.
+fn least_column(table: &Table, index: usize) -> usize {
+    let of_word = |word: &str| {
+        let wide = measure_text_width(word);
+        let may_break = wide > LONGEST || word.bytes().all(|byte| byte.is_ascii_hexdigit());
+        if may_break { wide.min(WORD) } else { wide }
+    };
+    let of_text = |text: &str| escape::line(text).split(' ').map(of_word).max().unwrap_or_default();
+    let of_cell = |cell: &Cell| if cell.is_whole { measure_text_width(&cell.text) } else { of_text(&cell.text) };
+    let cells = table.rows.iter().map(|row| of_cell(&row[index]));
+    cells.chain([of_text(table.columns[index])]).max().unwrap_or_default()
+}
 
 /// The width below which a table would break words.
 fn least_width(table: &Table) -> usize {
-    let of_word = |word: &str| measure_text_width(word).min(WORD);
-    let of_text = |text: &str| escape::line(text).split(' ').map(of_word).max().unwrap_or_default();
-    let of_cell = |cell: &Cell| if cell.is_whole { measure_text_width(&cell.text) } else { of_text(&cell.text) };
-    let of_column = |(index, name): (usize, &&str)| {
-        let cells = table.rows.iter().map(|row| of_cell(&row[index]));
-        cells.chain([of_text(name)]).max().unwrap_or_default()
-    };
-    let columns: usize = table.columns.iter().enumerate().map(of_column).sum();
+    let columns: usize = (0..table.columns.len()).map(|index| least_column(table, index)).sum();
     columns + usize::from(PADDING) * table.columns.len()
 }
 
@@ -428,6 +440,16 @@ mod tests {
         let text = text(&View::table(table), 40, false);
         assert!(text.contains("2026/03/14 08:00\n"), "{text}");
         assert!(text.lines().all(|line| line.len() <= 40), "{text}");
+    }
+
+    #[test]
+    fn an_address_stays_on_a_line() {
+        let mut table = Table::new(&["robot", "target", "what it says"], "");
+        let url = "profinet://cell-3@enp4s0?ip=192.168.1.5";
+        table.row(["cell3".into(), url.into(), "word ".repeat(20).into()]);
+        for width in [60, 70, 80] {
+            assert!(text(&View::table(table.clone()), width, false).contains(url), "{width}");
+        }
     }
 
     #[test]

@@ -23,7 +23,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::duration;
-use super::target::{Family, Target};
+use super::target::{Family, Given, Target};
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -152,10 +152,11 @@ impl Inventory {
                     .hint("give every robot its own name"));
             }
             let mut span = raw.target.span();
-            let target: Target = raw.target.as_ref().parse().map_err(|failure: Failure| {
+            let wrong = |failure: Failure| {
                 let hint = failure.hint.clone().unwrap_or_default();
-                at(span.clone(), &failure.message).hint(hint)
-            })?;
+                at(raw.target.span(), &failure.message).hint(hint)
+            };
+            let given: Given = raw.target.as_ref().parse().map_err(wrong)?;
             let named = match &raw.family {
                 None => None,
                 Some(family) => {
@@ -163,6 +164,7 @@ impl Inventory {
                     Some(family.as_ref().parse::<Family>().map_err(|why| at(span.clone(), &why))?)
                 }
             };
+            let target = given.of(named).map_err(wrong)?;
             let Some(family) = named.or(target.family()) else {
                 return Err(
                     at(span, "this URL does not tell the family").hint("add family = \"yerc\" or family = \"toyo\"")

@@ -14,7 +14,7 @@ use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use inventory::{Entry, Inventory, Options};
-use target::{Family, Target};
+use target::{Family, Given, Target};
 
 /// Where a setting came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,7 +103,7 @@ pub struct Selection {
     /// `--sim`.
     pub sim: bool,
     /// `--target`.
-    pub target: Option<Target>,
+    pub target: Option<Given>,
     /// `--robot`, names or globs.
     pub robots: Vec<String>,
     /// `--tag`.
@@ -111,7 +111,7 @@ pub struct Selection {
     /// `--all`.
     pub all: bool,
     /// `ARMCTL_TARGET`.
-    pub environment: Option<Target>,
+    pub environment: Option<Given>,
     /// Which sessions commands go through.
     pub sessions: Sessions,
     /// The family of a simulator where the command line does not tell it; `None` for the first one.
@@ -169,16 +169,16 @@ impl Sources {
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         if selection.sim {
-            return Ok(vec![self.unnamed(Target::simulator(), Origin::Flag, family)?]);
+            return Ok(vec![self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family)?]);
         }
         if let Some(target) = &selection.target {
-            return Ok(vec![self.unnamed(target.clone(), Origin::Flag, family)?]);
+            return Ok(vec![self.unnamed(target, Origin::Flag, family)?]);
         }
         if selection.all || !selection.robots.is_empty() || !selection.tags.is_empty() {
             return self.named(family);
         }
         if let Some(target) = &selection.environment {
-            return Ok(vec![self.unnamed(target.clone(), Origin::Environment, family)?]);
+            return Ok(vec![self.unnamed(target, Origin::Environment, family)?]);
         }
         let default = self.inventory.default.as_ref();
         if let Some(entry) = default.and_then(|name| self.inventory.robots.iter().find(|robot| robot.name == *name)) {
@@ -202,7 +202,7 @@ impl Sources {
         if *sim || *all || target.is_some() || !robots.is_empty() || !tags.is_empty() {
             return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
         }
-        if robot.contains(':') {
+        if robot.contains(':') || Given::is_bare(robot) {
             *target = Some(robot.parse()?);
         } else {
             robots.push(robot.to_owned());
@@ -222,7 +222,8 @@ impl Sources {
         Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
     }
 
-    fn unnamed(&self, target: Target, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
+    fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
+        let target = given.of(family)?;
         // A simulator for a command of any family: the first one.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {

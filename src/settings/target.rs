@@ -1,6 +1,7 @@
 //! Target URLs: where a robot is, and over which transport.
 
 mod address;
+mod bare;
 pub mod bus;
 pub mod devicenet;
 pub mod eip;
@@ -18,6 +19,7 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 
 pub use address::Address;
+pub use bare::Given;
 pub use bus::{BUSES, Bus};
 
 /// A controller family, named like its subcommand.

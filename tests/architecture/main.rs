@@ -122,7 +122,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
 
 /// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
 /// simulators' servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 42] = [
+const LINKS: [&str; 40] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",
@@ -160,9 +160,7 @@ const LINKS: [&str; 42] = [
     "command/yrcx/hold.rs",
     "command/yrcx/link.rs",
     "command/yrcx/link/board.rs",
-    "command/yrcx/link/driver.rs",
-    "command/yrcx/link/shared.rs",
-    "command/yrcx/simulated.rs",
+    "command/yrcx/link/onlooker.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
 ];

@@ -49,6 +49,8 @@ pub use self::stop::Stopped;
 use crate::{Grant, Plan, Watcher};
 
 /// A connection to one controller.
+///
+/// It is for one thread: links over a fieldbus are.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Client {

@@ -19,7 +19,8 @@ use crate::Reason;
 /// What was carried out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
-    /// What the answer holds, by the fields of its row; nothing in a dry run.
+    /// What the answer holds, by the fields of its row (chapter 4 of the manual); nothing in a dry run. [`Values`] says in
+    /// which units.
     pub values: Values,
     /// From the first time that the command was sent to its end.
     pub elapsed: Duration,

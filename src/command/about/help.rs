@@ -1,7 +1,9 @@
 //! `armctl help [TOPIC | COMMAND …]`.
 
+use clap::builder::StyledStr;
 use clap::{Args, Command};
 
+use super::page;
 use crate::command::ValueKind;
 use crate::command::face::Face;
 use crate::command::families::FAMILIES;
@@ -12,7 +14,7 @@ use crate::failure::{Failure, Kind};
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (exit-codes, targets, inventory, output, safety, scripting, sessions, repl, batch,
+    /// A topic (options, exit-codes, targets, inventory, output, safety, scripting, sessions, repl, batch,
     /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
@@ -40,18 +42,22 @@ const SIMULATOR: &str = "simulator";
 /// The topic that is made from the table of failures.
 const EXIT_CODES: &str = "exit-codes";
 
+/// The topic that is made from the flags of every command.
+const OPTIONS: &str = "options";
+
 impl Help {
     /// Does it; `root` makes the whole command line.
     pub fn run(self, run: &Run, root: fn() -> Command) -> Result<(), Failure> {
-        run.screen.data(&text(&self.words, run.screen.stdout_color(), root)?)
+        run.screen.read(&text(&self.words, run.screen.stdout_color(), root)?)
     }
 }
 
 /// Every topic with a line about it.
 pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
-    let exit = (EXIT_CODES.to_owned(), "what the exit codes mean");
+    let made = [(OPTIONS, "those of every command"), (EXIT_CODES, "what the exit codes mean")];
+    let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
-    std::iter::once(exit).chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
+    made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
 }
 
 /// The topics of the families.
@@ -80,10 +86,14 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
     }
     let mut root = root();
     root.build();
-    let mut command = &mut root;
+    let shown = |help: StyledStr| if color { help.ansi().to_string() } else { help.to_string() };
+    if words == [OPTIONS] {
+        return Ok(shown(page::options(&root)));
+    }
+    let mut command = &root;
     for word in words {
         let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
-        let Some(sub) = command.find_subcommand_mut(word) else {
+        let Some(sub) = command.find_subcommand(word) else {
             let failure = Failure::usage(format!("there is no topic or command '{word}'"));
             let known: Vec<String> = known.into_iter().chain(topics().map(|(name, _)| name)).collect();
             return Err(match nearest(word, known.iter().map(String::as_str)) {
@@ -93,8 +103,8 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
         };
         command = sub;
     }
-    let help = command.render_long_help();
-    let mut text = if color { help.ansi().to_string() } else { help.to_string() };
+    let path: Vec<&str> = words.iter().map(String::as_str).collect();
+    let mut text = shown(page::page(&root, &path, true));
     if words.is_empty() {
         text.push_str("\nTopics (armctl help TOPIC):\n");
         for (name, about) in topics() {

@@ -1,11 +1,14 @@
 //! `armctl man`: the man pages, one a command.
 
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
 
+use super::page;
 use crate::command::frame::run::Run;
-use crate::failure::Failure;
+use crate::command::leaves;
+use crate::failure::{Failure, Kind};
 
 /// Writes the man pages into a folder, or prints the one of `armctl`.
 #[derive(Debug, Args)]
@@ -39,21 +42,119 @@ fn write(path: &Path, page: &[u8]) -> Result<(), Failure> {
 pub fn pages(mut root: Command) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     root.build();
     let mut pages = Vec::new();
-    page(&root, "armctl", &mut pages)?;
+    pages_below(&root, &mut Vec::new(), &mut pages).map_err(|error| Failure::io("man pages", &error))?;
     Ok(pages)
 }
 
-fn page(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) -> Result<(), Failure> {
-    // Pages are named with hyphens; the date is left out so that the committed pages depend on the text alone.
-    let titled = command.clone().name(name.to_owned());
-    let mut text = Vec::new();
-    clap_mangen::Man::new(titled)
-        .date("")
-        .render(&mut text)
-        .map_err(|error| Failure::io(format!("man page {name}"), &error))?;
-    pages.push((format!("{name}.1"), text));
-    for sub in command.get_subcommands().filter(|sub| !sub.is_hide_set()) {
-        page(sub, &format!("{name}-{}", sub.get_name()), pages)?;
+fn pages_below<'a>(root: &'a Command, path: &mut Vec<&'a str>, pages: &mut Vec<(String, Vec<u8>)>) -> io::Result<()> {
+    let Some(command) = path.iter().try_fold(root, |command, word| command.find_subcommand(word)) else {
+        return Ok(());
+    };
+    pages.push((format!("{}.1", name_of(path)), written(root, command, path)?));
+    for verb in verbs(command) {
+        path.push(verb.get_name());
+        pages_below(root, path, pages)?;
+        path.pop();
     }
     Ok(())
+}
+
+/// Pages are named with hyphens.
+fn name_of(path: &[&str]) -> String {
+    [&["armctl"], path].concat().join("-")
+}
+
+fn verbs(command: &Command) -> impl Iterator<Item = &Command> {
+    command.get_subcommands().filter(|verb| !verb.is_hide_set())
+}
+
+fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
+    let everywhere = page::everywhere(root);
+    let mut own = command.clone().name(name_of(path)).mut_args(|argument| {
+        let is_own = path.is_empty() || !everywhere.contains(argument.get_id().as_str());
+        // What a short help leaves out belongs here.
+        argument.hide_short_help(false).hide(!is_own)
+    });
+    let usage = own.render_usage().to_string();
+    let notes = own.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let mut text = Vec::new();
+    // The date is left out so that the committed pages depend on the text alone.
+    let man = clap_mangen::Man::new(own).date("").source("armctl").manual("armctl manual");
+    man.render_title(&mut text)?;
+    man.render_name_section(&mut text)?;
+    writeln!(text, ".SH SYNOPSIS\n.B {}", escaped(usage.trim_start_matches("Usage: ")))?;
+    man.render_description_section(&mut text)?;
+    for paragraph in notes.lines().filter(|line| !line.is_empty()) {
+        writeln!(text, ".PP\n{}", escaped(paragraph))?;
+    }
+    man.render_options_section(&mut text)?;
+    if command.has_subcommands() {
+        man.render_subcommands_section(&mut text)?;
+    }
+    if !path.is_empty() {
+        writeln!(
+            text,
+            ".SH \"GLOBAL OPTIONS\"\nOptions of every command, such as \\-r, \\-t, \\-\\-sim and \\-\\-json: see \\fBarmctl\\fR(1)."
+        )?;
+    }
+    let examples: Vec<&str> = if command.has_subcommands() { Vec::new() } else { leaves::examples(path).collect() };
+    if !examples.is_empty() {
+        writeln!(text, ".SH EXAMPLES\n.nf")?;
+        for example in examples {
+            writeln!(text, "armctl {}", escaped(example))?;
+        }
+        writeln!(text, ".fi")?;
+    }
+    writeln!(text, ".SH \"EXIT STATUS\"")?;
+    if path.is_empty() {
+        for (_, exit, meaning) in Kind::TABLE {
+            writeln!(text, ".TP\n{exit}\n{}", escaped(meaning))?;
+        }
+    } else {
+        writeln!(text, "0 when done, 2 for a wrong command line; the others stand in \\fBarmctl\\fR(1).")?;
+    }
+    let see =
+        see_also(root, command, path).iter().map(|name| format!("\\fB{}\\fR(1)", escaped(name))).collect::<Vec<_>>();
+    writeln!(text, ".SH \"SEE ALSO\"\n{}", see.join(",\n"))?;
+    Ok(text)
+}
+
+/// Pages of the commands below and above this one, and of those beside a verb.
+fn see_also(root: &Command, command: &Command, path: &[&str]) -> Vec<String> {
+    let below = verbs(command).map(|verb| name_of(&[path, &[verb.get_name()]].concat()));
+    let Some((last, above)) = path.split_last() else { return below.collect() };
+    let noun = above.iter().try_fold(root, |command, word| command.find_subcommand(word));
+    let beside = noun.filter(|_| above.len() > 1).into_iter().flat_map(verbs).map(Command::get_name);
+    let beside = beside.filter(|name| name != last).map(|name| name_of(&[above, &[name]].concat()));
+    std::iter::once(name_of(above)).chain(beside).chain(below).collect()
+}
+
+/// Text in which nothing is an order to the formatter.
+fn escaped(text: &str) -> String {
+    let text = text.replace('\\', "\\e").replace('-', "\\-").replace('\'', "\\(aq");
+    if text.starts_with('.') { format!("\\&{text}") } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    #[test]
+    fn every_page_says_how_it_is_used_and_every_option_what_it_does() {
+        for (name, page) in pages(Cli::command()).unwrap() {
+            let page = String::from_utf8(page).unwrap();
+            for section in
+                [".SH SYNOPSIS\n.B armctl", ".SH DESCRIPTION\n", ".SH \"EXIT STATUS\"\n", ".SH \"SEE ALSO\"\n"]
+            {
+                assert!(page.contains(section), "{name}: {section}");
+            }
+            assert_eq!(page.contains(".SH EXAMPLES"), !page.contains(".SH SUBCOMMANDS"), "{name}");
+            let options = page.split(".TP\n").skip(1);
+            let bare = options.filter(|option| option.lines().nth(1).is_none_or(|text| text.trim().is_empty()));
+            assert_eq!(bare.collect::<Vec<_>>(), Vec::<&str>::new(), "{name}");
+        }
+    }
 }

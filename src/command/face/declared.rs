@@ -16,7 +16,7 @@ use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
 use crate::command::frame::connection;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyContext, CommandSet, Context, Driver, Family, OfflineCommand, SchemaEntry};
+use crate::command::{Access, AnyContext, CommandSet, Context, Driver, Family, OfflineCommand, Own, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -65,9 +65,9 @@ pub trait Declaration: Family {
     fn arguments(command: clap::Command) -> clap::Command {
         command
     }
-    /// What stood there: the robot of the controller, and the words that say the same.
-    fn read_arguments(_matches: &mut ArgMatches) -> Result<(u8, Vec<String>), clap::Error> {
-        Ok((0, Vec::new()))
+    /// What stood there.
+    fn read_arguments(_matches: &mut ArgMatches) -> Result<Own, clap::Error> {
+        Ok(Own::default())
     }
 
     /// A line for `status`.
@@ -144,8 +144,8 @@ impl<F: Declaration> Face for Declared<F> {
     }
 
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
-        let (unit, prefix) = F::read_arguments(matches)?;
-        Ok(Typed { unit, prefix, wish: words::read::<F::Commands>(matches)? })
+        let own = F::read_arguments(matches)?;
+        Ok(Typed { own, wish: words::read::<F::Commands>(matches)? })
     }
 
     fn schemas(&self) -> Vec<SchemaEntry> {

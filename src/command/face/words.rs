@@ -1,16 +1,15 @@
 //! What can stand behind the word of a family: its commands, or `repl`.
 
+use clap::builder::CommandExt;
 use clap::{ArgMatches, Command, FromArgMatches as _, Subcommand};
 
 use crate::command::frame::repl::Repl;
-use crate::command::{AnyCommand, CommandSet};
+use crate::command::{AnyCommand, CommandSet, Own};
 
 /// What was typed behind the word of a family.
 pub struct Typed {
-    /// The robot of the controller that commands are for, 1 to 4; 0 where none is named.
-    pub unit: u8,
-    /// The words that say the same before each line of a prompt.
-    pub prefix: Vec<String>,
+    /// What stands between both.
+    pub own: Own,
     /// What is wanted.
     pub wish: Wish,
 }
@@ -36,9 +35,15 @@ enum Verb<C: Subcommand> {
 }
 
 /// The word of a family with all its commands, and what the help says of it.
-pub fn augment<C: Subcommand>(command: Command, about: &'static str) -> Command {
-    Verb::<C>::augment_subcommands(command).about(about).long_about(None)
+pub fn augment<C: CommandSet + Subcommand>(command: Command, about: &'static str) -> Command {
+    Verb::<C>::augment_subcommands(command).about(about).long_about(None).add(Headings(C::headings))
 }
+
+/// Headings of the help over the words of a command, see [`CommandSet::headings`].
+#[derive(Debug, Clone, Copy)]
+pub struct Headings(pub fn() -> Vec<(Option<&'static str>, String)>);
+
+impl CommandExt for Headings {}
 
 /// Whether a word is a command of a family.
 pub fn has_command<C: Subcommand>(word: &str) -> bool {
@@ -58,6 +63,6 @@ pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish
 
 impl From<Wish> for Typed {
     fn from(wish: Wish) -> Self {
-        Self { unit: 0, prefix: Vec::new(), wish }
+        Self { own: Own::default(), wish }
     }
 }

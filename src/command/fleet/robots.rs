@@ -18,7 +18,7 @@ use crate::output::busy::busy;
 use crate::output::jq::after_a_change;
 use crate::output::view::{Table, View};
 use crate::settings::inventory::{Inventory, is_name};
-use crate::settings::target::{Family, Target};
+use crate::settings::target::{Family, Given};
 use crate::settings::{Setting, duration};
 
 /// What can be done with the inventory.
@@ -56,7 +56,7 @@ pub struct Add {
     name: String,
     /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
-    url: Target,
+    url: Given,
     /// Its family, where the URL does not tell
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
@@ -142,18 +142,18 @@ impl Add {
                 .hint(format!("`armctl robots remove {}` removes it", self.name))
                 .into());
         }
-        let Some(family) = self.family.or(self.url.family()) else {
-            let failure = Failure::usage(format!("'{}' does not tell the family", self.url));
+        let url = self.url.of(self.family)?;
+        let Some(family) = self.family.or(url.family()) else {
+            let failure = Failure::usage(format!("'{url}' does not tell the family"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
         };
-        self.url
-            .check(family)
+        url.check(family)
             .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
         let file = edit(run, |document| {
             let mut robot = toml_edit::Table::new();
             robot["name"] = value(&self.name);
-            robot["target"] = value(self.url.url());
-            if self.url.family().is_none() {
+            robot["target"] = value(url.url());
+            if url.family().is_none() {
                 robot["family"] = value(family.name());
             }
             if self.read_only {
@@ -173,7 +173,7 @@ impl Add {
             }
             Ok(())
         })?;
-        let target = self.url.url().to_owned();
+        let target = url.url().to_owned();
         told(run.local("robots.add", &Changed { done: "added", name: self.name, target, file }))
     }
 }

@@ -61,6 +61,10 @@ pub trait CommandSet {
     fn schemas() -> Vec<SchemaEntry>;
     /// Its part of the command line, as far as words are named: what a line does not name, it does not need.
     fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
+    /// Its words in their order, the first below a heading of the help with that heading.
+    fn headings() -> Vec<(Option<&'static str>, String)> {
+        Vec::new()
+    }
 }
 
 impl<C: Command + clap::Args + 'static> CommandSet for C {
@@ -101,10 +105,11 @@ pub fn word(variant: &str) -> String {
     word
 }
 
-/// Declares a clap enum of nouns or verbs: doc comment, name, and the type that holds its arguments.
+/// Declares a clap enum of nouns or verbs: doc comment, name, and the type that holds its arguments. A text and a colon
+/// before one is the heading in the help for it and those that follow.
 macro_rules! commands {
     ($(#[$meta:meta])* $visibility:vis enum $name:ident {
-        $($(#[$doc:meta])* $variant:ident($arguments:ty),)*
+        $($($heading:literal:)? $(#[$doc:meta])* $variant:ident($arguments:ty),)*
     }) => {
         $(#[$meta])*
         #[derive(Debug, clap::Subcommand)]
@@ -123,6 +128,13 @@ macro_rules! commands {
                     }
                 )*
                 command
+            }
+
+            fn headings() -> Vec<(Option<&'static str>, String)> {
+                vec![$((
+                    [$($heading)?].first().copied(),
+                    $crate::command::frame::command_set::word(stringify!($variant)),
+                ),)*]
             }
 
             fn command(self) -> Box<dyn $crate::command::frame::command::AnyCommand> {

@@ -1,6 +1,7 @@
 //! Connections to robots: how they may be used, and what the one loop does with them whatever their family.
 
 use std::any::Any;
+use std::fmt;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,7 +12,7 @@ use futures_util::future::LocalBoxFuture;
 use super::dry_run::Plan;
 use crate::controller::Risk;
 use crate::failure::Failure;
-use crate::gate::Grant;
+use crate::gate::{Grant, Intent};
 use crate::output::Screen;
 use crate::settings::{Robot, target};
 
@@ -28,14 +29,54 @@ pub struct Access {
     pub mode: ConnectMode,
     /// The command line, where it is not that of the process.
     pub typed: Option<Arc<str>>,
-    /// The robot of the controller that commands are for (yrcx), 1 to 4; 0 for the first, or for all.
-    pub unit: u8,
+    /// What was typed between the word of the family and the command.
+    pub own: Own,
 }
 
 impl Access {
     /// For what only looks.
     pub fn reading(mode: ConnectMode) -> Self {
-        Self { granted: Grant::of(Risk::Read), dry_run: false, trace: None, mode, typed: None, unit: 0 }
+        Self { granted: Grant::of(Risk::Read), dry_run: false, trace: None, mode, typed: None, own: Own::default() }
+    }
+}
+
+/// What was typed between the word of a family and a command, for all commands of the family. What it says, the family
+/// alone knows.
+#[derive(Debug, Clone, Default)]
+pub struct Own(Option<Arc<dyn OwnArguments>>);
+
+/// What a family takes between its word and a command.
+pub trait OwnArguments: Any + fmt::Debug + Send + Sync {
+    /// Completes what a command will do.
+    fn complete(&self, intent: Intent) -> Intent;
+
+    /// The words that say the same.
+    fn words(&self) -> Vec<String>;
+}
+
+impl Own {
+    /// These.
+    pub fn of(arguments: impl OwnArguments) -> Self {
+        Self(Some(Arc::new(arguments)))
+    }
+
+    /// As the family knows them, if it has typed any.
+    pub fn get<T: OwnArguments>(&self) -> Option<&T> {
+        let own: &dyn Any = &**self.0.as_ref()?;
+        own.downcast_ref()
+    }
+
+    /// See [`OwnArguments::complete`].
+    pub fn complete(&self, intent: Intent) -> Intent {
+        match &self.0 {
+            Some(own) => own.complete(intent),
+            None => intent,
+        }
+    }
+
+    /// See [`OwnArguments::words`].
+    pub fn words(&self) -> Vec<String> {
+        self.0.as_ref().map(|own| own.words()).unwrap_or_default()
     }
 }
 

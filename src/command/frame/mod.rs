@@ -29,6 +29,6 @@ pub mod trace;
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub(crate) use command_set::commands;
 pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};
-pub use connection::{Access, ConnectMode, Connection, Driver, Entry, Family};
+pub use connection::{Access, ConnectMode, Connection, Driver, Entry, Family, Own, OwnArguments};
 pub use kind::ValueKind;
 pub use report::{AnyReport, Outcome, Report, SchemaEntry};

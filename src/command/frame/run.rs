@@ -16,7 +16,7 @@ use self::rounds::Rounds;
 use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
-use super::connection::{Access, Connection, Entry};
+use super::connection::{Access, Connection, Entry, Own};
 use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{catch_interrupts, interruptible};
 use super::report::Outcome;
@@ -49,8 +49,8 @@ pub struct Run {
     pub line: Option<Line>,
     /// What a watch has on the screen.
     pub redraw: Redraw,
-    /// `--unit`: the robot of the controller that commands are for.
-    pub unit: u8,
+    /// What was typed between the word of a family and the command.
+    pub own: Own,
 }
 
 /// A failure on its way to stderr, with what the envelope needs to know.
@@ -157,7 +157,7 @@ impl Run {
 
     /// What the gate is told of a command for a robot: what it does, and what its connection does.
     fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
-        let intent = command.intent(Some(robot)).of_unit(self.unit);
+        let intent = self.own.complete(command.intent(Some(robot)));
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
         let Entry::Stops(entry) = entry else { return intent };
@@ -363,7 +363,7 @@ impl Run {
             trace: self.trace.clone(),
             mode: command.connect_mode(),
             typed: None,
-            unit: self.unit,
+            own: self.own.clone(),
         }
     }
 

@@ -43,6 +43,7 @@ mod point;
 pub mod ports;
 mod position;
 mod program;
+mod programs;
 mod raw;
 mod refusal;
 mod robot_type;

@@ -6,14 +6,11 @@ use crate::command::{Subcommands, commands};
 commands! {
     /// What can be asked of an FS100 or DX200.
     pub enum Commands {
+        "Status and diagnosis":
         /// Show mode, cycle, servo, hold, alarm: every status bit
         Status(status::Status),
         /// Alarms: list, history, reset, cancel
         Alarm(Subcommands<alarm::Alarm>),
-        /// Jobs: show, select, start
-        Job(Subcommands<job::Job>),
-        /// Files: list, get, put, delete, diff, backup, restore, cmos
-        File(Subcommands<file::File>),
         /// Current position of a control group
         Position(position::Position),
         /// List the axes of each control group
@@ -22,12 +19,11 @@ commands! {
         PositionError(axes::PositionError),
         /// Torque per axis
         Torque(axes::Torque),
-        /// Variables: get, set, dump, restore
-        Var(Subcommands<var::Var>),
-        /// Signals: get, set
-        Io(Subcommands<io::Io>),
-        /// Registers: get, set
-        Register(Subcommands<register::Register>),
+        /// Operating hours: power, servo, playback, motion, applications
+        Hours(hours::Hours),
+        /// Software version, robot models, parameters
+        Info(info::Info),
+        "Power and operation":
         /// Switch servo power
         Servo(orders::Servo),
         /// Apply (on) or release (off) HOLD
@@ -38,12 +34,23 @@ commands! {
         Cycle(orders::Cycle),
         /// Show a message on the pendant
         Say(orders::Say),
+        "Motion":
         /// Move a robot or station: joint, linear, relative, pulse
         Move(Subcommands<moves::Move>),
-        /// Operating hours: power, servo, playback, motion, applications
-        Hours(hours::Hours),
-        /// Software version, robot models, parameters
-        Info(info::Info),
+        "Programs":
+        /// Jobs: show, select, start
+        Job(Subcommands<job::Job>),
+        /// Files: list, get, put, delete, diff, backup, restore, cmos
+        File(Subcommands<file::File>),
+        "Data":
+        /// Variables: get, set, dump, restore
+        Var(Subcommands<var::Var>),
+        "Signals":
+        /// Signals: get, set
+        Io(Subcommands<io::Io>),
+        /// Registers: get, set
+        Register(Subcommands<register::Register>),
+        "Link":
         /// Send any request and decode the answer
         Raw(raw::Raw),
     }

@@ -55,20 +55,20 @@ macro_rules! order {
 
 order! {
     /// Switches servo power (FS and DX 3.3.20).
-    Servo { switch: Switch }, "yerc.servo",
+    Servo { #[arg(value_name = "on|off")] switch: Switch }, "yerc.servo",
     |this| query::Servo(this.switch == Switch::On), "switch servo power on",
     if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" }
 }
 order! {
     /// Holds the robot, or lets it go on (FS and DX 3.3.20).
-    Hold { switch: Switch }, "yerc.hold",
+    Hold { #[arg(value_name = "on|off")] switch: Switch }, "yerc.hold",
     |this| query::Hold(this.switch == Switch::On), "release the hold",
     if this.switch == Switch::On { "hold is on" } else { "hold is off" },
     stops if this.switch == Switch::On
 }
 order! {
     /// Locks or unlocks the pendant and the I/O operation signals (FS and DX 3.3.20).
-    Hlock { switch: Switch }, "yerc.hlock",
+    Hlock { #[arg(value_name = "on|off")] switch: Switch }, "yerc.hlock",
     |this| query::Hlock(this.switch == Switch::On), "",
     if this.switch == Switch::On { "pendant and operation signals are locked" } else { "pendant and operation signals are free" }
 }

@@ -10,8 +10,35 @@ use crate::command::{Subcommands, commands};
 commands! {
     /// What can be asked of a YRCX controller.
     pub enum Commands {
+        "Status and diagnosis":
         /// Signals, servos and position in words
         Status(status::Status),
+        /// Versions, positions, servos, tasks, alarms
+        Info(Subcommands<info::Info>),
+        /// Alarms
+        Alarm(Subcommands<alarm::Alarm>),
+        /// The controller's clock
+        Clock(Subcommands<clock::Clock>),
+        "Power and operation":
+        /// Switch servos on or off, or release their brakes
+        Servo(orders::Servo),
+        /// Switch motor power on or off
+        Motor(orders::Motor),
+        /// Switch servos on with the dedicated inputs
+        PowerOn(procedures::PowerOn),
+        /// Trigger the emergency-stop input SI(00)
+        EmergencyStop(procedures::EmergencyStop),
+        /// Clear the emergency stop and switch servos on
+        Recover(procedures::Recover),
+        /// Wait for AUTO mode
+        AutoMode(procedures::AutoMode),
+        /// Start the robot program with the dedicated inputs
+        Run(procedures::Run),
+        /// Stop the robot program with the dedicated inputs
+        Stop(procedures::Stop),
+        /// Reset the robot program with the dedicated inputs
+        Reset(procedures::Reset),
+        "Motion":
         /// Move a robot to a point or to coordinates
         Move(Moving<motion::Move>),
         /// Relative move
@@ -32,8 +59,6 @@ commands! {
         Inch(Moving<motion::Inch>),
         /// Set the inching distance
         InchDistance(orders::InchDistance),
-        /// Teach: store the current position as a point
-        Teach(orders::Teach),
         /// Return to origin
         Origin(motion::Origin),
         /// Reset the absolute position of an axis
@@ -48,10 +73,12 @@ commands! {
         Arm(Subcommands<orders::Arm>),
         /// Limit the torque of an axis
         TorqueLimit(orders::TorqueLimit),
-        /// Switch servos on or off, or release their brakes
-        Servo(orders::Servo),
-        /// Switch motor power on or off
-        Motor(orders::Motor),
+        "Programs":
+        /// Programs and their tasks
+        Program(Subcommands<program::Program>),
+        "Data":
+        /// Teach: store the current position as a point
+        Teach(orders::Teach),
         /// Points
         Point(Subcommands<data::Point>),
         /// Point comments: get, set
@@ -64,49 +91,29 @@ commands! {
         HandData(Subcommands<data::HandData>),
         /// Calculate points and shifts on the controller
         PointCalc(Subcommands<point_calc::PointCalc>),
-        /// Save points, pallets, shifts, hands, variables and parameters to a folder
-        Backup(backup::Backup),
-        /// Restore a backup
-        Restore(backup::Restore),
         /// Static variables SGI and SGR
         Var(Subcommands<var::Var>),
         /// Parameters of robots and axes
         Param(Subcommands<param::Param>),
-        /// I/O ports of eight signals
-        Port(Subcommands<port::Port>),
-        /// Programs and their tasks
-        Program(Subcommands<program::Program>),
-        /// Versions, positions, servos, tasks, alarms
-        Info(Subcommands<info::Info>),
-        /// The controller's clock
-        Clock(Subcommands<clock::Clock>),
-        /// Alarms
-        Alarm(Subcommands<alarm::Alarm>),
+        /// Save points, pallets, shifts, hands, variables and parameters to a folder
+        Backup(backup::Backup),
+        /// Restore a backup
+        Restore(backup::Restore),
+        "Signals":
         /// Read and switch dedicated and general I/O (SI / SO)
         Io(Subcommands<io::Io>),
-        /// Switch servos on with the dedicated inputs
-        PowerOn(procedures::PowerOn),
-        /// Trigger the emergency-stop input SI(00)
-        EmergencyStop(procedures::EmergencyStop),
-        /// Clear the emergency stop and switch servos on
-        Recover(procedures::Recover),
-        /// Wait for AUTO mode
-        AutoMode(procedures::AutoMode),
-        /// Reset the robot program with the dedicated inputs
-        Reset(procedures::Reset),
-        /// Start the robot program with the dedicated inputs
-        Run(procedures::Run),
-        /// Stop the robot program with the dedicated inputs
-        Stop(procedures::Stop),
-        /// Reset the remote command status
-        StatusReset(orders::StatusReset),
-        /// Send the words of any remote command and decode the answer
-        Raw(raw::Raw),
+        /// I/O ports of eight signals
+        Port(Subcommands<port::Port>),
+        "Link":
         /// Diagnose the network board: identity, assemblies, attributes
         Eip(Subcommands<eip::Eip>),
         /// The bus of a controller on DeviceNet: who is there, sizes, owner (diagnosis)
         Devicenet(Subcommands<devicenet::DeviceNet>),
         /// The line and the stations of PROFIBUS, without owning any
         Profibus(Subcommands<profibus::Profibus>),
+        /// Reset the remote command status
+        StatusReset(orders::StatusReset),
+        /// Send the words of any remote command and decode the answer
+        Raw(raw::Raw),
     }
 }

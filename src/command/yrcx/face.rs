@@ -17,7 +17,7 @@ use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::{Access, Command as _, Context};
+use crate::command::{Access, Command as _, Context, Own};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -55,9 +55,8 @@ impl Declaration for Yrcx {
         Unit::augment_args(command)
     }
 
-    fn read_arguments(matches: &mut ArgMatches) -> Result<(u8, Vec<String>), clap::Error> {
-        let unit = Unit::from_arg_matches_mut(matches)?;
-        Ok((unit.number(), unit.words()))
+    fn read_arguments(matches: &mut ArgMatches) -> Result<Own, clap::Error> {
+        Unit::from_arg_matches_mut(matches).map(Own::of)
     }
 
     async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {

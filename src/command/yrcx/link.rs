@@ -15,6 +15,7 @@ use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
 pub use super::overwrite::Done;
 use super::trace::{Recorder, Trace};
+use super::unit::Unit;
 use crate::client::yrcx;
 pub use crate::client::yrcx::hex;
 use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
@@ -227,7 +228,7 @@ impl Link {
             label,
             link_alarm,
             is_simulated,
-            unit: access.unit,
+            unit: access.own.get().map_or(0, Unit::number),
             told: None,
         })
     }

@@ -180,9 +180,9 @@ one_row! {
         MotorState::Pwr => "switch motor power on",
     },
     done match self.state {
-        MotorState::On => "switched motor power and all servos on",
-        MotorState::Off => "switched motor power and all servos off",
-        MotorState::Pwr => "switched motor power on",
+        MotorState::On => "switched motor power and all servos on".to_owned(),
+        MotorState::Off => "switched motor power and all servos off".to_owned(),
+        MotorState::Pwr => "switched motor power on".to_owned(),
     };
 
     /// Resets the status of remote commands to ready.
@@ -193,7 +193,7 @@ one_row! {
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
-    done "the controller is ready for a remote command";
+    done "the controller is ready for a remote command".to_owned();
 }
 
 /// Which speed.

@@ -194,36 +194,25 @@ starts! {
     Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset {}";
 }
 
-/// Reads what a program does that is not running.
-#[derive(Debug, Args)]
-pub struct Show {
-    #[command(flatten)]
-    which: Which,
-}
-
-impl Single for Show {
-    type Report = Execution;
-    const ID: &'static str = "yrcx.program.show";
-
-    fn command(&self) -> Command {
-        Command::ProgramShow
+one_row! {
+    /// Reads what a program does that is not running.
+    Show(self) "yrcx.program.show" -> Execution {
+        #[command(flatten)]
+        which: Which,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        self.which.put(draft)
-    }
-
-    fn report(&self, done: &link::Done) -> Result<Execution, Failure> {
-        let int = |key| done.values.int(key).unwrap_or_default();
+    gives Command::ProgramShow,
+    with draft => self.which.put(draft),
+    done as answer => {
+        let int = |key| answer.values.int(key).unwrap_or_default();
         let line = Line::of(int(Key::Line));
-        Ok(Execution {
+        Execution {
             program: int(Key::Program),
-            name: done.values.text(Key::ProgramName).unwrap_or_default().to_owned(),
+            name: answer.values.text(Key::ProgramName).unwrap_or_default().to_owned(),
             task: int(Key::Task),
             priority: int(Key::Priority),
             line,
-        })
-    }
+        }
+    };
 }
 
 /// Where a program stands.

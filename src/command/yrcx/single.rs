@@ -60,26 +60,32 @@ impl<S: Single> Command for S {
     }
 }
 
-/// A report that says in words what the controller accepted.
-pub trait Accepted {
-    /// In words; `done` says what else there is to tell.
-    fn accepted(words: String, done: &Done) -> Self;
+/// What a row says of a command that was carried out: the report itself, or in words what was done.
+pub trait Said<R> {
+    /// The report.
+    fn report(self, done: &Done) -> R;
 }
 
-impl Accepted for orders::Done {
-    fn accepted(words: String, _done: &Done) -> Self {
-        Self::new(words)
+impl<R: Report> Said<R> for R {
+    fn report(self, _done: &Done) -> R {
+        self
     }
 }
 
-impl Accepted for Stored {
-    fn accepted(words: String, done: &Done) -> Self {
-        Self::new(words, done)
+impl Said<orders::Done> for String {
+    fn report(self, _done: &Done) -> orders::Done {
+        orders::Done::new(self)
     }
 }
 
-/// Declares commands that give one remote command each, and say in words what was done: what is typed, the row of the
-/// table, what is filled in, what the question says, what is said in the end.
+impl Said<Stored> for String {
+    fn report(self, done: &Done) -> Stored {
+        Stored::new(self, done)
+    }
+}
+
+/// Declares commands that give one remote command each: what is typed, the row of the table, what is filled in, what the
+/// question says, and in the end in words what was done, or what is read of the answer.
 macro_rules! one_row {
     ($(
         $(#[$meta:meta])*
@@ -89,7 +95,7 @@ macro_rules! one_row {
         gives $row:expr,
         $(with $draft:ident => $filled:expr,)?
         $(intent $intent:expr,)?
-        done $done:expr;
+        done $(as $answer:ident =>)? $said:expr;
     )*) => {
         $(
             #[derive(Debug, clap::Args)]
@@ -121,7 +127,8 @@ macro_rules! one_row {
                     &$self,
                     done: &$crate::command::yrcx::link::Done,
                 ) -> Result<$report, $crate::failure::Failure> {
-                    Ok($crate::command::yrcx::single::Accepted::accepted($done.into(), done))
+                    $(let $answer = done;)?
+                    Ok($crate::command::yrcx::single::Said::report($said, done))
                 }
             }
         )*

@@ -7,13 +7,13 @@ use std::time::Duration;
 use clap::Parser as _;
 use serde_json::Value;
 
-use super::link::Link;
-use super::link::Yrcx;
+use super::link::{Link, Yrcx};
+use super::unit::Unit;
 use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::face::words::{Typed, Wish};
 use crate::command::frame::testing;
 use crate::command::frame::testing::{context, planned};
-use crate::command::{Access, AnyCommand, ConnectMode, Family as _};
+use crate::command::{Access, AnyCommand, ConnectMode, Family as _, Own};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image, Words};
 use crate::controller::yrcx::signal::output;
@@ -103,7 +103,7 @@ pub(super) fn objection(words: &[&str]) -> String {
 
 /// The question before the command, without "This will".
 pub(super) fn intent(words: &[&str]) -> String {
-    resolved(DRY, words).unwrap().1.intent(None).of_unit(unit(words)).text
+    own(words).complete(resolved(DRY, words).unwrap().1.intent(None)).text
 }
 
 /// What the command does at most.
@@ -434,9 +434,14 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
 
 /// The robot of `--unit`.
 fn unit(words: &[&str]) -> u8 {
+    own(words).get().map_or(0, Unit::number)
+}
+
+/// What stands before the command.
+fn own(words: &[&str]) -> Own {
     match parsed(DRY, words).map(|cli| cli.command) {
-        Ok(Top::Family(FamilyWord { typed, .. })) => typed.unit,
-        _ => 0,
+        Ok(Top::Family(FamilyWord { typed, .. })) => typed.own,
+        _ => Own::default(),
     }
 }
 

@@ -2,6 +2,9 @@
 
 use clap::Args;
 
+use crate::command::OwnArguments;
+use crate::gate::Intent;
+
 /// Which robot of the controller a command is for.
 #[derive(Debug, Args)]
 pub struct Unit {
@@ -16,9 +19,18 @@ impl Unit {
     pub fn number(&self) -> u8 {
         self.unit
     }
+}
 
-    /// The words that say the same.
-    pub fn words(&self) -> Vec<String> {
+impl OwnArguments for Unit {
+    fn complete(&self, mut intent: Intent) -> Intent {
+        let robot = format!("robot {}", self.unit);
+        if self.unit > 0 && !intent.text.is_empty() && !intent.text.contains(&robot) {
+            intent.text.push_str(&format!(", {robot}"));
+        }
+        intent
+    }
+
+    fn words(&self) -> Vec<String> {
         if self.unit == 0 { Vec::new() } else { vec!["--unit".to_owned(), self.unit.to_string()] }
     }
 }

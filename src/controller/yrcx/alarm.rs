@@ -60,6 +60,12 @@ impl Alarm {
         KNOWN.iter().find(|known| known.alarm == self)
     }
 
+    /// The alarm beside this one of a lost link: that it is lost for too long.
+    #[must_use]
+    pub const fn too_long(self) -> Self {
+        Self::new(self.group, self.category + 1)
+    }
+
     /// The alarm in words, as far as known.
     pub fn text(self) -> &'static str {
         self.known().map(|known| known.text).or_else(|| self.group_text()).unwrap_or("unknown alarm group")

@@ -202,7 +202,9 @@ impl From<String> for Value {
     }
 }
 
-/// Values by their keys, in the order of the words.
+/// Values by their keys, in the order of the words. Numbers are as they travel: pulses, percent and mm/s whole, mm and
+/// degrees in thousandths, percent of the maximum in hundredths; [`Field::show`](super::table::Field::show) writes them for
+/// people.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Values(Vec<(Key, Value)>);
 

@@ -12,7 +12,6 @@ use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
-use crate::settings::target::Target;
 use crate::transport::session::client::{AttachError, close};
 use crate::transport::session::place::Spot;
 use crate::transport::session::wire::Info;
@@ -49,7 +48,8 @@ impl Close {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let selection = &run.sources.selection;
         let mut names: Vec<&str> = self.names.iter().chain(&selection.robots).map(String::as_str).collect();
-        names.extend(selection.target.as_ref().map(Target::url));
+        let target = selection.target.as_ref().map(ToString::to_string);
+        names.extend(target.as_deref());
         if selection.sim {
             names.push("sim:");
         }
@@ -98,7 +98,7 @@ impl Close {
 }
 
 fn is_named(info: &Info, name: &str) -> bool {
-    info.robot == name || info.target == name
+    info.robot == name || info.target == name || info.target.split_once("://").is_some_and(|(_, bare)| bare == name)
 }
 
 fn still_open(label: &str, error: &AttachError) -> Failure {

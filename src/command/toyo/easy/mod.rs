@@ -1,7 +1,6 @@
 //! `toyo easy`: the eight easy programs, each a part of the sequential program that is repeated.
 
 mod get;
-mod orders;
 mod progress;
 mod set;
 
@@ -11,6 +10,7 @@ use serde::Serialize;
 use super::cells::Cell;
 use super::items::Item;
 use super::link::wrong;
+use super::programs::{Copy, Kind, Select};
 use crate::command::commands;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::{Layout, Record};
@@ -27,11 +27,32 @@ commands! {
         /// Write a program: 1 START LOOP END
         Set(set::Set),
         /// Copy a program to another number
-        Copy(orders::Copy),
+        Copy(Copy<Numbered>),
         /// Select the program that `run easy` starts
-        Select(orders::Select),
+        Select(Select<Numbered>),
         /// Progress of the running program
         Progress(progress::Progress),
+    }
+}
+
+/// Easy programs as such.
+#[derive(Debug)]
+pub struct Numbered;
+
+impl Kind for Numbered {
+    const WHAT: &'static str = "easy program";
+    const IDS: [&'static str; 2] = ["toyo.easy.copy", "toyo.easy.select"];
+    const INTENT: &'static str = "overwrite an easy program";
+    const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
+    const RUN: &'static str = "toyo run easy";
+    const COMMANDS: [Command; 3] = [Command::Cesy, Command::Sesn, Command::Resd];
+
+    fn field() -> &'static Field {
+        field()
+    }
+
+    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+        Ok(vec![read(program)?])
     }
 }
 

@@ -1,7 +1,6 @@
 //! `toyo palletizing`: the sixteen palletizing programs, of sixteen records each.
 
 mod get;
-mod orders;
 mod progress;
 mod set;
 
@@ -12,6 +11,7 @@ use super::cells::Cell;
 use super::items::in_a_word;
 use super::link::wrong;
 use super::numbers;
+use super::programs::{Copy, Kind, Select};
 use super::stores::Store;
 use super::values::{self, Shown};
 use crate::command::commands;
@@ -32,11 +32,32 @@ commands! {
         /// Write a record, or those of a TOML file: 1 source-p1 x=100
         Set(set::Set),
         /// Copy a program to another number
-        Copy(orders::Copy),
+        Copy(Copy<Numbered>),
         /// Select the program that `run palletizing` starts
-        Select(orders::Select),
+        Select(Select<Numbered>),
         /// Progress of the running program
         Progress(progress::Progress),
+    }
+}
+
+/// Palletizing programs as such.
+#[derive(Debug)]
+pub struct Numbered;
+
+impl Kind for Numbered {
+    const WHAT: &'static str = "palletizing program";
+    const IDS: [&'static str; 2] = ["toyo.palletizing.copy", "toyo.palletizing.select"];
+    const INTENT: &'static str = "overwrite a palletizing program";
+    const HELP: [&'static str; 3] = ["Program to copy, 1 to 16", "Program to replace, 1 to 16", "Program, 1 to 16"];
+    const RUN: &'static str = "toyo run palletizing";
+    const COMMANDS: [Command; 3] = [Command::Cppl, Command::Spln, Command::Rpld];
+
+    fn field() -> &'static Field {
+        field()
+    }
+
+    fn reads(program: i32) -> Result<Vec<Request>, Failure> {
+        reads(program, &RECORDS.iter().collect::<Vec<_>>())
     }
 }
 

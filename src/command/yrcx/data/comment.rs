@@ -1,19 +1,15 @@
 //! `yrcx comment` (4.3.2).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::commands;
+use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::{Rows, read_numbers};
+use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
-use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
-use crate::output::view::View;
 
 commands! {
     /// What can be done with comments of points.
@@ -25,39 +21,19 @@ commands! {
     }
 }
 
-/// Reads the comments of points, one after the other.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Points, 0 to 29999: 100, 0..29 or 0..29,100
-    #[arg(required = true, value_name = "POINT", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::CommentGet, Key::Point, text))]
-    points: Vec<Numbers>,
-}
-
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Comments;
-    const ID: &'static str = "yrcx.comment.get";
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Comments, Failure> {
-        let nouns = ["comment of point", "comments"];
-        let field = (table::Command::CommentGet, Key::Point);
-        let of = |values: &Values| Text { comment: values.text(Key::Comment).unwrap_or_default().to_owned() };
-        let (numbers, comments) = read_numbers(context, nouns, field, &self.points, of).await?;
-        Ok(Comments { comments: comments.rows(numbers.into_iter().map(|point| Which { point })) })
+by_number! {
+    /// Reads the comments of points, one after the other.
+    Get "yrcx.comment.get" {
+        /// Points, 0 to 29999: 100, 0..29 or 0..29,100
+        comments "POINT"
     }
-}
-
-/// Comments of points.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Comments {
-    comments: Rows<Which, Text>,
-}
-
-/// Which point.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    point: i32,
+    gives CommentGet Point ["comment of point", "comments"],
+    /// Comments of points.
+    Comments,
+    /// Which point.
+    point of Text: |values: &Values| Text { comment: values.text(Key::Comment).unwrap_or_default().to_owned() },
+    columns ["comment"],
+    cells |text| [text.comment.as_str().into()];
 }
 
 /// The comment of a point.
@@ -65,19 +41,6 @@ struct Which {
 struct Text {
     /// Up to 16 characters; empty if there is none.
     comment: String,
-}
-
-impl Report for Comments {
-    fn view(&self) -> View {
-        let name = |which: &Which| [which.point.into()];
-        View::table(
-            self.comments.table(["point"], ["comment"], "no comments", name, |text| [text.comment.as_str().into()]),
-        )
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.comments.failure()
-    }
 }
 
 one_row! {

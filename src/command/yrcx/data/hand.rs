@@ -1,20 +1,17 @@
 //! `yrcx hand-data` (4.3.5).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::mm;
-use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::commands;
+use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::{Rows, read_numbers};
+use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
-use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with hands.
@@ -30,38 +27,20 @@ commands! {
 const DATA_1: &str = "Data 1 is shown and given as it travels, since the manual measures it in two ways: its example of a \
                       Cartesian robot has 10000 for 10.000 mm, its text a whole number.";
 
-/// Reads hands, one after the other.
-#[derive(Debug, Args)]
-#[command(after_help = DATA_1)]
-pub struct Get {
-    /// Hands, 0 to 31: 1, 0..31 or 1,5
-    #[arg(required = true, value_name = "HAND", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::HandGet, Key::Hand, text))]
-    hands: Vec<Numbers>,
-}
-
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Hands;
-    const ID: &'static str = "yrcx.hand-data.get";
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Hands, Failure> {
-        let (nouns, field) = (["hand", "hands"], (table::Command::HandGet, Key::Hand));
-        let (numbers, hands) = read_numbers(context, nouns, field, &self.hands, Data::of).await?;
-        Ok(Hands { hands: hands.rows(numbers.into_iter().map(|hand| Which { hand })) })
+by_number! {
+    /// Reads hands, one after the other.
+    #[command(after_help = DATA_1)]
+    Get "yrcx.hand-data.get" {
+        /// Hands, 0 to 31: 1, 0..31 or 1,5
+        hands "HAND"
     }
-}
-
-/// Hands.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Hands {
-    hands: Rows<Which, Data>,
-}
-
-/// Which hand.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    hand: i32,
+    gives HandGet Hand ["hand", "hands"],
+    /// Hands.
+    Hands,
+    /// Which hand.
+    hand of Data: Data::of,
+    columns ["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"],
+    cells |hand| [hand.robot.into(), hand.data_1.into(), mm(hand.data_2_mm), mm(hand.data_3_mm), hand.on_r_axis()];
 }
 
 /// A hand.
@@ -88,24 +67,13 @@ impl Data {
             data_4: int(Key::Data4),
         }
     }
-}
 
-impl Report for Hands {
-    fn view(&self) -> View {
-        let columns = ["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"];
-        let cells = |Data { robot, data_1, data_2_mm, data_3_mm, data_4 }: &Data| {
-            let on_r_axis = match data_4 {
-                0 => "no".into(),
-                1 => "yes".into(),
-                other => Cell::from(*other),
-            };
-            [(*robot).into(), (*data_1).into(), mm(*data_2_mm), mm(*data_3_mm), on_r_axis]
-        };
-        View::table(self.hands.table(["hand"], columns, "no hands", |which| [which.hand.into()], cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.hands.failure()
+    fn on_r_axis(&self) -> Cell {
+        match self.data_4 {
+            0 => "no".into(),
+            1 => "yes".into(),
+            other => Cell::from(other),
+        }
     }
 }
 

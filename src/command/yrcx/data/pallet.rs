@@ -1,19 +1,16 @@
 //! `yrcx pallet-data` (4.3.3).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::commands;
+use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::{Rows, read_numbers};
+use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
-use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with pallets.
@@ -25,38 +22,19 @@ commands! {
     }
 }
 
-/// Reads pallets, one after the other.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Pallets, 0 to 39: 10, 0..39 or 1,5
-    #[arg(required = true, value_name = "PALLET", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::PalletGet, Key::Pallet, text))]
-    pallets: Vec<Numbers>,
-}
-
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Pallets;
-    const ID: &'static str = "yrcx.pallet-data.get";
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Pallets, Failure> {
-        let nouns = ["pallet", "pallets"];
-        let field = (table::Command::PalletGet, Key::Pallet);
-        let (numbers, pallets) = read_numbers(context, nouns, field, &self.pallets, Places::of).await?;
-        Ok(Pallets { pallets: pallets.rows(numbers.into_iter().map(|pallet| Which { pallet })) })
+by_number! {
+    /// Reads pallets, one after the other.
+    Get "yrcx.pallet-data.get" {
+        /// Pallets, 0 to 39: 10, 0..39 or 1,5
+        pallets "PALLET"
     }
-}
-
-/// Pallets.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Pallets {
-    pallets: Rows<Which, Places>,
-}
-
-/// Which pallet.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    pallet: i32,
+    gives PalletGet Pallet ["pallet", "pallets"],
+    /// Pallets.
+    Pallets,
+    /// Which pallet.
+    pallet of Places: Places::of,
+    columns ["nx", "ny", "nz", "first point"],
+    cells |places| [places.nx, places.ny, places.nz, places.first_point].map(Cell::from);
 }
 
 /// A pallet.
@@ -77,18 +55,6 @@ impl Places {
         let [nx, ny, nz, first_point] =
             [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| values.int(key).unwrap_or_default());
         Self { nx, ny, nz, first_point }
-    }
-}
-
-impl Report for Pallets {
-    fn view(&self) -> View {
-        let cells = |places: &Places| [places.nx, places.ny, places.nz, places.first_point].map(Cell::from);
-        let (name, columns) = (|which: &Which| [which.pallet.into()], ["nx", "ny", "nz", "first point"]);
-        View::table(self.pallets.table(["pallet"], columns, "no pallets", name, cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.pallets.failure()
     }
 }
 

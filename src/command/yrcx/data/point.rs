@@ -1,21 +1,19 @@
 //! `yrcx point` (4.3.1).
 
-use clap::{ArgGroup, Args};
+use clap::ArgGroup;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::commands;
+use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::several::{Rows, read_numbers};
+use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::{one_row, shown};
-use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with points.
@@ -27,42 +25,23 @@ commands! {
     }
 }
 
-/// Reads points, one after the other.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "A point that is not defined is refused, and the others are told all the same: exit code 9. `-o csv` prints a \
-    table for a spreadsheet."
-)]
-pub struct Get {
-    /// Points, 0 to 29999: 100, 0..29 or 0..29,100
-    #[arg(required = true, value_name = "POINT", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::PointGet, Key::Point, text))]
-    points: Vec<Numbers>,
-}
-
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Points;
-    const ID: &'static str = "yrcx.point.get";
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Points, Failure> {
-        let nouns = ["point", "points"];
-        let field = (table::Command::PointGet, Key::Point);
-        let (numbers, points) = read_numbers(context, nouns, field, &self.points, Coordinates::of).await?;
-        Ok(Points { points: points.rows(numbers.into_iter().map(|point| Which { point })) })
+by_number! {
+    /// Reads points, one after the other.
+    #[command(
+        after_help = "A point that is not defined is refused, and the others are told all the same: exit code 9. `-o csv` \
+        prints a table for a spreadsheet."
+    )]
+    Get "yrcx.point.get" {
+        /// Points, 0 to 29999: 100, 0..29 or 0..29,100
+        points "POINT"
     }
-}
-
-/// Points.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Points {
-    points: Rows<Which, Coordinates>,
-}
-
-/// Which point.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    point: i32,
+    gives PointGet Point ["point", "points"],
+    /// Points.
+    Points,
+    /// Which point.
+    point of Coordinates: Coordinates::of,
+    columns ["axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"],
+    cells Coordinates::cells;
 }
 
 /// A point.
@@ -82,28 +61,14 @@ impl Coordinates {
         Self { position: Position::of(values, Some(unit)), hand }
     }
 
-    fn axes(&self) -> [Cell; 4] {
-        match (self.position.position_mm, self.position.position_pulses) {
+    fn cells(&self) -> [Cell; 6] {
+        let unit = if self.position.position_mm.is_some() { "mm" } else { "pulses" };
+        let [first, second, third, fourth] = match (self.position.position_mm, self.position.position_pulses) {
             (Some(axes), _) => axes.map(mm),
             (None, Some(axes)) => axes.map(Cell::from),
             (None, None) => std::array::from_fn(|_| "-".into()),
-        }
-    }
-}
-
-impl Report for Points {
-    fn view(&self) -> View {
-        let columns = ["axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"];
-        let cells = |point: &Coordinates| {
-            let unit = if point.position.position_mm.is_some() { "mm" } else { "pulses" };
-            let [first, second, third, fourth] = point.axes();
-            [first, second, third, fourth, unit.into(), Cell::maybe(point.hand.as_deref())]
         };
-        View::table(self.points.table(["point"], columns, "no points", |which| [which.point.into()], cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.points.failure()
+        [first, second, third, fourth, unit.into(), Cell::maybe(self.hand.as_deref())]
     }
 }
 

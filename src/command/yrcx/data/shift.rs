@@ -1,21 +1,17 @@
 //! `yrcx shift-data` (4.3.4).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::numbers::{Numbers, single};
+use crate::command::commands;
+use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::several::{Rows, read_numbers};
+use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
-use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
-use crate::output::view::View;
 
 commands! {
     /// What can be done with shifts.
@@ -27,39 +23,19 @@ commands! {
     }
 }
 
-/// Reads shifts, one after the other.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Shifts, 0 to 39: 5, 0..39 or 1,5
-    #[arg(required = true, value_name = "SHIFT", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::ShiftGet, Key::Shift, text))]
-    shifts: Vec<Numbers>,
-}
-
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Shifts;
-    const ID: &'static str = "yrcx.shift-data.get";
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Shifts, Failure> {
-        let nouns = ["shift", "shifts"];
-        let field = (table::Command::ShiftGet, Key::Shift);
-        let of = |values: &_| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() };
-        let (numbers, shifts) = read_numbers(context, nouns, field, &self.shifts, of).await?;
-        Ok(Shifts { shifts: shifts.rows(numbers.into_iter().map(|shift| Which { shift })) })
+by_number! {
+    /// Reads shifts, one after the other.
+    Get "yrcx.shift-data.get" {
+        /// Shifts, 0 to 39: 5, 0..39 or 1,5
+        shifts "SHIFT"
     }
-}
-
-/// Shifts.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Shifts {
-    shifts: Rows<Which, Way>,
-}
-
-/// Which shift.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    shift: i32,
+    gives ShiftGet Shift ["shift", "shifts"],
+    /// Shifts.
+    Shifts,
+    /// Which shift.
+    shift of Way: |values| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() },
+    columns ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"],
+    cells |way| way.shift_mm.map(mm);
 }
 
 /// A shift.
@@ -67,18 +43,6 @@ struct Which {
 struct Way {
     /// Of axes 1 to 4; degrees of what turns.
     shift_mm: [f64; 4],
-}
-
-impl Report for Shifts {
-    fn view(&self) -> View {
-        let columns = ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
-        let name = |which: &Which| [which.shift.into()];
-        View::table(self.shifts.table(["shift"], columns, "no shifts", name, |way| way.shift_mm.map(mm)))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.shifts.failure()
-    }
 }
 
 one_row! {

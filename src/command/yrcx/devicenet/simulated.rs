@@ -4,6 +4,8 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
+use super::bus::DeviceNet;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
 use crate::command::yrcx::simulated::{Simulated, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -55,7 +57,8 @@ pub fn serve(
     fault: Option<DeviceFault>,
 ) -> io::Result<Hub<Controller>> {
     let bitrate = setup.bitrate;
-    let mut device = Device::on_line(setup, Controller(Simulated(Simulator::new(start))));
+    let mut device =
+        Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(DeviceNet.link_alarm()))));
     device.misbehave(fault);
     Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
 }

@@ -4,6 +4,8 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
+use super::bus::EtherNetIp;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
 use crate::command::yrcx::simulated::{Simulated, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -42,7 +44,12 @@ const CONFIGURATION: u32 = 1;
 pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
-    Server::start(setup, Controller(Simulated(Simulator::new(start))), listen, faults.map(Faults::pair))
+    Server::start(
+        setup,
+        Controller(Simulated(Simulator::new(start).with_link_alarm(EtherNetIp.link_alarm()))),
+        listen,
+        faults.map(Faults::pair),
+    )
 }
 
 /// The state of a device that works (volume 2, 2-4.2.2).

@@ -1,42 +1,25 @@
 //! `yrcx info alarm` (4.7.7, 4.7.17).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::{Single, shown};
+use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::alarm;
-use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
 use crate::output::view::{Cell, View};
 
-/// Reads an alarm.
-#[derive(Debug, Args)]
-pub struct Alarm {
-    /// Number in the history, 1 to 500; without it, the latest alarm of a remote command
-    #[arg(long, value_name = "N")]
-    history: Option<String>,
-}
-
-impl Single for Alarm {
-    type Report = AlarmReport;
-    const ID: &'static str = "yrcx.info.alarm";
-
-    fn command(&self) -> Command {
-        if self.history.is_some() { Command::AlarmHistory } else { Command::LatestAlarm }
+one_row! {
+    /// Reads an alarm.
+    Alarm(self) "yrcx.info.alarm" -> AlarmReport {
+        /// Number in the history, 1 to 500; without it, the latest alarm of a remote command
+        #[arg(long, value_name = "N")]
+        history: Option<String>,
     }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with_some(Key::History, self.history.clone())
-    }
-
-    fn report(&self, done: &Done) -> Result<AlarmReport, Failure> {
-        Ok(AlarmReport::of(&done.values))
-    }
+    gives if self.history.is_some() { Command::AlarmHistory } else { Command::LatestAlarm },
+    with draft => draft.with_some(Key::History, self.history.clone()),
+    done as answer => AlarmReport::of(&answer.values);
 }
 
 /// An alarm and where it came up.

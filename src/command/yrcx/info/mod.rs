@@ -2,17 +2,14 @@
 
 mod alarm;
 mod arm;
-mod inch;
 mod message;
 mod origin;
 mod position;
+mod robot;
 mod servo;
 mod slots;
-mod speed;
-mod system;
 mod tasks;
 mod torque;
-mod version;
 
 use crate::command::commands;
 
@@ -20,9 +17,9 @@ commands! {
     /// What the controller tells about itself.
     pub enum Info {
         /// Software versions
-        Version(version::Version),
+        Version(robot::Version),
         /// Model numbers of a robot and its axes
-        System(system::System),
+        System(robot::System),
         /// Current position of a robot
         Position(position::Where),
         /// Servo state per axis
@@ -32,11 +29,11 @@ commands! {
         /// Selected and current hand system
         Arm(arm::Arm),
         /// Speed settings
-        Speed(speed::Speed),
+        Speed(robot::Speed),
         /// Torque per axis
         Torque(torque::Torque),
         /// Inching distance
-        Inch(inch::Inch),
+        Inch(robot::Inch),
         /// Task states
         Tasks(tasks::Tasks),
         /// Current line of each task

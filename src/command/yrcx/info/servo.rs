@@ -1,32 +1,19 @@
 //! `yrcx info servo` (4.7.3).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::{Single, shown};
+use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 
-/// Reads the states of the servos.
-#[derive(Debug, Args)]
-pub struct Servo {}
-
-impl Single for Servo {
-    type Report = Servos;
-    const ID: &'static str = "yrcx.info.servo";
-
-    fn command(&self) -> Command {
-        Command::ServoStatus
-    }
-
-    fn report(&self, done: &Done) -> Result<Servos, Failure> {
-        Ok(Servos { axes: servos(&done.values) })
-    }
+one_row! {
+    /// Reads the states of the servos.
+    Servo(self) "yrcx.info.servo" -> Servos {}
+    gives Command::ServoStatus,
+    done as answer => Servos { axes: servos(&answer.values) };
 }
 
 /// The axes of a robot.

@@ -1,49 +1,34 @@
 //! `yrcx info slots` (4.7.15).
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::{Single, shown};
-use crate::controller::yrcx::order::Draft;
+use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Table, View};
 
-/// Reads what is in the option slots.
-#[derive(Debug, Args)]
-#[command(after_help = "The manual has no number for PROFINET.")]
-pub struct Slots {
-    /// Controller, 1 to 4
-    #[arg(long, value_name = "N", default_value = "1")]
-    controller: String,
+one_row! {
+    /// Reads what is in the option slots.
+    #[command(after_help = "The manual has no number for PROFINET.")]
+    Slots(self) "yrcx.info.slots" -> Modules {
+        /// Controller, 1 to 4
+        #[arg(long, value_name = "N", default_value = "1")]
+        controller: String,
+    }
+    gives Command::Slots,
+    with draft => draft.with(Key::Controller, self.controller.as_str()),
+    done as answer => {
+        let slots = (1..).zip(SLOTS).filter_map(|(slot, key)| {
+            let code = format!("0x{:04X}", answer.values.int(key)?);
+            Some(Slot { slot, module: shown(Command::Slots, &answer.values, key)?, code })
+        });
+        Modules { slots: slots.collect() }
+    };
 }
 
 const SLOTS: [Key; 4] = [Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4];
-
-impl Single for Slots {
-    type Report = Modules;
-    const ID: &'static str = "yrcx.info.slots";
-
-    fn command(&self) -> Command {
-        Command::Slots
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        draft.with(Key::Controller, self.controller.as_str())
-    }
-
-    fn report(&self, done: &Done) -> Result<Modules, Failure> {
-        let slots = (1..).zip(SLOTS).filter_map(|(slot, key)| {
-            let code = format!("0x{:04X}", done.values.int(key)?);
-            Some(Slot { slot, module: shown(Command::Slots, &done.values, key)?, code })
-        });
-        Ok(Modules { slots: slots.collect() })
-    }
-}
 
 /// Option slots of a controller.
 #[derive(Debug, Serialize, JsonSchema)]

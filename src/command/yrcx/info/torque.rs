@@ -1,27 +1,39 @@
 //! `yrcx info torque` (4.7.12, 4.7.18).
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::yrcx::link::Done;
-use crate::command::yrcx::single::Single;
-use crate::controller::yrcx::order::Draft;
+use crate::command::yrcx::single::one_row;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
-use crate::failure::Failure;
 use crate::output::view::{Table, View};
 
-/// Reads the torque of axes; its sign is the direction.
-#[derive(Debug, Args)]
-pub struct Torque {
-    /// What it is measured by
-    #[arg(long, value_name = "TORQUE", default_value = "max")]
-    of: Reference,
-    /// Axes, as in 1,3; all unless given
-    #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
-    axes: Vec<u8>,
+one_row! {
+    /// Reads the torque of axes; its sign is the direction.
+    Torque(self) "yrcx.info.torque" -> Torques {
+        /// What it is measured by
+        #[arg(long, value_name = "TORQUE", default_value = "max")]
+        of: Reference,
+        /// Axes, as in 1,3; all unless given
+        #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
+        axes: Vec<u8>,
+    }
+    gives match self.of {
+        Reference::Max => Command::TorqueOfMax,
+        Reference::Rated => Command::TorqueOfRated,
+    },
+    with draft => {
+        let bits = self.axes.iter().fold(0, |bits, axis| bits | 1 << (axis - 1));
+        draft.with(Key::Axes, bits)
+    },
+    done as answer => {
+        let axes = (1..).zip(Key::AXES).filter(|(axis, _)| self.axes.is_empty() || self.axes.contains(axis));
+        let axes =
+            axes.map(|(axis, key)| AxisTorque { axis, torque_percent: answer.values.int(key).unwrap_or_default() });
+        Torques { of: self.of, axes: axes.collect() }
+    };
 }
 
 /// What a torque is measured by.
@@ -32,30 +44,6 @@ pub enum Reference {
     Max,
     /// Percent of the rated torque
     Rated,
-}
-
-impl Single for Torque {
-    type Report = Torques;
-    const ID: &'static str = "yrcx.info.torque";
-
-    fn command(&self) -> Command {
-        match self.of {
-            Reference::Max => Command::TorqueOfMax,
-            Reference::Rated => Command::TorqueOfRated,
-        }
-    }
-
-    fn fill(&self, draft: Draft) -> Draft {
-        let bits = self.axes.iter().fold(0, |bits, axis| bits | 1 << (axis - 1));
-        draft.with(Key::Axes, bits)
-    }
-
-    fn report(&self, done: &Done) -> Result<Torques, Failure> {
-        let axes = (1..).zip(Key::AXES).filter(|(axis, _)| self.axes.is_empty() || self.axes.contains(axis));
-        let axes =
-            axes.map(|(axis, key)| AxisTorque { axis, torque_percent: done.values.int(key).unwrap_or_default() });
-        Ok(Torques { of: self.of, axes: axes.collect() })
-    }
 }
 
 /// Torques of the axes that were asked for.

@@ -8,6 +8,8 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
+use super::bus::ProfibusDp;
+use crate::command::yrcx::fieldbus::Fieldbus as _;
 use crate::command::yrcx::simulated::{Simulated, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -90,7 +92,7 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
         parameters: vec![Vec::new(), vec![0; 3]],
         rate: options.rate,
     };
-    let mut slave = Slave::new(setup, Simulated(Simulator::new(start)));
+    let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(ProfibusDp.link_alarm())));
     slave.misbehave(options.mischief);
     let slave = Shared(Arc::new(Mutex::new(slave)));
     let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;

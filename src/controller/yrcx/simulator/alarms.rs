@@ -14,8 +14,8 @@ pub(super) use crate::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
 pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);
 pub(super) const UNKNOWN_COMMAND: Alarm = Alarm::new(12, 75);
 pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
+/// That of EtherNet/IP.
 pub(super) const LINK: Alarm = Alarm::new(12, 551);
-pub(super) const LINK_TOO_LATE: Alarm = Alarm::new(12, 552);
 pub(super) const EMERGENCY_STOP: Alarm = Alarm::new(12, 600);
 
 /// Numbers of this simulator.

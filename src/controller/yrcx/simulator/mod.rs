@@ -23,8 +23,9 @@
 //! - A quick command shows its end in the scan that takes it; with `run_scans`, the run status for some scans before. A
 //!   command that the master takes back is carried out to its end, with the run status; then the controller is ready, once
 //!   WI0 is 0. A command without a status reset before it is not taken.
-//! - While the link is gone all inputs are off, the alarm is 12.551, and everything has stopped without power. What ran
-//!   has ended abnormally, and that is still shown to whoever comes next. Before the first image the inputs rest.
+//! - While the link is gone all inputs are off, the alarm is that of the fieldbus (12.551 on EtherNet/IP), and everything
+//!   has stopped without power. What ran has ended abnormally, and that is still shown to whoever comes next. Before the
+//!   first image the inputs rest.
 //! - An edge of a dedicated input less than 100 ms after another one is ignored, but for SI(00) and SI(06) going off.
 //! - SI(06) off brings commands and programs to rest and ends them with 12.400; so does it keep any from moving.
 //! - Emergency stop and serious alarms take the power away at once. SI(01) and motor power come on after the alarm reset.
@@ -71,6 +72,7 @@ pub use start::{EXAMPLE, Start};
 use self::remote::Remote;
 use self::signals::Dedicated;
 use self::world::{Link, SCAN, World};
+use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
 
@@ -114,6 +116,13 @@ impl Simulator {
         };
         simulator.scan(Now::ZERO);
         simulator
+    }
+
+    /// With the alarm that a lost link is on its fieldbus; else it is that of EtherNet/IP.
+    #[must_use]
+    pub fn with_link_alarm(mut self, alarm: Alarm) -> Self {
+        self.world.link_alarm = alarm;
+        self
     }
 
     /// Takes what the master shows from `now` on; `None`: the link is gone, which is an alarm.

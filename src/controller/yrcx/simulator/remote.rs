@@ -1,6 +1,6 @@
 //! The handshake of remote commands (chapter 2, sections 1 and 2), one scan after the other.
 
-use super::alarms::{AlarmSource, Fault, LINK, STOP_INPUT};
+use super::alarms::{Fault, STOP_INPUT};
 use super::commands::{self, Work};
 use super::motion::{End, Owner};
 use super::motions;
@@ -149,9 +149,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
             let action = *action;
             (world.now >= *at).then(|| world.act(action).map(|()| Values::default()))
         }
-        Work::Continuous if world.link == Link::Down => {
-            Some(Err(Fault::new(LINK, AlarmSource::Slot, "the master is gone")))
-        }
+        Work::Continuous if world.link == Link::Down => Some(Err(world.link_fault())),
         Work::Continuous => (!running.held).then(|| Ok(Values::default())),
         Work::Motion(robots) => {
             for robot in robots {

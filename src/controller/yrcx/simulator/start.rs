@@ -13,7 +13,7 @@ use jiff::civil::DateTime;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::alarms::AlarmLog;
+use super::alarms::{AlarmLog, LINK};
 use super::console;
 use super::defaults::{self, STOCK};
 use super::memory::Memory;
@@ -446,6 +446,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
             keep: entries.movei_start == MoveiStart::Keep,
         },
         link: Link::Waiting,
+        link_alarm: LINK,
         link_within: entries.link_within_ms.map(Duration::from_millis),
         inputs: resting(),
         motor: entries.servo,

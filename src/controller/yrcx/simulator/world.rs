@@ -7,9 +7,8 @@ use jiff::SignedDuration;
 use jiff::civil::DateTime;
 
 use super::alarms::{
-    AlarmLog, EMERGENCY_STOP, Fault, LINK, LINK_TOO_LATE, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT,
+    AlarmLog, AlarmSource, EMERGENCY_STOP, Fault, MOVING, NO_AXIS, NO_ORIGIN, NO_POWER, NO_ROBOT, NOT_AUTO,
 };
-use super::alarms::{AlarmSource, NOT_AUTO};
 use super::console;
 use super::memory::Memory;
 use super::motion::{End, Motion, Owner};
@@ -84,6 +83,8 @@ pub(super) struct World {
     pub(super) now: Now,
     pub(super) switches: Switches,
     pub(super) link: Link,
+    /// The alarm of a lost link, which each fieldbus has its own of.
+    pub(super) link_alarm: Alarm,
     /// After this time without a master the link is missed.
     pub(super) link_within: Option<Duration>,
     /// What the master shows.
@@ -142,7 +143,7 @@ impl World {
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK_TOO_LATE, AlarmSource::Slot, "no master came in time"), false);
+            self.raise(&Fault::new(self.link_alarm.too_long(), AlarmSource::Slot, "no master came in time"), false);
         }
         while let Some(line) = self.events.take(now) {
             // Lines were tried when the start state was read; one that is refused by now has no effect.
@@ -243,8 +244,13 @@ impl World {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();
-            self.raise(&Fault::new(LINK, AlarmSource::Slot, "the master is gone"), false);
+            self.raise(&self.link_fault(), false);
         }
+    }
+
+    /// What the loss of the link is to what runs.
+    pub(super) fn link_fault(&self) -> Fault {
+        Fault::new(self.link_alarm, AlarmSource::Slot, "the master is gone")
     }
 
     /// Whether motor power may go on.

@@ -133,6 +133,19 @@ fn a_master_that_does_not_come_is_missed() {
 }
 
 #[test]
+fn the_alarm_of_a_lost_link_is_that_of_its_bus() {
+    for (bus, lost, too_long) in [(551, "12.551", "12.552"), (541, "12.541", "12.542"), (571, "12.571", "12.572")] {
+        let served = |start: &str| Simulator::new(Start::parse(start).unwrap()).with_link_alarm(Alarm::new(12, bus));
+        let mut simulator = served("");
+        simulator.input(Duration::from_millis(10), Some(&resting()));
+        simulator.input(Duration::from_millis(20), None);
+        assert!(simulator.console(Duration::from_millis(30), "state").unwrap().contains(lost));
+        let mut simulator = served("link_within_ms = 1000");
+        assert!(simulator.console(Duration::from_millis(1001), "state").unwrap().contains(too_long));
+    }
+}
+
+#[test]
 fn scans_are_5_ms_apart_and_none_is_in_vain() {
     let mut simulator = Simulator::new(Start::default());
     assert_eq!(simulator.wake(), None);

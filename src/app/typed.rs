@@ -1,0 +1,84 @@
+//! What the words of a command line are: those of a command, and those that stand behind it.
+
+use std::ffi::OsString;
+
+use clap::{Arg, Command};
+
+/// The words of a command line, without flags and their values.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Typed<'a> {
+    /// Those that lead to a command.
+    pub path: Vec<&'a str>,
+    /// What follows them.
+    pub rest: Vec<&'a str>,
+}
+
+impl<'a> Typed<'a> {
+    /// Of a line, the program's name included.
+    pub fn new(args: &'a [OsString], whole: &Command) -> Self {
+        let mut typed = Self::default();
+        let mut commands = vec![whole];
+        let mut words = args.iter().skip(1).filter_map(|word| word.to_str());
+        while let Some(word) = words.next().filter(|word| *word != "--") {
+            if word.starts_with('-') && word.len() > 1 {
+                if takes_next(word, &commands) {
+                    words.next();
+                }
+                continue;
+            }
+            let below = commands.last().and_then(|command| command.find_subcommand(word));
+            if let Some(below) = below.filter(|_| typed.rest.is_empty()) {
+                commands.push(below);
+                typed.path.push(word);
+            } else {
+                typed.rest.push(word);
+            }
+        }
+        typed
+    }
+
+    /// All of them.
+    pub fn words(&self) -> Vec<&'a str> {
+        [&self.path[..], &self.rest].concat()
+    }
+}
+
+/// Whether the word behind a flag is its value.
+fn takes_next(flag: &str, commands: &[&Command]) -> bool {
+    let known = |is_it: &dyn Fn(&Arg) -> bool| {
+        let found = commands.iter().flat_map(|command| command.get_arguments()).find(|argument| is_it(argument));
+        found.is_some_and(|argument| {
+            argument.get_action().takes_values() && argument.get_num_args().is_none_or(|count| count.min_values() > 0)
+        })
+    };
+    match flag.strip_prefix("--") {
+        Some(long) => !long.contains('=') && known(&|argument| argument.get_long() == Some(long)),
+        None => flag.chars().next_back().is_some_and(|short| known(&|argument| argument.get_short() == Some(short))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    #[test]
+    fn flags_and_their_values_are_no_words_of_a_command() {
+        let whole = Cli::command();
+        for (line, path, rest) in [
+            ("armctl yerc job select WELD", "yerc job select", "WELD"),
+            ("armctl -r status yerc job -h", "yerc job", ""),
+            ("armctl --robot=status yerc --json job", "yerc job", ""),
+            ("armctl -qo json yerc job", "yerc job", ""),
+            ("armctl yerc job select --line 5 WELD status", "yerc job select", "WELD status"),
+            ("armctl get file", "", "get file"),
+            ("armctl yerc --watch status", "yerc status", ""),
+        ] {
+            let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
+            let typed = Typed::new(&args, &whole);
+            assert_eq!((typed.path.join(" ").as_str(), typed.rest.join(" ").as_str()), (path, rest), "{line}");
+        }
+    }
+}

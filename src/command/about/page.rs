@@ -1,0 +1,184 @@
+//! The help of a command, as `-h` and `--help` show it.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use clap::builder::StyledStr;
+use clap::{Arg, Command};
+
+use crate::command::face::words::Headings;
+use crate::command::leaves;
+
+/// The line that stands for the options of every command.
+const EVERYWHERE: &str = "Options of every command, such as -r, -t, --sim and --json: `armctl help options`.";
+
+/// The help of the command that `path` leads to. The short one has what is the command's own, and fits a small terminal
+/// where that does.
+pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
+    let Some(command) = path.iter().try_fold(root, |command, word| command.find_subcommand(word)) else {
+        return StyledStr::new();
+    };
+    let mut command = command.clone();
+    if !path.is_empty() {
+        command = furnished(command, root, path, is_long);
+    }
+    if is_long { command.render_long_help() } else { command.render_help() }
+}
+
+/// The options of every command.
+pub fn options(root: &Command) -> StyledStr {
+    let all = root.get_arguments().filter(|argument| argument.is_global_set()).cloned();
+    Command::new("armctl")
+        .disable_help_flag(true)
+        .max_term_width(100)
+        .args(all)
+        .help_template("{options}\n")
+        .render_long_help()
+}
+
+/// Names of the options of every command.
+pub fn everywhere(root: &Command) -> BTreeSet<&str> {
+    root.get_arguments()
+        .filter(|argument| argument.is_global_set())
+        .map(|argument| argument.get_id().as_str())
+        .collect()
+}
+
+/// With examples and headings; in short without what it shares with all others, and without its notes.
+fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool) -> Command {
+    let style = *command.get_styles().get_header();
+    let mut after = String::new();
+    let notes = command.get_after_help().map(|notes| notes.ansi().to_string());
+    if let (Some(notes), true) = (&notes, is_long || command.has_subcommands()) {
+        let _ = writeln!(after, "{notes}\n");
+    }
+    let examples: Vec<&str> =
+        if command.has_subcommands() { Vec::new() } else { leaves::examples(path).take(3).collect() };
+    if !examples.is_empty() {
+        let _ = writeln!(after, "{style}Examples:{style:#}");
+        for example in examples {
+            let _ = writeln!(after, "  armctl {example}");
+        }
+        after.push('\n');
+    }
+    if !is_long {
+        let everywhere = everywhere(root);
+        let shared = |argument: &Arg| everywhere.contains(argument.get_id().as_str());
+        command = command.mut_args(|argument| if shared(&argument) { argument.hide(true) } else { argument });
+        after.push_str(EVERYWHERE);
+    }
+    if let Some(Headings(headings)) = command.get::<Headings>().copied() {
+        let template = grouped(&mut command, &headings());
+        command = command.mut_subcommands(|word| word.hide(true)).help_template(template);
+    }
+    command.after_help(after.trim_end().to_owned())
+}
+
+/// A template with the subcommands below their headings; one without is below that of the one before.
+fn grouped(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
+    let (style, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
+    let widest = command.get_subcommands().map(|word| word.get_name().len()).max().unwrap_or_default();
+    let mut text = format!("{{about-with-newline}}\n{}", command.render_usage().ansi());
+    let mut line = |heading: Option<&str>, word: &Command| {
+        if let Some(heading) = heading {
+            let _ = write!(text, "\n\n{style}{heading}:{style:#}");
+        }
+        let about = word.get_about().map(ToString::to_string).unwrap_or_default();
+        let _ = write!(text, "\n  {literal}{:widest$}{literal:#}  {about}", word.get_name());
+    };
+    for (heading, name) in headings {
+        if let Some(word) = command.find_subcommand(name) {
+            line(*heading, word);
+        }
+    }
+    let is_named = |word: &&Command| headings.iter().any(|(_, name)| name == word.get_name());
+    command.get_subcommands().filter(|word| !is_named(word)).for_each(|word| line(None, word));
+    text + "\n\n{all-args}{after-help}"
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    /// Lines of a small terminal.
+    const ROWS: usize = 24;
+    /// Lines that a command's own options may take before its help may be longer.
+    const OWN: usize = 9;
+
+    fn whole() -> Command {
+        let mut whole = Cli::command().term_width(80);
+        whole.build();
+        whole
+    }
+
+    fn each(command: &Command, path: &mut Vec<String>, look: &mut dyn FnMut(&Command, &[&str])) {
+        look(command, &path.iter().map(String::as_str).collect::<Vec<_>>());
+        for verb in command.get_subcommands() {
+            path.push(verb.get_name().to_owned());
+            each(verb, path, look);
+            path.pop();
+        }
+    }
+
+    #[test]
+    fn help_fits_a_small_terminal_beside_the_options_of_the_command() {
+        let whole = whole();
+        let mut wrong = Vec::new();
+        each(&whole, &mut Vec::new(), &mut |command, path| {
+            let text = page(&whole, path, false).to_string();
+            let name = path.join(" ");
+            wrong.extend(text.lines().filter(|line| line.chars().count() > 80).map(|line| format!("{name}: {line}")));
+            if command.has_subcommands() {
+                return;
+            }
+            let own = text
+                .lines()
+                .filter(|line| line.starts_with("      ") || line.starts_with("  <") || line.starts_with("  ["));
+            let (own, lines) = (own.count(), text.lines().count());
+            if lines > ROWS && own <= OWN {
+                wrong.push(format!("{name}: {lines} lines, {own} of them its own options"));
+            }
+            if !text.contains("\nExamples:\n  armctl ")
+                || !text.trim_end().ends_with(EVERYWHERE)
+                || text.contains("--dry-run  ")
+            {
+                wrong.push(format!("{name}:\n{text}"));
+            }
+        });
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    }
+
+    #[test]
+    fn commands_of_a_family_stand_below_headings() {
+        let whole = whole();
+        for family in ["yerc", "yrcx", "toyo"] {
+            for is_long in [false, true] {
+                let text = page(&whole, &[family], is_long).to_string();
+                let command = whole.find_subcommand(family).unwrap();
+                for word in command.get_subcommands() {
+                    assert_eq!(
+                        text.matches(&format!("\n  {} ", word.get_name())).count(),
+                        1,
+                        "{}: {text}",
+                        word.get_name()
+                    );
+                }
+                for heading in ["Status and diagnosis:", "Motion:", "Programs:", "Data:", "Signals:", "Link:"] {
+                    assert!(text.contains(&format!("\n\n{heading}\n  ")), "{heading}: {text}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_options_of_every_command_have_their_text() {
+        let whole = whole();
+        let text = options(&whole).to_string();
+        for argument in whole.get_arguments().filter(|argument| argument.is_global_set()) {
+            assert!(text.contains(&argument.get_help().unwrap().to_string()[..20]), "{argument}: {text}");
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Lines of every command: the examples of its help. Those for robots come with what they do at most, are held against the
+//! gate by tests, and are the reason why no tip proposes a dangerous one.
+
+mod desk;
+mod toyo;
+mod yerc;
+mod yrcx;
+
+use crate::controller::Risk::{self, Destroy, Read, Write};
+
+/// A line, and what it does at most. What stops the robot is marked by its own test.
+pub type Leaf = (&'static str, Risk);
+
+/// Lines of the commands for robots of any family.
+const COMMON: &[Leaf] = &[
+    ("status", Read),
+    ("status --watch 5s", Read),
+    ("status -r 'cell*' --json", Read),
+    ("backup press -r press", Write),
+    ("backup nightly --all", Write),
+    ("restore press -r press", Destroy),
+    ("restore press -r press --dry-run", Destroy),
+    ("diff press -r press", Write),
+    ("diff monday tuesday", Write),
+];
+
+/// All lines for robots: of every command the usual ones, and where its words decide what it does, one of each.
+pub fn leaves() -> impl Iterator<Item = &'static Leaf> {
+    [COMMON, yerc::LEAVES, yrcx::LEAVES, toyo::LEAVES].into_iter().flatten()
+}
+
+/// The lines of the command of these words.
+pub fn examples(path: &[&str]) -> impl Iterator<Item = &'static str> {
+    all().filter(move |line| begins(line, path))
+}
+
+/// Every line.
+pub fn all() -> impl Iterator<Item = &'static str> {
+    leaves().map(|(line, _)| *line).chain(desk::LINES.iter().copied())
+}
+
+/// Whether a command can move a robot, or delete or overwrite what a person wrote; of a noun, whether all of its verbs
+/// can. `path` are its words.
+pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
+    let mut below = leaves().filter(|(line, _)| begins(line, path)).peekable();
+    let is_one = |(_, risk): &Leaf| *risk >= Destroy;
+    below.peek().is_some() && if is_noun { below.all(is_one) } else { below.any(is_one) }
+}
+
+fn begins(line: &str, path: &[&str]) -> bool {
+    path.iter().copied().eq(line.split(' ').take(path.len()))
+}

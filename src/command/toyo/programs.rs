@@ -1,0 +1,96 @@
+//! `copy` and `select` of `toyo easy` and `toyo palletizing`: programs that have a number.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use clap::Args;
+
+use super::copies::{self, Copied};
+use super::link;
+use super::link::Toyo;
+use super::numbers::{not_held, number, read_back};
+use crate::command::frame::orders::Done;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::request::Request;
+use crate::controller::toyo::table;
+use crate::failure::Failure;
+use crate::gate::Confirmation;
+
+/// Programs of one kind.
+pub trait Kind: Debug + 'static {
+    /// `easy program`.
+    const WHAT: &'static str;
+    /// `toyo.easy.copy`, `toyo.easy.select`.
+    const IDS: [&'static str; 2];
+    /// What a copy does, behind "This will …".
+    const INTENT: &'static str;
+    /// Help for the program that is copied, the one that is replaced, and the one that is chosen.
+    const HELP: [&'static str; 3];
+    /// What runs the one that is chosen.
+    const RUN: &'static str;
+    /// What copies, what chooses, and what tells which one is chosen.
+    const COMMANDS: [table::Command; 3];
+
+    /// The number of a program.
+    fn field() -> &'static Field;
+    /// What reads all of a program.
+    fn reads(program: i32) -> Result<Vec<Request>, Failure>;
+}
+
+/// Copies a program over another one, unless they are the same already.
+#[derive(Debug, Args)]
+pub struct Copy<K: Kind> {
+    #[arg(value_name = "FROM", help = K::HELP[0], value_parser = |text: &str| number(K::field(), text))]
+    from: i32,
+    #[arg(value_name = "TO", help = K::HELP[1], value_parser = |text: &str| number(K::field(), text))]
+    to: i32,
+    #[arg(skip)]
+    of: PhantomData<K>,
+}
+
+/// Chooses the program that `toyo run` starts.
+#[derive(Debug, Args)]
+pub struct Select<K: Kind> {
+    #[arg(value_name = "PROGRAM", help = K::HELP[2], value_parser = |text: &str| number(K::field(), text))]
+    program: i32,
+    #[arg(skip)]
+    of: PhantomData<K>,
+}
+
+impl<K: Kind> Command for Copy<K> {
+    type Family = Toyo;
+    type Report = Copied;
+    const ID: &'static str = K::IDS[0];
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = K::INTENT;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
+        let Self { from, to, .. } = *self;
+        let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
+        let order = order.map_err(|error| link::wrong(&error))?;
+        let copy = copies::Copy { what: K::WHAT, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
+        copy.make(context.link, context.screen, &context.authority).await
+    }
+}
+
+impl<K: Kind> Command for Select<K> {
+    type Family = Toyo;
+    type Report = Done;
+    const ID: &'static str = K::IDS[1];
+    const RISK: Risk = Risk::Write;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+        let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
+        link.ask(&order).await?;
+        let found = read_back(link, &order, &Request::bare(K::COMMANDS[2])).await?.number("program");
+        if let Some(found) = found.filter(|found| *found != self.program) {
+            return Err(
+                not_held(&order, &format!("program {found} is chosen")).hint("a program that runs stays chosen")
+            );
+        }
+        Ok(Done::new(format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN)))
+    }
+}

@@ -1,0 +1,134 @@
+//! Addresses without a scheme, where the family tells what is meant.
+
+use std::fmt;
+use std::net::{IpAddr, SocketAddr};
+use std::str::FromStr;
+
+use super::{Family, Target};
+use crate::failure::Failure;
+
+/// What can be given as a target: a URL, or an address of the network or a serial port, whose scheme the family tells.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Given {
+    /// A URL.
+    Url(Target),
+    /// `192.168.1.31`, `192.168.1.31:10040`, `COM3`, `/dev/ttyUSB0`.
+    Bare(String),
+}
+
+impl Given {
+    /// The target for a family.
+    ///
+    /// # Errors
+    /// The family is not known, or not reached so.
+    pub fn of(&self, family: Option<Family>) -> Result<Target, Failure> {
+        let bare = match self {
+            Self::Url(target) => return Ok(target.clone()),
+            Self::Bare(bare) => bare,
+        };
+        let wrong = |why: &str, hint: String| Err(Failure::usage(format!("target '{bare}': {why}")).hint(hint));
+        let host = bare.parse::<IpAddr>().map_or_else(
+            |_| bare.clone(),
+            |ip| match ip {
+                IpAddr::V4(ip) => ip.to_string(),
+                IpAddr::V6(ip) => format!("[{ip}]"),
+            },
+        );
+        let has_port = bare.parse::<SocketAddr>().is_ok();
+        let url = match (family, is_serial(bare)) {
+            (Some(Family::Yerc), false) => format!("udp://{host}"),
+            (Some(Family::Yrcx), false) => format!("eip://{host}"),
+            (Some(Family::Toyo), false) if has_port => format!("tcp://{host}"),
+            (Some(Family::Toyo), true) => format!("serial://{bare}"),
+            (Some(Family::Toyo), false) => {
+                return wrong(
+                    "the port is missing; device servers have no usual one",
+                    format!("write tcp://{host}:PORT"),
+                );
+            }
+            (Some(Family::Yerc), true) => {
+                return wrong("yerc is not reached over a serial port", "write udp://HOST".into());
+            }
+            (Some(Family::Yrcx), true) => {
+                let ways = format!("write slcan://{bare}?mac=N (DeviceNet) or profibus://{bare}?station=N");
+                return wrong("it does not tell the fieldbus", ways);
+            }
+            (None, false) => {
+                let ways = format!("write udp://{host} (yerc), eip://{host} (yrcx) or tcp://{host}:PORT (toyo)");
+                return wrong("it does not tell the family", ways);
+            }
+            (None, true) => {
+                return wrong("it does not tell the family", format!("write serial://{bare} for a toyo controller"));
+            }
+        };
+        url.parse()
+    }
+
+    /// Whether it is an address without a scheme.
+    pub fn is_bare(text: &str) -> bool {
+        is_serial(text) || text.parse::<IpAddr>().is_ok() || text.parse::<SocketAddr>().is_ok()
+    }
+}
+
+impl FromStr for Given {
+    type Err = Failure;
+
+    fn from_str(text: &str) -> Result<Self, Failure> {
+        if Self::is_bare(text) { Ok(Self::Bare(text.to_owned())) } else { text.parse().map(Self::Url) }
+    }
+}
+
+impl fmt::Display for Given {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Url(target) => target.fmt(f),
+            Self::Bare(bare) => f.write_str(bare),
+        }
+    }
+}
+
+fn is_serial(text: &str) -> bool {
+    let is_com = |text: &str| text.get(..3).is_some_and(|com| com.eq_ignore_ascii_case("com"));
+    let number = || text.get(3..).is_some_and(|number| number.parse::<u8>().is_ok());
+    text.starts_with("/dev/") || is_com(text) && number()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_family_tells_what_a_bare_address_is() {
+        for (text, family, expected) in [
+            ("127.0.0.1", Some(Family::Yerc), "udp://127.0.0.1"),
+            ("127.0.0.1:10050", Some(Family::Yerc), "udp://127.0.0.1:10050"),
+            ("::1", Some(Family::Yerc), "udp://[::1]"),
+            ("127.0.0.1", Some(Family::Yrcx), "eip://127.0.0.1"),
+            ("127.0.0.1:4001", Some(Family::Toyo), "tcp://127.0.0.1:4001"),
+            ("COM3", Some(Family::Toyo), "serial://COM3"),
+            ("/dev/ttyUSB0", Some(Family::Toyo), "serial:///dev/ttyUSB0"),
+            ("udp://127.0.0.1", None, "udp://127.0.0.1"),
+        ] {
+            let target = text.parse::<Given>().unwrap().of(family).unwrap();
+            assert_eq!(target.url(), expected, "{text}");
+            assert!(family.is_none_or(|family| target.check(family).is_ok()), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_a_bare_address_does_not_tell_is_asked_for() {
+        for (text, family, hint) in [
+            ("127.0.0.1", None, "udp://127.0.0.1 (yerc)"),
+            ("127.0.0.1", Some(Family::Toyo), "tcp://127.0.0.1:PORT"),
+            ("COM3", Some(Family::Yerc), "udp://HOST"),
+            ("/dev/ttyUSB0", Some(Family::Yrcx), "profibus:///dev/ttyUSB0"),
+            ("/dev/ttyUSB0", None, "serial:///dev/ttyUSB0"),
+        ] {
+            let failure = text.parse::<Given>().unwrap().of(family).unwrap_err();
+            assert!(failure.hint.as_ref().is_some_and(|it| it.contains(hint)), "{text}: {failure:?}");
+        }
+        for text in ["robot", "COMET", "com", "cell3:10040"] {
+            assert!(text.parse::<Given>().is_err(), "{text}");
+        }
+    }
+}
