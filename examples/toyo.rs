@@ -25,12 +25,12 @@ async fn main() -> Result<(), Box<dyn Error>> {
 
     // The host is switched ON for it, and OFF again at the end.
     robot.ask(&jog("+C", Some(0))).await?;
-    while robot.status_of(&[0]).await?.executing() {
+    while robot.place().await?.number("x") == Some(0) {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
     // Until it is told to stop, an axis may move.
     let place = robot.stop(Moving::Jog).await?;
-    println!("the axes stand at {}", place.written());
+    println!("axis 1 stands at {:.2} mm", f64::from(place.number("x").unwrap_or_default()) / 100.0);
     let (_, closed) = robot.close().await;
     Ok(closed?)
 }

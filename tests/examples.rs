@@ -16,7 +16,9 @@ fn run(example: &str) -> String {
 
 #[test]
 fn toyo_reads_and_moves() {
-    assert_eq!(run("toyo"), "");
+    let point = "T1 PT=001 X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00";
+    let said = format!("servo on: true, host on: false\npoint 1: {point}\naxis 1 stands at 0.01 mm\n");
+    assert_eq!(run("toyo"), said);
 }
 
 #[test]

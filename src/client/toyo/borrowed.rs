@@ -104,7 +104,7 @@ impl Client {
         }
     }
 
-    /// Makes everything as it was before [`Client::borrow`]. All of it is tried; the first error counts.
+    /// Makes everything as it was before [`Client::borrow`], whatever is granted. All of it is tried; the first error counts.
     ///
     /// # Errors
     /// [`Error::NotPutBack`].
@@ -119,7 +119,7 @@ impl Client {
             // A line that is still out of order shows in what follows.
             self.fence().await.unwrap_or_default();
             let block = back.text();
-            match undone(self.put_back_by(&back).await) {
+            match undone(self.transact(&back, true).await) {
                 Ok(()) => self.watcher.event(Event::PutBack(back)),
                 Err(cause) => outcome = outcome.and(Err(Error::NotPutBack { block, cause })),
             }
@@ -127,17 +127,12 @@ impl Client {
         outcome
     }
 
-    async fn put_back_by(&mut self, back: &Request) -> Result<Answer, Error> {
-        self.authorize(back.risk(), &back.text())?;
-        self.transact(back, true).await
-    }
-
     /// The host stays as it is when the client ends: somebody asked for that.
     pub fn keep_host(&mut self) {
         self.host = Host::Found;
     }
 
-    /// Gives the host back as it was found.
+    /// Gives the host back as it was found, whatever is granted.
     ///
     /// # Errors
     /// [`Error::HostKept`].
@@ -147,7 +142,7 @@ impl Client {
         }
         self.host = Host::Unknown;
         self.fence().await.unwrap_or_default();
-        undone(self.converse(&Request::bare(Command::Hsof)).await).map_err(Error::HostKept)?;
+        undone(self.transact(&Request::bare(Command::Hsof), false).await).map_err(Error::HostKept)?;
         self.watcher.event(Event::TakesHost(false));
         Ok(())
     }
