@@ -1,6 +1,6 @@
 """A controller that others wrote (profinet-py), up to data: what it sends comes back, and it reads who the device is.
 
-It proposes frames of the older class; today's are class value 2 with ids from 0x8000.
+It starts as controllers did before 2010, with frames of the older class.
 """
 import sys
 import time
@@ -11,18 +11,6 @@ from profinet.cyclic import CyclicController
 from profinet.util import ethernet_socket, get_mac, s2mac
 
 interface, name = sys.argv[1:3]
-head = rpc.PNIOCRBlockReqHeader
-
-
-def today(**fields):
-    fields['iocr_properties'] = 2
-    if fields['iocr_type'] == 1:
-        fields['frame_id'] = 0x8001
-    return head(**fields)
-
-
-today.fmt_size, today.BLOCK_TYPE = head.fmt_size, head.BLOCK_TYPE
-rpc.PNIOCRBlockReqHeader = today
 # Slot, subslot, bytes from it, bytes to it, module, submodule.
 slots = [rpc.IOSlot(0, 1, 0, 0, 1, 1), rpc.IOSlot(0, 0x8000, 0, 0, 1, 0x8000), rpc.IOSlot(0, 0x8001, 0, 0, 1, 0x8001),
          rpc.IOSlot(1, 1, 48, 0, 0x101, 1), rpc.IOSlot(2, 1, 0, 48, 0x102, 1)]
