@@ -3,6 +3,7 @@
 //! where there are none it says so and passes.
 
 #![cfg(target_os = "linux")]
+#![expect(clippy::print_stdout, reason = "one end tells the other, and the log says what is skipped")]
 
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -284,7 +285,7 @@ fn our_controller() {
     }
     let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
     assert!(present.contains(&"pc0".to_owned()), "{present:?}");
-    let interface = Interface::find("pc0").unwrap();
+    let interface = Interface::find("pc0").expect("the namespace has it");
     let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
     let found = loop {
@@ -374,7 +375,7 @@ fn dcp_controller() {
 
 /// Runs a program of theirs, once our device is there.
 fn theirs(program: &str, arguments: &[&str], end: &str) {
-    let interface = Interface::find("pc0").unwrap();
+    let interface = Interface::find("pc0").expect("the namespace has it");
     let station = Station::Name("yrcx-sim".to_owned());
     let begin = Instant::now();
     while commission::find(&interface, &station).is_err() {

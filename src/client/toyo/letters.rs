@@ -71,6 +71,9 @@ impl Client {
 }
 
 /// Asks for E01.
+///
+/// # Panics
+/// If the table of parameters lacks it, which any test of the caller shows.
 pub fn letters_request() -> Request {
     let parameter = Parameter::named("E01").expect("the table has E01");
     Request::read_parameter(parameter, None).expect("E01 has no rows")

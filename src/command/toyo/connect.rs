@@ -88,9 +88,9 @@ pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<hel
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     // Over the same connection: a device server may take another one only after a while.
-    let line = link.into_line().ok_or_else(|| Failure::local("a dry run holds no line"))?;
+    let open = link.into_line().ok_or_else(|| Failure::local("a dry run holds no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
-    Ok(held::Line::new(line, move || {
+    Ok(held::Line::new(open, move || {
         let (endpoint, label) = (endpoint.clone(), label.clone());
         Box::pin(async move { endpoint.open(timeout).await.map_err(|error| failure(&label, error).message) })
     }))

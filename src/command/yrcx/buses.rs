@@ -104,7 +104,7 @@ mod tests {
             assert!(by_name(scheme.bus).is_some(), "{scheme:?}");
         }
         let mut alarms = Vec::new();
-        for bus in BUSES.iter().copied() {
+        for bus in BUSES {
             assert!(target::BUSES.iter().any(|scheme| scheme.bus == bus.name()), "{bus:?}");
             assert!(target::bus::simulators().any(|(_, name)| name == bus.name()), "{bus:?}");
             assert!(bus.link_alarm().known().is_some() && !alarms.contains(&bus.link_alarm()), "{bus:?}");

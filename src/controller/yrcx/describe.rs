@@ -49,6 +49,7 @@ impl FieldNote {
     }
 }
 
+#[expect(clippy::ref_option, reason = "serde hands it over so")]
 fn key_name<S: Serializer>(key: &Option<Key>, serializer: S) -> Result<S::Ok, S::Error> {
     key.map(Key::name).serialize(serializer)
 }

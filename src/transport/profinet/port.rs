@@ -138,13 +138,12 @@ impl Frames {
 impl Calls {
     /// To the device with this card and address.
     pub(super) fn open(interface: &Interface, mac: Mac, target: SocketAddrV4) -> Result<Self, ProfinetError> {
-        let end = match interface.network() {
-            Some(network) => End::Simulated(network.clone()),
-            None => {
-                let socket = UdpSocket::bind((interface.address()?.address, 0));
-                let socket = socket.map_err(|error| ProfinetError::local("UDP socket for calls", &error))?;
-                End::Socket(socket, Instant::now())
-            }
+        let end = if let Some(network) = interface.network() {
+            End::Simulated(network.clone())
+        } else {
+            let socket = UdpSocket::bind((interface.address()?.address, 0));
+            let socket = socket.map_err(|error| ProfinetError::local("UDP socket for calls", &error))?;
+            End::Socket(socket, Instant::now())
         };
         Ok(Self { end, tap: interface.tap.clone(), cards: (interface.mac, mac), target })
     }

@@ -193,13 +193,11 @@ impl Inner {
             if let Some(taken) = take(self) {
                 return Some(taken);
             }
-            match self.station.wake().filter(|wake| *wake < until) {
-                Some(wake) => self.now = self.now.max(wake),
-                None => {
-                    self.now = self.now.max(until);
-                    return None;
-                }
-            }
+            let Some(wake) = self.station.wake().filter(|wake| *wake < until) else {
+                self.now = self.now.max(until);
+                return None;
+            };
+            self.now = self.now.max(wake);
         }
     }
 }
@@ -246,13 +244,11 @@ impl Link {
             if is_enough(&self.controller) {
                 return;
             }
-            match next.filter(|next| *next <= until) {
-                Some(next) => inner.now = inner.now.max(next),
-                None => {
-                    inner.now = inner.now.max(until);
-                    return;
-                }
-            }
+            let Some(next) = next.filter(|next| *next <= until) else {
+                inner.now = inner.now.max(until);
+                return;
+            };
+            inner.now = inner.now.max(next);
         }
     }
 

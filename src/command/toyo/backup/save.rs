@@ -94,7 +94,7 @@ async fn make(
         return Err(Failure::usage(format!("{} is a backup of every task", task.folder.display()))
             .hint("of the current task alone, make one in another folder"));
     }
-    let outcome = cut_off_by_ctrl_c(&task.folder, save(link, (screen, robot), &task)).await;
+    let outcome = cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await;
     tasks::done(link, outcome).await
 }
 

@@ -88,7 +88,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
         link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
         return Ok(backup::BackedUp::new(&task.folder, task.scope, false, Items::new(Vec::new())));
     }
-    cut_off_by_ctrl_c(&task.folder, save(link, (screen, robot), &task)).await
+    cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
 
 /// A file of the controller, and its name here.

@@ -81,7 +81,7 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: Making) -> Result<Backe
     if link.is_dry() {
         return dry_run(link, &asked);
     }
-    cut_off_by_ctrl_c(&task.folder, save(link, (screen, robot), &task, asked)).await
+    cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
 }
 
 /// What is asked for.

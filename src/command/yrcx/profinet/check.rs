@@ -105,7 +105,7 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
             }
         }
         Err(error) => {
-            layers.warn("modules", format!("it does not tell them: {error}"), "connecting tells whether they fit")
+            layers.warn("modules", format!("it does not tell them: {error}"), "connecting tells whether they fit");
         }
     }
     Ok(())

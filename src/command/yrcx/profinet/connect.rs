@@ -135,16 +135,13 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
         })
     };
     let mut found = gsdml.heads.iter().filter_map(chosen);
-    match (found.next(), found.next()) {
-        (Some(only), None) => Ok(only),
-        _ => {
-            let size = Image::BYTES;
-            let cause = wrong(format!("not exactly one choice of its modules has {size} bytes each way"));
-            Err(LinkError::Settings(
-                cause.advice("set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules"),
-            ))
-        }
+    if let (Some(only), None) = (found.next(), found.next()) {
+        return Ok(only);
     }
+    let size = Image::BYTES;
+    let cause = wrong(format!("not exactly one choice of its modules has {size} bytes each way"));
+    let advice = "set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules";
+    Err(LinkError::Settings(cause.advice(advice)))
 }
 
 /// Reads a file of the maker.

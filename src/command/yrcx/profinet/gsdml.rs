@@ -177,10 +177,8 @@ fn ranges(slots: &[u16]) -> String {
             _ => ranges.push((*slot, *slot)),
         }
     }
-    let shown = ranges.iter().map(|(first, last)| match first == last {
-        true => first.to_string(),
-        false => format!("{first} to {last}"),
-    });
+    let shown =
+        ranges.iter().map(|(first, last)| if first == last { first.to_string() } else { format!("{first} to {last}") });
     shown.collect::<Vec<_>>().join(", ")
 }
 

@@ -107,10 +107,10 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
             left.extend(guess::adjusted(&layout, misfits));
         }
         let is_over = match &answer {
-            Ok(()) => true,
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
-            // Nobody is there any more, or this machine is not ready for it.
-            Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
+            // Data flows, nobody is there any more, or this machine is not ready for it.
+            Ok(())
+            | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
             Err(_) => false,
         };
         let text = answer.as_ref().map_or_else(ToString::to_string, |()| "data flows both ways".to_owned());
