@@ -419,7 +419,7 @@ impl Bench {
         let gate = Gate { yes, ..Gate::default() };
         let grant = Grant::of(intent.granted_at_first());
         let Self { runtime, robot, link, .. } = self;
-        link.set_grant(grant.clone());
+        link.grant(grant.clone());
         let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
         let context = Context { robot, link, screen: &QUIET, several: false, authority };
         let report = runtime.block_on(testing::run::<Yrcx>(&*command, context))?;
