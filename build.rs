@@ -13,9 +13,10 @@ fn main() {
     let (hash, day) = commit.unzip();
     // A development build would have to be made anew at every commit, to say what its builder knows.
     let missing = if is_release { UNKNOWN } else { "not recorded in a development build" };
-    println!("cargo::rustc-env=ARMCTL_COMMIT={}", hash.as_deref().unwrap_or(missing));
-    println!("cargo::rustc-env=ARMCTL_DATE={}", date.or(day).as_deref().unwrap_or(missing));
-    println!("cargo::rustc-env=ARMCTL_TARGET={}", std::env::var("TARGET").as_deref().unwrap_or(UNKNOWN));
+    // Not ARMCTL_…: cargo sets these for what it runs, too, and armctl reads ARMCTL_TARGET as a target.
+    println!("cargo::rustc-env=BUILT_COMMIT={}", hash.as_deref().unwrap_or(missing));
+    println!("cargo::rustc-env=BUILT_DATE={}", date.or(day).as_deref().unwrap_or(missing));
+    println!("cargo::rustc-env=BUILT_TARGET={}", std::env::var("TARGET").as_deref().unwrap_or(UNKNOWN));
     println!("cargo::rerun-if-env-changed=SOURCE_DATE_EPOCH");
     println!("cargo::rerun-if-changed=build.rs");
 }

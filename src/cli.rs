@@ -23,11 +23,11 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub const LONG_VERSION: &str = concat!(
     env!("CARGO_PKG_VERSION"),
     "\ncommit: ",
-    env!("ARMCTL_COMMIT"),
+    env!("BUILT_COMMIT"),
     "\ndate:   ",
-    env!("ARMCTL_DATE"),
+    env!("BUILT_DATE"),
     "\ntarget: ",
-    env!("ARMCTL_TARGET")
+    env!("BUILT_TARGET")
 );
 
 /// Talk to industrial robot controllers from a terminal or a script.

@@ -153,7 +153,7 @@ pub fn decimal_point(message: &str) -> Option<String> {
 
 /// An I/O error without the `(os error 13)` that tells a technician nothing.
 pub fn plain(error: &std::io::Error) -> String {
-    crate::transport::plain(error).to_lowercase()
+    crate::files::plain(error).to_lowercase()
 }
 
 impl fmt::Display for Failure {
@@ -196,7 +196,7 @@ mod tests {
     fn a_decimal_comma_is_told() {
         for (message, hint) in [
             ("x: '2,5' is not a number, 1 to 9 mm", Some("use a decimal point: 2.5")),
-            ("'-12,50mm/s' is no speed", Some("use a decimal point: -12.50mm/s")),
+            ("'-12,50mm/s' is not a valid speed", Some("use a decimal point: -12.50mm/s")),
             ("'2,5' is not a whole number", None),
             ("'1,2,3' is not a number", None),
             ("four numbers are wanted, not '1,5'", None),

@@ -137,7 +137,7 @@ impl Plan<'_> {
             results: self.results.clone(),
         };
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::usage("this is no command for a line of a file").hint("`armctl help batch`"));
+            return Err(Failure::usage("this command cannot be used in a file").hint("`armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {

@@ -199,7 +199,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     let environment = Options {
         timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
         retries: variable("ARMCTL_RETRIES", |number| {
-            number.parse().map_err(|_| format!("'{number}' is no number of repetitions"))
+            number.parse().map_err(|_| format!("'{number}' is not a number of repetitions"))
         })?,
         encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
         ..Options::default()

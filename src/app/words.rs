@@ -25,7 +25,7 @@ pub fn expanded<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>) -> Resu
         done.push_str(before);
         let (name, after) = after.split_once('}').ok_or_else(|| format!("'{rest}' has no }}"))?;
         if !is_name(name) {
-            return Err(format!("'{name}' is no name of a variable"));
+            return Err(format!("'{name}' is not a variable name"));
         }
         done.push_str(value(name).ok_or_else(|| format!("nothing says what ${{{name}}} is: --set {name}=VALUE does"))?);
         rest = after;

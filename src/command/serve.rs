@@ -115,7 +115,7 @@ async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<Stri
 /// An address with a port, or without one.
 pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
     let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, usual_port)));
-    address.map_err(|_| format!("'{text}' is no address such as 127.0.0.1:{usual_port}"))
+    address.map_err(|_| format!("'{text}' is not a valid address, such as 127.0.0.1:{usual_port}"))
 }
 
 /// The failure of a server that cannot begin.

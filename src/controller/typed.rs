@@ -112,7 +112,7 @@ pub fn state(text: &str) -> Result<bool, String> {
     match text {
         "on" | "1" => Ok(true),
         "off" | "0" => Ok(false),
-        _ => Err(format!("'{text}' is no state; there are on and off")),
+        _ => Err(format!("'{text}' is not a valid state; there are on and off")),
     }
 }
 
@@ -169,6 +169,6 @@ mod tests {
         let error = setting("B0", "a variable", "a value", "B0=255").unwrap_err();
         assert_eq!(error, "a variable, '=' and a value are expected, as in B0=255");
         assert_eq!((state("on"), state("0")), (Ok(true), Ok(false)));
-        assert_eq!(state("2").unwrap_err(), "'2' is no state; there are on and off");
+        assert_eq!(state("2").unwrap_err(), "'2' is not a valid state; there are on and off");
     }
 }

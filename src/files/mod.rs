@@ -26,6 +26,11 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
+/// An error of the system without its number, which tells a technician nothing.
+pub fn plain(error: &io::Error) -> String {
+    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
+}
+
 /// The bytes of a regular file of at most so many.
 ///
 /// # Errors

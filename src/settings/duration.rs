@@ -10,7 +10,7 @@ const MAX: Duration = Duration::from_secs(24 * 3600);
 
 /// Reads a duration.
 pub fn parse(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("'{text}' is no duration; write 500ms, 3s, 2m or 1h");
+    let wrong = || format!("'{text}' is not a valid duration; write 500ms, 3s, 2m or 1h");
     let (number, unit_ms) = UNITS
         .iter()
         .find_map(|(suffix, ms)| text.strip_suffix(suffix).map(|number| (number, *ms)))

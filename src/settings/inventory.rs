@@ -144,7 +144,7 @@ impl Inventory {
         for raw in file.robot {
             let robot = raw.name.as_ref();
             if !is_name(robot) {
-                return Err(at(raw.name.span(), &format!("'{robot}' is no robot name"))
+                return Err(at(raw.name.span(), &format!("'{robot}' is not a valid robot name"))
                     .hint("use letters, digits, '-', '_' and '.'"));
             }
             if robots.iter().any(|known| known.name == *robot) {

@@ -185,7 +185,7 @@ impl Sources {
             return Ok(vec![self.resolved(entry, family)?]);
         }
         let address = family.map_or("udp://HOST", Family::address);
-        Err(Failure::usage("no robot is named").hint(format!(
+        Err(Failure::usage("no robot selected").hint(format!(
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
              set ARMCTL_TARGET"
         )))

@@ -348,7 +348,7 @@ fn serial(place: &str, query: &mut Query) -> Result<Serial, String> {
         return Err("the port is missing".to_owned());
     }
     if path.contains('/') && !path.starts_with('/') {
-        return Err(format!("'{path}' is no port; a path starts with a third slash"));
+        return Err(format!("'{path}' is not a valid port; a path starts with a third slash"));
     }
     Ok(Serial {
         path,

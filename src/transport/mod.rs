@@ -29,12 +29,9 @@ pub mod udp;
 use std::fmt::Display;
 use std::io;
 
+pub use armctl_files::plain;
+
 /// The error of a byte stream whose other end is gone.
 fn vanished(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
-}
-
-/// An error of the system without its number, which tells a technician nothing.
-pub fn plain(error: &io::Error) -> String {
-    error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }

@@ -58,7 +58,7 @@ pub enum OpenError {
     #[error("this user may not open the port")]
     Forbidden,
     /// Something else than a serial port, such as a file.
-    #[error("this is no serial port")]
+    #[error("this is not a serial port")]
     NotSerial,
     /// The port cannot be set as it should.
     #[error("the port does not take these settings: {0}")]

@@ -126,6 +126,7 @@ const LINKS: [&str; 40] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",
+    "command/face/declared.rs",
     "command/face/mod.rs",
     "command/fleet/session/close.rs",
     "command/fleet/session/host.rs",

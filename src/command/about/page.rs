@@ -44,9 +44,22 @@ pub fn everywhere(root: &Command) -> BTreeSet<&str> {
         .collect()
 }
 
+/// What can be typed, where that is too long for a line: what must be there stands on a second one.
+fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
+    const WIDTH: usize = 80;
+    let is_long = usage.to_string().chars().count() > WIDTH;
+    let styled = usage.ansi().to_string();
+    let (_, typed) = styled.split_once("Usage:")?.1.split_once(' ')?;
+    let (before, needed) = typed.rsplit_once(" <--").filter(|_| is_long)?;
+    Some(format!("{before}\n       <--{needed}").into())
+}
+
 /// With examples and headings; in short without what it shares with all others, and without its notes.
 fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool) -> Command {
     let style = *command.get_styles().get_header();
+    if let Some(usage) = in_two_lines(&command.render_usage()) {
+        command = command.override_usage(usage);
+    }
     let mut after = String::new();
     let notes = command.get_after_help().map(|notes| notes.ansi().to_string());
     if let (Some(notes), true) = (&notes, is_long || command.has_subcommands()) {

@@ -161,14 +161,14 @@ impl<C: About> Manifest<C> {
         for entry in &self.files {
             let Entry { name, name_hex, copy, error, .. } = entry;
             if name_hex.as_ref().is_some_and(|digits| unhex(digits).is_none()) {
-                return Err(format!("the name_hex of '{name}' is no name"));
+                return Err(format!("the name_hex of '{name}' is not a valid name"));
             }
             if !names.insert(name_hex.as_ref().unwrap_or(name).to_lowercase()) {
                 return Err(format!("'{name}' is there twice"));
             }
             match copy {
                 Some(copy) if !is_plain_file_name(&copy.file) || copy.file == MANIFEST => {
-                    return Err(format!("'{}' is no file of a backup in this folder", copy.file));
+                    return Err(format!("'{}' is not a file of a backup in this folder", copy.file));
                 }
                 Some(copy) if !copies.insert(copy.file.to_lowercase()) => {
                     return Err(format!("'{}' is there for two names", copy.file));
@@ -199,7 +199,8 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         text => text.with_context(|| path.display().to_string())?,
     };
     let wrong = |why: String| {
-        Failure::local(format!("{}: {why}", path.display())).hint("this is no whole list of a backup; make a new one")
+        Failure::local(format!("{}: {why}", path.display()))
+            .hint("this is not a whole list of a backup; make a new one")
     };
     match serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))? {
         Head { format, .. } if format != FORMAT => {

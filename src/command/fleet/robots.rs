@@ -134,7 +134,7 @@ fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String)
 impl Add {
     fn run(self, run: &Run) -> Result<(), RunError> {
         if !is_name(&self.name) {
-            return Err(Failure::usage(format!("'{}' is no robot name", self.name))
+            return Err(Failure::usage(format!("'{}' is not a valid robot name", self.name))
                 .hint("use letters, digits, '-', '_' and '.'")
                 .into());
         }

@@ -22,7 +22,7 @@ pub struct Batch {
 
 fn assignment(text: &str) -> Result<(String, String), String> {
     let (name, value) = typed::setting(text, "a name", "a value", "SPEED=50")?;
-    if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is no name")) }
+    if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is not a valid name")) }
 }
 
 /// Letters, digits and underscores.

@@ -130,7 +130,7 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
             "add the user to the group of the port, mostly dialout (`sudo usermod -aG dialout $USER`), and log in again",
         ),
         OpenError::NotSerial => {
-            (Kind::Usage, format!("{path} is no serial port"), "`armctl toyo ports` lists the ports there are")
+            (Kind::Usage, format!("{path} is not a serial port"), "`armctl toyo ports` lists the ports there are")
         }
         OpenError::Unsupported(why) => {
             (Kind::Usage, format!("{path} does not take these settings: {why}"), "choose others in the target URL")

@@ -40,7 +40,7 @@ pub fn runs(numbers: &[i32]) -> String {
 pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(number),
-        Ok(_) => Err(format!("{} is no number", field.name)),
+        Ok(_) => Err(format!("{} is not a number", field.name)),
         Err(error) => Err(error.to_string()),
     }
 }

@@ -138,7 +138,7 @@ pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
     for token in text.split(|c: char| c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')) {
         let digits = token.strip_prefix("0x").or_else(|| token.strip_prefix("0X")).unwrap_or(token);
         if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
-            return Err(format!("'{}' is no hexadecimal digit", wrong.escape_debug()));
+            return Err(format!("'{}' is not a valid hexadecimal digit", wrong.escape_debug()));
         }
         if digits.len() > 1 && digits.len() % 2 == 1 {
             return Err(format!("'{}' has an odd number of digits", shortened(digits, 24)));
@@ -273,7 +273,7 @@ mod tests {
         assert_eq!(parse_hex(&format!("0x{STATUS}")).unwrap(), bytes);
         assert_eq!(parse_hex("9 a").unwrap(), [9, 10]);
         assert_eq!(parse_hex("595").unwrap_err(), "'595' has an odd number of digits");
-        assert_eq!(parse_hex("59\u{1b}").unwrap_err(), "'\\u{1b}' is no hexadecimal digit");
+        assert_eq!(parse_hex("59\u{1b}").unwrap_err(), "'\\u{1b}' is not a valid hexadecimal digit");
     }
 
     #[test]

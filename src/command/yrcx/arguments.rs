@@ -186,7 +186,7 @@ impl Axes {
     fn numbers(&self) -> Result<Vec<usize>, Failure> {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
         axes.split(',').map(axis).collect::<Result<Vec<usize>, Failure>>().map_err(|_| {
-            Failure::usage(format!("'{axes}' is no list of axes of 1 to 4, as in 1,3"))
+            Failure::usage(format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3"))
                 .hint("name axes by their numbers, with commas between")
         })
     }
@@ -234,7 +234,7 @@ impl Axes {
 fn axis(text: &str) -> Result<usize, Failure> {
     match text.trim().parse() {
         Ok(axis @ 1..=4) => Ok(axis),
-        _ => Err(Failure::usage(format!("'{text}' is no axis of 1 to 4")).hint("name axes by their numbers")),
+        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("name axes by their numbers")),
     }
 }
 

@@ -183,7 +183,7 @@ fn parse_date(text: &str) -> Result<Date, String> {
         [year, month, day] => (|| Date::new(digits(year, 4)?, digits(month, 2)?, digits(day, 2)?).ok())(),
         _ => None,
     };
-    let date = date.ok_or_else(|| format!("'{text}' is no date such as 2026-03-01"))?;
+    let date = date.ok_or_else(|| format!("'{text}' is not a valid date, such as 2026-03-01"))?;
     match date.year() - CENTURY {
         0..=99 => Ok(date),
         _ => Err("the controller keeps the years 2000 to 2099".to_owned()),
@@ -197,7 +197,7 @@ fn parse_time(text: &str) -> Result<Time, String> {
         [hour, minute, second] => (|| Time::new(digits(hour, 2)?, digits(minute, 2)?, digits(second, 2)?, 0).ok())(),
         _ => None,
     };
-    time.ok_or_else(|| format!("'{text}' is no time such as 08:45 or 08:45:00"))
+    time.ok_or_else(|| format!("'{text}' is not a valid time, such as 08:45 or 08:45:00"))
 }
 
 /// A number of so many digits.

@@ -46,7 +46,7 @@ fn number(field: &Field, text: &str) -> Result<i32, String> {
     // Names of variables are in capitals.
     match field.parse(&text.trim().to_ascii_uppercase())? {
         Value::Int(number) => field.accept(&Value::Int(number)).map(|()| number),
-        Value::Real(_) | Value::Text(_) => Err(format!("'{text}' is no whole number")),
+        Value::Real(_) | Value::Text(_) => Err(format!("'{text}' is not a whole number")),
     }
 }
 

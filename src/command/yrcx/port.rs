@@ -43,7 +43,7 @@ struct Place {
 
 /// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
 fn place(text: &str) -> Result<Place, String> {
-    let wrong = || format!("'{text}' is no port such as DO12 and no signal such as DO2.1");
+    let wrong = || format!("'{text}' is not a valid port such as DO12 and no signal, such as DO2.1");
     let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
     let kind = single(table::Command::PortGet, Key::PortType, kind).map_err(|_| wrong())?;
     let (port, bit) = match rest.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')) {

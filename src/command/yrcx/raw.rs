@@ -47,7 +47,7 @@ pub fn words(text: &str) -> Result<Words, String> {
         return Err(format!("1 to {COMMAND_WORDS} words are wanted, not {}", pieces.len()));
     }
     for (word, piece) in words.iter_mut().zip(pieces) {
-        *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is no word such as 0x0032 or 50"))?;
+        *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is not a valid word, such as 0x0032 or 50"))?;
     }
     Ok(words)
 }
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn what_the_manual_does_not_allow_is_rejected() {
-        assert!(objection(&["raw", "--wi", "0x0999"]).contains("0x0999 is no code"));
+        assert!(objection(&["raw", "--wi", "0x0999"]).contains("0x0999 is not a remote command code"));
         assert!(objection(&["raw", "--wi", "1,0xC000,0,0,19"]).contains("alarm 4.202"));
         assert!(objection(&["raw", "--wi", "0x406,0x100"]).contains("WI1"));
     }

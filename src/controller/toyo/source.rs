@@ -35,7 +35,7 @@ pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
             None => bytes,
         };
         if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
-            let hint = "this is no text file, or one in UTF-16: save it as UTF-8";
+            let hint = "this is not a text file, or one in UTF-16: save it as UTF-8";
             findings.error(place(number, &bytes[..at]), "there is a NUL; the rest is not read", Some(hint.to_owned()));
             break;
         }

@@ -20,7 +20,7 @@ pub struct Signal {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Not a number of up to five digits.
-    #[error("'{found}' is no signal number, e.g. 10010")]
+    #[error("'{found}' is not a valid signal number, e.g. 10010")]
     Malformed {
         /// What was given.
         found: String,

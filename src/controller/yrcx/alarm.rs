@@ -33,7 +33,7 @@ pub struct Known {
 
 /// A text that is no alarm number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("'{found}' is no alarm number, e.g. 12.600")]
+#[error("'{found}' is not a valid alarm number, e.g. 12.600")]
 pub struct AlarmError {
     /// What was given.
     pub found: String,

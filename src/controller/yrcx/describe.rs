@@ -60,7 +60,7 @@ pub fn command(words: &Words) -> Description {
     let Some(row) = Row::from_word(words[0]) else {
         notes.push(0, 0x0FFF, "command code", "unknown".to_owned());
         notes.rest(|_| 0);
-        notes.problems.push(format!("{:#06X} is no code of a remote command; there are {}", words[0], ROWS.len()));
+        notes.problems.push(format!("{:#06X} is not a remote command code; there are {}", words[0], ROWS.len()));
         return notes.description("unknown command".to_owned(), None);
     };
     let code = if row.has_robot() { 0x0FFF } else { u16::MAX };
@@ -271,7 +271,7 @@ mod tests {
             ["WI3 speed_percent: 101 is out of range; allowed: 1 to 100 %"]
         );
         assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 are set, which must be 0 here"]);
-        assert_eq!(problems(&[0x0999]), ["0x0999 is no code of a remote command; there are 111"]);
+        assert_eq!(problems(&[0x0999]), ["0x0999 is not a remote command code; there are 111"]);
     }
 
     #[test]

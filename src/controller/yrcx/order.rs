@@ -59,7 +59,7 @@ impl Order {
     /// Reads the words of a command. Refuses what the manual does not allow to be sent.
     pub fn parse(words: &Words) -> Result<Self, WordError> {
         let unknown =
-            || WordError::at(Side::Command, Some(0), None, format!("{:#06X} is no code of a remote command", words[0]));
+            || WordError::at(Side::Command, Some(0), None, format!("{:#06X} is not a remote command code", words[0]));
         let row = Row::from_word(words[0]).ok_or_else(unknown)?;
         let values = codec::decode_strictly(row.request(), words)?;
         for rule in row.rules {

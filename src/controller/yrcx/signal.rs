@@ -71,7 +71,9 @@ pub struct Dedicated {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Neither a name nor a number.
-    #[error("'{found}' is no signal; use a name such as {example}, or a number from 20 to 157 with digits 0 to 7")]
+    #[error(
+        "'{found}' is not a valid signal; use a name such as {example}, or a number from 20 to 157 with digits 0 to 7"
+    )]
     Unknown {
         /// What was given.
         found: String,

@@ -244,7 +244,7 @@ mod tests {
             ("eip://h?in_size=46", "in_size is a number from 48"),
             ("eip://h?out_size=65001", "to 65000"),
             ("eip://h?rpi=0ms", "rpi is a time from 1ms"),
-            ("eip://h?rpi=soon", "rpi: 'soon' is no duration"),
+            ("eip://h?rpi=soon", "rpi: 'soon' is not a valid duration"),
             ("eip://h?multiplier=5", "not '5'"),
             ("eip://h?multicast=maybe", "multicast is no or yes"),
             ("eip://h?role=boss", "role is owner or input_only or listen_only"),

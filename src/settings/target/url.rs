@@ -50,7 +50,7 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
         return Err("the host is missing".to_owned());
     }
     if host.chars().any(|c| c.is_whitespace() || c.is_control() || "/@#".contains(c)) {
-        return Err(format!("'{host}' is no host name"));
+        return Err(format!("'{host}' is not a valid host name"));
     }
     Ok((host.to_owned(), port))
 }

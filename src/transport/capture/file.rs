@@ -39,7 +39,7 @@ pub enum OpenError {
     #[error("it is compressed")]
     Compressed,
     /// Neither pcap nor pcapng.
-    #[error("it is no pcap or pcapng file")]
+    #[error("it is not a pcap or pcapng file")]
     Other,
     /// Reading has failed.
     #[error("it cannot be read")]

@@ -462,7 +462,7 @@ impl<'a, 'input> Reader<'a, 'input> {
 
     fn number32(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<u32> {
         let text = self.text(node, name)?;
-        parse(text).ok_or_else(|| self.wrong(node, format!("{name} is no number: '{text}'")))
+        parse(text).ok_or_else(|| self.wrong(node, format!("{name} is not a number: '{text}'")))
     }
 
     fn number(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<u16> {
@@ -480,7 +480,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         for part in node.attribute(name).unwrap_or_default().split_whitespace() {
             let number = |text: &str| parse(text).and_then(|number| u16::try_from(number).ok());
             let (first, last) = part.split_once("..").unwrap_or((part, part));
-            let wrong = || self.wrong(node, format!("{name} is no list of numbers: '{part}'"));
+            let wrong = || self.wrong(node, format!("{name} is not a valid list of numbers: '{part}'"));
             let (first, last) = (number(first).ok_or_else(wrong)?, number(last).ok_or_else(wrong)?);
             slots.extend(first..=last);
             if slots.len() > MOST_SLOTS {

@@ -29,7 +29,7 @@ pub enum AttachError {
     #[error("{0}")]
     Refused(String),
     /// What answers is no session, or one of another version.
-    #[error("what answers is no session of this version of armctl")]
+    #[error("what answers is not a session of this version of armctl")]
     Foreign,
     /// The socket has failed.
     #[error("{0}")]

@@ -247,9 +247,9 @@ mod tests {
         assert!(socket::check_private(&private, true).unwrap().is_err());
         let link = folder.path().join("link");
         symlink(folder.path(), &link).unwrap();
-        assert_eq!(socket::check_private(&link, true).unwrap(), Err("it is no folder"));
+        assert_eq!(socket::check_private(&link, true).unwrap(), Err("it is not a folder"));
         let spot = spot(folder.path());
         std::fs::write(spot.socket(), "").unwrap();
-        assert!(matches!(spot.check(), Err(PlaceError::Unsafe { why: "it is no socket", .. })));
+        assert!(matches!(spot.check(), Err(PlaceError::Unsafe { why: "it is not a socket", .. })));
     }
 }

@@ -42,7 +42,7 @@ pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'st
     let found = path.symlink_metadata()?;
     let fits = if is_folder { found.is_dir() } else { found.file_type().is_socket() };
     Ok(if !fits {
-        Err(if is_folder { "it is no folder" } else { "it is no socket" })
+        Err(if is_folder { "it is not a folder" } else { "it is not a socket" })
     } else if found.uid() != geteuid().as_raw() {
         Err("it is another user's")
     } else if found.mode() & 0o077 != 0 {

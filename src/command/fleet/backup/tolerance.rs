@@ -45,7 +45,7 @@ impl Limit {
         let (number, unit) = found.map_or((text, None), |(number, unit)| (number, Some(unit)));
         match number.trim().parse::<f64>() {
             Ok(most) if most.is_finite() && most >= 0.0 => Ok(Self { unit, most }),
-            _ => Err(format!("'{text}' is no tolerance; as in 0.05mm, 0.1deg or 5pulses")),
+            _ => Err(format!("'{text}' is not a valid tolerance; as in 0.05mm, 0.1deg or 5pulses")),
         }
     }
 }

@@ -97,7 +97,7 @@ impl FromStr for Part {
             ("palletizing", Some(number)) => Self::Palletizing(number),
             ("points", Some(task)) => Self::Points(task),
             ("program", Some(task)) => Self::Program(task),
-            (kind, _) => return Err(format!("'{name}' is no single part; write {kind}-1")),
+            (kind, _) => return Err(format!("'{name}' is not a single part; write {kind}-1")),
         })
     }
 }
@@ -238,6 +238,6 @@ mod tests {
         assert_eq!(parts("point").unwrap_err(), "there is no part 'point'; did you mean points?");
         assert_eq!(parts("points-5").unwrap_err(), "points has numbers from 1 to 4");
         assert_eq!(parts("easy-1").unwrap_err(), "there is one part easy only");
-        assert_eq!("points".parse::<Part>().unwrap_err(), "'points' is no single part; write points-1");
+        assert_eq!("points".parse::<Part>().unwrap_err(), "'points' is not a single part; write points-1");
     }
 }

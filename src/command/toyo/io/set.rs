@@ -75,7 +75,7 @@ impl FromStr for Assignment {
                 Ok(Value::Mask(mask)) => mask,
                 _ => {
                     return Err(format!(
-                        "'{value}' is no port: eight of 0, 1 and . are expected, for the bits 8 to 1; \
+                        "'{value}' is not a valid port: eight of 0, 1 and . are expected, for the bits 8 to 1; \
                          one bit is set by {port}.1=on"
                     ));
                 }
@@ -87,7 +87,7 @@ impl FromStr for Assignment {
 
 fn one_bit(bit: &str, value: &str) -> Result<Mask, String> {
     let number = bit.parse().ok().filter(|number| (1..=8).contains(number));
-    let number: u8 = number.ok_or_else(|| format!("'{bit}' is no bit; a port has the bits 1 to 8"))?;
+    let number: u8 = number.ok_or_else(|| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8"))?;
     let care = 1 << (number - 1);
     Ok(Mask { care, bits: if typed::state(value)? { care } else { 0 } })
 }

@@ -151,8 +151,8 @@ impl Report for Verdict {
         let bad: Vec<&str> = self.files.iter().filter(bad).map(|file| file.file.as_str()).collect();
         let what = match (&bad[..], self.strict) {
             ([], _) => return None,
-            ([one], false) => format!("{one} is no program"),
-            ([one], true) => format!("{one} is no program without warnings"),
+            ([one], false) => format!("{one} has errors"),
+            ([one], true) => format!("{one} has warnings"),
             (many, _) => format!("{} of {} files are not in order: {}", many.len(), self.files.len(), many.join(", ")),
         };
         Some(Failure::new(Kind::ConditionNotMet, what))
@@ -193,13 +193,13 @@ b.txt: 2 steps, 1 label
 "
         );
         let failure = verdict.failure().unwrap();
-        assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt is no program"));
+        assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
     }
 
     #[test]
     fn warnings_count_when_they_should() {
         let texts = [("a.txt", "SPD V=1\n")];
         assert!(verdict(&texts, false).failure().is_none());
-        assert_eq!(verdict(&texts, true).failure().unwrap().message, "a.txt is no program without warnings");
+        assert_eq!(verdict(&texts, true).failure().unwrap().message, "a.txt has warnings");
     }
 }

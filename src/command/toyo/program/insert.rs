@@ -72,7 +72,7 @@ impl Insert {
         match (wrong, checked.program.and_then(|program| program.steps.into_iter().next())) {
             (None, Some(step)) => Ok(step.record),
             (wrong, _) => Err(wrong.unwrap_or_else(|| {
-                Failure::usage(format!("'{text}' is no instruction")).hint(
+                Failure::usage(format!("'{text}' is not a valid instruction")).hint(
                     "name one instruction with its operands, such as JMP TAG=5; `armctl toyo program insert --help`",
                 )
             })),

@@ -148,7 +148,7 @@ impl Run {
             Some(path) => {
                 let bytes = files::read(path)?;
                 let text = String::from_utf8(bytes).map_err(|_| {
-                    Failure::usage(format!("{}: this is no text in UTF-8", path.display()))
+                    Failure::usage(format!("{}: this is not a text in UTF-8", path.display()))
                         .hint("`armctl help simulator` shows the form of the file")
                 })?;
                 Start::parse(&text).map_err(|error| {

@@ -49,7 +49,9 @@ impl Content {
         let place = || path.display().to_string();
         let file = match files::open(path) {
             Err(error) if matches!(error.kind(), ErrorKind::IsADirectory | ErrorKind::Unsupported) => {
-                return Err(Failure::usage(format!("{} is no file", path.display())).hint("name the files one by one"));
+                return Err(
+                    Failure::usage(format!("{} is not a file", path.display())).hint("name the files one by one")
+                );
             }
             opened => opened.with_context(place)?,
         };

@@ -68,8 +68,8 @@ impl FromStr for Whole {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (group, value) = typed::setting(text, "a group", "a value", "2701=0xA5")?;
-        let group =
-            typed::unsigned(group).ok_or_else(|| format!("'{group}' is no group; #27010 to #27017 are group 2701"))?;
+        let group = typed::unsigned(group)
+            .ok_or_else(|| format!("'{group}' is not a valid group; #27010 to #27017 are group 2701"))?;
         let value =
             typed::unsigned(value).ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
         Ok(Self { group, value })

@@ -269,7 +269,7 @@ impl Speed {
         let word = unit.parse(number.trim_end()).map_err(|error| error.to_string())?;
         match u32::try_from(word) {
             Ok(word @ 1..) => Ok(Self { class, word }),
-            _ => Err(format!("'{text}' is no speed: it must be more than 0")),
+            _ => Err(format!("'{text}' is not a valid speed: it must be more than 0")),
         }
     }
 }

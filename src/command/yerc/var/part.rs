@@ -101,7 +101,7 @@ async fn read(link: &mut Link, reference: Reference) -> Result<Position, Failure
     };
     match link.try_ask(&ReadVariable::new(reference.kind, reference.number)).await.map_err(wrong)? {
         Ok(Value::Position(position)) => Ok(position),
-        Ok(_) => Err(wrong(Failure::new(Kind::Malformed, "the answer is no position"))),
+        Ok(_) => Err(wrong(Failure::new(Kind::Malformed, "the answer is not a position"))),
         Err(refusal) => {
             let is_undefined = is_undefined(&Denied::Refused(refusal));
             let failure = wrong(refusal.into());

@@ -172,7 +172,7 @@ impl Dump {
     fn parse(text: &str, model: Model) -> Result<Self, String> {
         let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
         if json.get("format").and_then(Json::as_str) != Some(FORMAT) {
-            return Err(format!("format: \"{FORMAT}\" is expected; this is no dump of variables"));
+            return Err(format!("format: \"{FORMAT}\" is expected; this is not a dump of variables"));
         }
         if json.get("version").and_then(Json::as_u64) != Some(VERSION) {
             return Err(format!("version: {VERSION} is expected; a newer armctl may have written it"));

@@ -132,8 +132,8 @@ fn field_of(reference: Reference, field: &str, value: &str) -> Result<Input, Str
             let field = WriteField::new(kind, reference.number, 1 + axis, steps.to_le_bytes()).map_err(message)?;
             Ok(Input::Field(field))
         }
-        _ if is_robot => Err(format!("'{field}' is no part to write; there are tool, user, axis1 to axis8")),
-        _ => Err(format!("'{field}' is no part to write; there are axis1 to axis8")),
+        _ if is_robot => Err(format!("'{field}' is not a valid part to write; there are tool, user, axis1 to axis8")),
+        _ => Err(format!("'{field}' is not a valid part to write; there are axis1 to axis8")),
     }
 }
 

@@ -73,7 +73,7 @@ pub(super) fn adapter(node: &DeviceNet) -> Adapter {
 
 /// What the URL says.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of DeviceNet", at.bus))))
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of DeviceNet", at.bus))))
 }
 
 /// A request leaves twice before its silence is told.

@@ -32,7 +32,7 @@ pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
 
 /// What the URL says.
 fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of EtherNet/IP", at.bus))))
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
 }
 
 /// Instances for the heartbeats of a connection that only listens to inputs, as boards of several makers have them. The

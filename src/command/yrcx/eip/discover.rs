@@ -32,7 +32,7 @@ pub struct Search {
 
 fn address(text: &str) -> Result<SocketAddrV4, String> {
     let parsed = text.parse().or_else(|_| text.parse::<Ipv4Addr>().map(|address| SocketAddrV4::new(address, PORT)));
-    parsed.map_err(|_| format!("'{text}' is no IPv4 address such as 192.168.0.2 or 192.168.0.2:{PORT}"))
+    parsed.map_err(|_| format!("'{text}' is not a valid IPv4 address, such as 192.168.0.2 or 192.168.0.2:{PORT}"))
 }
 
 impl fieldbus::Search for Search {

@@ -114,7 +114,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
     let digits: String = text.trim_start_matches("0x").split([' ', '_', ':']).collect();
     match text::unhex(&digits) {
         Some(bytes) if !bytes.is_empty() => Ok(Bytes(bytes)),
-        _ => Err(format!("'{text}' is no row of bytes such as 0A00")),
+        _ => Err(format!("'{text}' is not a valid row of bytes, such as 0A00")),
     }
 }
 
@@ -122,7 +122,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 fn number(text: &str) -> Result<u32, String> {
     typed::unsigned::<u16>(text)
         .map(u32::from)
-        .ok_or_else(|| format!("'{text}' is no number from 0 to 65535, as in 4 or 0xF5"))
+        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, as in 4 or 0xF5"))
 }
 
 /// What an attribute holds.

@@ -35,7 +35,7 @@ struct Span(usize, usize);
 fn tasks(text: &str) -> Result<Span, String> {
     let number = |text: &str| match text.parse() {
         Ok(number @ 1..=16) => Ok(number),
-        _ => Err(format!("'{text}' is no task; there are 1 to 16")),
+        _ => Err(format!("'{text}' is not a valid task; there are 1 to 16")),
     };
     let tasks = typed::range(text, number)?;
     Ok(Span(*tasks.start(), *tasks.end()))

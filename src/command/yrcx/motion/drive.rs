@@ -200,7 +200,7 @@ mod tests {
         for (line, part) in [
             ("drive --axis 1,2 --to 5", "axes: 2 named; name exactly 1"),
             ("drive --axis 5 --to 5", "there are 1 to 4"),
-            ("drive --axis X --to 5", "'X' is no list"),
+            ("drive --axis X --to 5", "'X' is not a valid list"),
             ("drive --axis 1 --point 30000", "allowed: 0 to 29999"),
             ("drive --axis 1 --to 3000000", "target"),
             ("drivei --axis 1 --by 0.0001", "distance"),

@@ -172,7 +172,7 @@ mod tests {
             ("move --to 1=1,1=2", "axis 1 is named twice"),
             ("move --to 1=1,2", "some numbers name their axis"),
             ("move --to 1=1 --axes 1", "named twice, by --axes"),
-            ("move --to 5=1", "'5' is no axis"),
+            ("move --to 5=1", "'5' is not a valid axis"),
             ("move --to 1.0005,2,3,4", "axis_1"),
             ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
             ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),

@@ -44,7 +44,7 @@ impl Board {
     /// A line without a robot.
     pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
         let profibus: &Profibus =
-            bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is no URL of PROFIBUS")))?;
+            bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
         Ok(Self { profibus: profibus.clone(), label: line.to_owned(), tap })
     }
 

@@ -36,7 +36,7 @@ const LISTEN: Duration = Duration::from_secs(3);
 
 /// What the URL says.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profibus, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of PROFIBUS", at.bus))))
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFIBUS", at.bus))))
 }
 
 /// Opens the adapter, again and again.

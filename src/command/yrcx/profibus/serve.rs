@@ -40,7 +40,7 @@ pub struct ServeArgs {
 
 fn ident(text: &str) -> Result<u16, String> {
     let digits = text.strip_prefix("0x").unwrap_or(text);
-    u16::from_str_radix(digits, 16).map_err(|_| format!("'{text}' is no ident number such as 0x1234"))
+    u16::from_str_radix(digits, 16).map_err(|_| format!("'{text}' is not a valid ident number, such as 0x1234"))
 }
 
 fn rate(text: &str) -> Result<Rate, String> {

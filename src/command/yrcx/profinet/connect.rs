@@ -46,7 +46,7 @@ pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -
 
 /// What the URL says.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profinet, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is no URL of PROFINET", at.bus))))
+    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFINET", at.bus))))
 }
 
 /// The settings of the link. Whoever only looks now and then needs no images in shorter intervals than `calm`.

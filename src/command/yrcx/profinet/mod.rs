@@ -40,7 +40,10 @@ const NO_UNIT: &str = "the station is that of the whole controller";
 
 /// The station of a robot, before anybody is asked.
 fn station_of(robot: &Robot) -> Result<Station, Failure> {
-    let other = || Failure::usage(format!("{} is on another fieldbus than {}", robot.label(), SCHEME.bus));
+    let other = || {
+        Failure::usage(format!("{} is on another fieldbus than {}", robot.label(), SCHEME.bus))
+            .hint("name the station: -t profinet://NAME@INTERFACE")
+    };
     match endpoint(robot)? {
         Endpoint::Bus(bus, _) => {
             bus.options().map(|options: &crate::settings::target::profinet::Profinet| options.station.clone())

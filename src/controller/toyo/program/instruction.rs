@@ -132,7 +132,7 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(Target::Number(number)),
         Ok(_) | Err(FieldError::Form { .. }) => {
-            Err(format!("{}: '{}' is no tag (001 to 999) and no label", field.name, shown(text)))
+            Err(format!("{}: '{}' is not a valid tag (001 to 999) and no label", field.name, shown(text)))
         }
         Err(error) => Err(error.to_string()),
     }

@@ -118,7 +118,7 @@ impl Reader<'_> {
         let text = cursor.word();
         let steps = self.read.steps.len();
         let Ok(number) = text.parse::<usize>() else {
-            self.findings.error(at, format!("'{}' is no step number", shown(text)), None);
+            self.findings.error(at, format!("'{}' is not a valid step number", shown(text)), None);
             return;
         };
         let is_first = self.first.is_none();
@@ -144,7 +144,7 @@ impl Reader<'_> {
         };
         let step = self.read.steps.len();
         if !is_label(name) {
-            let message = format!("'{}' is no label", shown(name));
+            let message = format!("'{}' is not a valid label", shown(name));
             let hint = "a label begins with a letter, and has letters, digits, _ and - in it";
             self.findings.error(at, message, Some(hint.to_owned()));
             return;

@@ -116,13 +116,13 @@ fn mistakes_are_told_with_their_place_and_what_was_meant() {
             "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (it is written JMP TAG=<tag>)",
         ),
         ("JMP TAG=7", "line 1, column 9: error: there is no tag 007 in the program (a controller stops with error A1)"),
-        ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is no tag (001 to 999) and no label"),
+        ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is not a valid tag (001 to 999) and no label"),
         ("JMP TAG=1000", "line 1, column 9: error: tag: 1000 is out of range (a number, 1 to 999)"),
         ("pick: JMP TAG=pikc", "line 1, column 15: error: there is no label 'pikc' (did you mean pick?)"),
-        ("1st: NOP", "line 1, column 1: error: '1st:' is no step number"),
+        ("1st: NOP", "line 1, column 1: error: '1st:' is not a valid step number"),
         (
             "to do: NOP",
-            "line 1, column 1: error: 'to do' is no label \
+            "line 1, column 1: error: 'to do' is not a valid label \
              (a label begins with a letter, and has letters, digits, _ and - in it)",
         ),
         ("a=1000: JMP TAG=a", "line 1, column 1: error: the tag of label a is a number, 1 to 999"),
@@ -230,7 +230,7 @@ fn bytes_that_are_no_text_are_told() {
         (b"NO\xE9", "line 1, column 3: error: byte E9 is not UTF-8 (save the file as UTF-8)"),
         (
             b"NOP\nE\0N\0D\0",
-            "line 2, column 2: error: there is a NUL; the rest is not read (this is no text file, or one in UTF-16: save it as UTF-8)",
+            "line 2, column 2: error: there is a NUL; the rest is not read (this is not a text file, or one in UTF-16: save it as UTF-8)",
         ),
         (b"\xFF\xFEE\0", "line 1, column 1: error: the file is UTF-16 (save it as UTF-8)"),
         (b"\xEF\xBB\xBFEND", "line 1, column 1: note: the file begins with a byte order mark, which is passed over"),

@@ -81,7 +81,7 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> 
             bus(world, form)
         }
         Command::Ehtr => history(world, fields.number("number")),
-        other => return Err(format!("{other:?} is no question")),
+        other => return Err(format!("{other:?} is not a question")),
     };
     Ok(Reply::Data(form, values))
 }

@@ -36,7 +36,7 @@ pub enum PositionTextError {
     #[error("a position begins with its kind and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
     NoKind,
     /// Not a kind this variable has.
-    #[error("'{found}' is no kind of position here; there are {allowed}")]
+    #[error("'{found}' is not a valid kind of position here; there are {allowed}")]
     Kind {
         /// What was given.
         found: String,
@@ -50,7 +50,7 @@ pub enum PositionTextError {
         found: String,
     },
     /// Not a key of this kind.
-    #[error("'{found}' is no part of this position; there are {allowed}")]
+    #[error("'{found}' is not a part of this position; there are {allowed}")]
     Key {
         /// What was given.
         found: String,

@@ -115,7 +115,7 @@ fn io(world: &mut World, signal: &str, on: bool) -> Result<String, String> {
     let known = u16::try_from(number / 10).ok().and_then(|instance| io_class(world.model, instance));
     Err(match known {
         Some(class) => format!("#{number:05}: {} signals end in 0 to 7", class.meaning),
-        None => format!("#{number:05} is no signal of this controller"),
+        None => format!("#{number:05} is not a signal of this controller"),
     })
 }
 

@@ -352,18 +352,18 @@ fn build(
 
 fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     source.each_of(&entries.variables, |name, value| {
-        let (kind, index) = Kind::parse(name).ok_or_else(|| format!("'{name}' is no variable"))?;
+        let (kind, index) = Kind::parse(name).ok_or_else(|| format!("'{name}' is not a valid variable"))?;
         let bytes = element(kind, value).map_err(|what| format!("{name}: {what}"))?;
         world.memory.store(kind, index, &bytes);
         Ok(())
     })?;
     source.each_of(&entries.registers, |name, value| {
         let written = name.parse().is_ok_and(|number| world.memory.force_register(number, *value));
-        if written { Ok(()) } else { Err(format!("'{name}' is no register (0 to 999)")) }
+        if written { Ok(()) } else { Err(format!("'{name}' is not a valid register (0 to 999)")) }
     })?;
     source.each_of(&entries.io, |name, on| {
         let written = name.parse().is_ok_and(|number| world.memory.set_signal(number, *on));
-        if written { Ok(()) } else { Err(format!("'{name}' is no signal of this model")) }
+        if written { Ok(()) } else { Err(format!("'{name}' is not a signal of this model")) }
     })
 }
 
@@ -443,7 +443,7 @@ fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
     let mut groups = Vec::<Group>::new();
     source.each(&entries.groups, |name| {
         let group = Group::parse(name, axes).filter(|group| group.number <= most(group.family));
-        let group = group.ok_or_else(|| format!("'{name}' is no group of this model"))?;
+        let group = group.ok_or_else(|| format!("'{name}' is not a group of this model"))?;
         if groups.iter().any(|other| other.name() == group.name()) {
             return Err(format!("{} is listed twice", group.name()));
         }
@@ -522,7 +522,7 @@ fn file(
 ) -> Result<(), String> {
     let name = sjis(&entry.name);
     if check_stored_name(&name).is_err() {
-        return Err(format!("'{}' is no file name a controller has", entry.name));
+        return Err(format!("'{}' is not a file name a controller has", entry.name));
     }
     let content = match (&entry.text, &entry.path, entry.size) {
         (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),

@@ -120,7 +120,9 @@ pub fn explain(result: Status) -> Explanation {
 
 /// A text that is no code.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("'{text}' is no code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060")]
+#[error(
+    "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060"
+)]
 pub struct NoCode {
     /// What was given.
     pub text: String,

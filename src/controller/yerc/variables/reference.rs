@@ -129,7 +129,7 @@ pub enum ReferenceError {
         found: String,
     },
     /// A range whose ends do not go together.
-    #[error("'{found}' is no range; both ends name the same kind, the lower one first")]
+    #[error("'{found}' is not a valid range; both ends name the same kind, the lower one first")]
     Range {
         /// What was given.
         found: String,

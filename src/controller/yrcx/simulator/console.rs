@@ -38,7 +38,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
         ["power"] => world.power_cycle(),
         ["obstacle", axis, "off"] => find_axis(world, axis)?.obstacle = None,
         ["obstacle", axis, place] => {
-            let place = place.parse::<i32>().map_err(|_| format!("'{place}' is no number of pulses"))?;
+            let place = place.parse::<i32>().map_err(|_| format!("'{place}' is not a number of pulses"))?;
             find_axis(world, axis)?.obstacle = Some(place.into());
         }
         ["load", axis, load] => {
@@ -81,7 +81,7 @@ fn find_axis<'a>(world: &'a mut World, text: &str) -> Result<&'a mut Axis, Strin
     let place = numbers.and_then(|(robot, axis)| Some((index(robot)?, index(axis)?)));
     place
         .and_then(|(robot, axis)| world.robots.get_mut(robot)?.axes.get_mut(axis))
-        .ok_or_else(|| format!("'{text}' is no axis such as R1A3"))
+        .ok_or_else(|| format!("'{text}' is not a valid axis, such as R1A3"))
 }
 
 fn summary(world: &World) -> String {

@@ -56,7 +56,7 @@ impl Program {
     pub(super) fn parse(name: &str, text: &str) -> Result<Self, String> {
         let named = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_';
         if name.is_empty() || name.len() > 32 || !name.bytes().all(named) {
-            return Err(format!("'{name}' is no program name (A-Z, 0-9 and _)"));
+            return Err(format!("'{name}' is not a valid program name (A-Z, 0-9 and _)"));
         }
         let mut program = Self { name: name.to_owned(), lines: Vec::new(), labels: BTreeMap::new() };
         for (number, line) in text.lines().enumerate() {

@@ -23,7 +23,7 @@ impl Request {
     /// Reads WI0 to WI15.
     pub(super) fn read(words: &Words) -> Result<Self, Fault> {
         let row = Row::from_word(words[0]).ok_or_else(|| {
-            Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("WI0: {:#06X} is no command", words[0]))
+            Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("WI0: {:#06X} is not a valid command", words[0]))
         })?;
         let mut values = Values::default();
         let mut used: Words = [0; COMMAND_WORDS];
@@ -146,7 +146,7 @@ fn read(field: &Field, words: &Words) -> Result<Value, String> {
     let value = field.read(words);
     match value {
         Value::Int(number) => number_is_allowed(field, number)?,
-        Value::Real(number) if !number.is_finite() => return Err(format!("{number} is no number")),
+        Value::Real(number) if !number.is_finite() => return Err(format!("{number} is not a number")),
         Value::Real(_) | Value::Text(_) => {}
     }
     Ok(value)

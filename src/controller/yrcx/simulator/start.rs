@@ -493,6 +493,6 @@ fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
     match field.map(|field| field.parse(text)) {
         Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' does not fit")),
         Some(Err(what)) => Err(what),
-        _ => Err(format!("'{text}' is no value")),
+        _ => Err(format!("'{text}' is not a valid value")),
     }
 }

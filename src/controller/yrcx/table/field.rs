@@ -325,7 +325,7 @@ impl Field {
                     _ => Ok(()),
                 }
             }
-            (Value::Real(number), _) if !number.is_finite() => Err(format!("{number} is no number to send")),
+            (Value::Real(number), _) if !number.is_finite() => Err(format!("{number} is not a number to send")),
             (Value::Text(text), Form::Text(charset)) => charset.accept(text),
             _ => Ok(()),
         }
@@ -402,13 +402,13 @@ impl Field {
                         Some(Value::Int(first + i32::from(index)))
                     })
                     .map_or_else(
-                        || whole(text).map_err(|_| format!("'{text}' is no variable; {}", self.allowed())),
+                        || whole(text).map_err(|_| format!("'{text}' is not a valid variable; {}", self.allowed())),
                         Ok,
                     ),
                 Show::Fixed(_) | Show::Digits => whole(text),
             },
             Form::Short(unit) | Form::Long(unit) => number(unit),
-            Form::Real => text.parse().map(Value::Real).map_err(|_| format!("'{text}' is no number")),
+            Form::Real => text.parse().map(Value::Real).map_err(|_| format!("'{text}' is not a number")),
             Form::Text(_) => Ok(Value::Text(text.to_owned())),
         }
     }
@@ -484,7 +484,9 @@ impl Charset {
 /// Why a text is no whole number without unit.
 fn plain(error: &UnitError) -> String {
     match error {
-        UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => format!("'{text}' is no whole number"),
+        UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => {
+            format!("'{text}' is not a whole number")
+        }
         UnitError::Range { text, lowest, highest, .. } => format!("{text} is out of range; {lowest} to {highest} fit"),
     }
 }
@@ -492,7 +494,8 @@ fn plain(error: &UnitError) -> String {
 /// A version such as `V1.08`.
 fn version(text: &str) -> Result<Value, String> {
     let digits = text.strip_prefix('V').unwrap_or(text).replacen('.', "", 1);
-    let number = u16::from_str_radix(&digits, 16).map_err(|_| format!("'{text}' is no version such as V1.08"))?;
+    let number =
+        u16::from_str_radix(&digits, 16).map_err(|_| format!("'{text}' is not a valid version, such as V1.08"))?;
     Ok(Value::from(number))
 }
 
@@ -505,7 +508,7 @@ fn set_of(text: &str) -> Result<Value, String> {
     for item in text.split(',') {
         match item.trim().parse::<u8>() {
             Ok(number @ 1..=16) => set |= 1 << (number - 1),
-            _ => return Err(format!("'{text}' is no list such as 1,3")),
+            _ => return Err(format!("'{text}' is not a valid list, such as 1,3")),
         }
     }
     Ok(Value::Int(set))

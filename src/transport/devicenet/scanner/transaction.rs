@@ -159,7 +159,7 @@ impl Requester {
             self.answered(answer)
         } else {
             self.current = None;
-            Some(Outcome::Senseless("it is no answer"))
+            Some(Outcome::Senseless("it is not an answer"))
         }
     }
 

@@ -142,5 +142,5 @@ async fn what_is_no_port_is_an_error() {
     let error = Connection::open(settings(), opener("/dev/there-is-no-such-port"), None).await.unwrap_err();
     assert_eq!(error.to_string(), "/dev/there-is-no-such-port: there is no such port");
     let error = Connection::open(settings(), opener("/dev/null"), None).await.unwrap_err();
-    assert_eq!(error.to_string(), "/dev/null: this is no serial port");
+    assert_eq!(error.to_string(), "/dev/null: this is not a serial port");
 }

@@ -105,7 +105,7 @@ fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> 
     let mut parameters: BTreeMap<u16, i32> = PARAMETERS.into();
     for (name, values) in &entry.parameters {
         let known = KNOWN_PARAMETERS.iter().find(|known| known.name == *name && known.per_axis);
-        let known = known.ok_or_else(|| format!("'{name}' is no parameter of an axis"))?;
+        let known = known.ok_or_else(|| format!("'{name}' is not a valid parameter of an axis"))?;
         let Some(value) = values.get(number) else { continue };
         if !(known.span.0..=known.span.1).contains(value) {
             return Err(format!("{name} is {} to {}", known.span.0, known.span.1));
@@ -172,7 +172,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
         Ok(())
     })?;
     source.each_of(&entries.variables, |name, number| {
-        let variable = variable(name).ok_or_else(|| format!("'{name}' is no variable"))?;
+        let variable = variable(name).ok_or_else(|| format!("'{name}' is not a valid variable"))?;
         let value = match *number {
             Number::Whole(value) => value.into(),
             Number::Real(value) => value,
@@ -181,7 +181,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
     })?;
     source.each_of(&entries.ports, |name, value| {
         let assigned = assigned(&format!("{name}={value}"));
-        let (port, value) = assigned.ok_or_else(|| format!("'{name}' is no port or signal"))?;
+        let (port, value) = assigned.ok_or_else(|| format!("'{name}' is not a valid port or signal"))?;
         world.memory.set_output(port, value);
         Ok(())
     })?;
@@ -259,7 +259,7 @@ fn alarm(entry: &AlarmEntry) -> Result<Entry, String> {
         "C1O1" => Some(AlarmSource::Slot),
         other => other_place(other),
     };
-    Ok((alarm, place.ok_or_else(|| format!("'{}' is no place such as C1O1 or R1A3", entry.place))?))
+    Ok((alarm, place.ok_or_else(|| format!("'{}' is not a valid place, such as C1O1 or R1A3", entry.place))?))
 }
 
 fn other_place(text: &str) -> Option<AlarmSource> {

@@ -120,10 +120,10 @@ fn the_example_names_every_key() {
         ("[[robot]]\nhand = 7", "line 1: hand 7 is not defined for robot 1"),
         ("[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]\n[[robot]]", "line 5: there are 4 robots at most"),
         ("slots = { 1 = [\"Profinet\", \"none\", \"none\", \"none\"] }", "line 1: 'Profinet' is unknown"),
-        ("variables = { SGX1 = 1 }", "line 1: 'SGX1' is no variable"),
-        ("ports = { \"DO(28)\" = 1 }", "line 1: 'DO(28)' is no port"),
+        ("variables = { SGX1 = 1 }", "line 1: 'SGX1' is not a valid variable"),
+        ("ports = { \"DO(28)\" = 1 }", "line 1: 'DO(28)' is not a valid port"),
         ("[[task]]\nnumber = 1\nprogram = 77", "line 1: there is no program 77"),
-        ("[latest_remote]\nalarm = \"2\"", "line 1: '2' is no alarm number"),
+        ("[latest_remote]\nalarm = \"2\"", "line 1: '2' is not a valid alarm number"),
     ] {
         let found = Start::parse(text).unwrap_err();
         assert!(found.starts_with(error), "{text}: {found}");
