@@ -24,6 +24,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     println!("point 1: {}", point.written());
 
     // The host is switched ON for it, and OFF again at the end.
+    robot.ask(&jog("RS", None)).await?;
     robot.ask(&jog("+C", Some(0))).await?;
     while robot.place().await?.number("x") == Some(0) {
         tokio::time::sleep(Duration::from_millis(20)).await;

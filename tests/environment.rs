@@ -140,7 +140,8 @@ fn colour_is_for_terminals_that_can() {
     let folder = tempfile::tempdir().unwrap();
     let shown = |line: &str, variables: &[(&str, &str)]| {
         let mut command = armctl(line, folder.path());
-        command.envs(variables.iter().copied());
+        // What is long waits in a pager for somebody to read it.
+        command.env("PAGER", "cat").envs(variables.iter().copied());
         Terminal::new(80).run(command)
     };
     for line in ["--sim status", "--sim yerc job select NONE", "yerc -h", "-r none status"] {
@@ -224,7 +225,7 @@ fn a_link_with_the_name_of_a_family_is_its_subcommand() {
         let run = |arguments: &[&str]| Command::new(&link).args(arguments).env("HOME", folder.path()).output().unwrap();
         let whole = armctl(&format!("--sim {family} status"), folder.path()).output().unwrap();
         assert_eq!(stdout(&run(&["--sim", "status"])), stdout(&whole), "{family}");
-        assert!(stdout(&run(&["-h"])).contains(&format!("Usage: armctl {family} [OPTIONS] ")), "{family}");
+        assert!(stdout(&run(&["-h"])).contains(&format!("Usage: armctl {family} ")), "{family}");
         let version = format!("armctl {}\n", env!("CARGO_PKG_VERSION"));
         assert_eq!(stdout(&run(&["-V"])), version);
         assert_eq!(run(&["bogus"]).status.code(), Some(2), "{family}");

@@ -122,7 +122,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
 
 /// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
 /// simulators' servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 40] = [
+const LINKS: [&str; 41] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",

@@ -113,7 +113,7 @@ fn still_open(label: &str, error: &AttachError) -> Failure {
 
 impl Report for Closed {
     fn view(&self) -> View {
-        let mut table = Table::new(&["robot", "family", "target", "became"], "no session was open");
+        let mut table = Table::new(&["robot", "family", "target", "result"], "no session was open");
         for session in &self.sessions {
             table.row([
                 session.robot.as_str().into(),
