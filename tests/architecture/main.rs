@@ -5,6 +5,7 @@
 mod circles;
 mod contract;
 mod generated;
+mod loopback;
 mod source;
 
 use source::{Source, committed, has_word, root, sources};

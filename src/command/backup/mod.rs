@@ -76,7 +76,7 @@ pub struct Restoring {
     pub force: bool,
 }
 
-/// What became of a file or part.
+/// Result of a file or part.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Item {
     /// Its name on the controller, or the name of the part: `TESTJOB.JBI`, `points-1`.
@@ -199,7 +199,7 @@ pub fn gravity(kind: Kind) -> u8 {
     }
 }
 
-/// What became of each file or part, in the order of working.
+/// Result of each file or part, in the order of working.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Items {
     /// Each of them.

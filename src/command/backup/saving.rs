@@ -128,7 +128,7 @@ impl<C: About> Saving<'_, C> {
         self.list.entry(name)
     }
 
-    /// What became of each part so far.
+    /// Result of each part so far.
     pub fn items(&self) -> &[Item] {
         &self.items
     }

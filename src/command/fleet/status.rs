@@ -1,4 +1,4 @@
-//! `armctl status`: one line a robot, of whichever family.
+//! `armctl status`: one line per robot, of whichever family.
 
 use clap::Args;
 

@@ -58,7 +58,7 @@ pub enum Start {
 
 impl Report for Opened {
     fn view(&self) -> View {
-        let log = self.log.as_ref().map(|log| format!("; what happens stands in {log}")).unwrap_or_default();
+        let log = self.log.as_ref().map(|log| format!("; log: {log}")).unwrap_or_default();
         View::text(format!("{} ({}): held by process {}{log}", self.robot, self.target, self.pid))
     }
 }

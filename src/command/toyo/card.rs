@@ -91,7 +91,7 @@ async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> 
     Ok(Transferred { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
 }
 
-/// What became of a transfer.
+/// Result of a transfer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Transferred {
     /// The controller took the order.

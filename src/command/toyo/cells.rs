@@ -26,7 +26,7 @@ pub struct Cell {
     pub wanted: Record,
 }
 
-/// What became of cells.
+/// Result of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Cells {
     /// Written and read back.

@@ -100,7 +100,7 @@ impl Report for Present {
 /// The errors of the past (TO 2-8, EHTR; KCA-20 and KCA-25).
 #[derive(Debug, Args)]
 pub struct History {
-    /// At most so many entries
+    /// At most N entries
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(i32).range(1..=99))]
     limit: i32,
 }

@@ -69,7 +69,7 @@ impl Command for Home {
     }
 }
 
-/// What became of a return to the origin.
+/// Result of a return to the origin.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Homed {
     /// The controller took the order.

@@ -16,7 +16,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, Tone};
 
-/// What became of one question of several.
+/// Result of one question of several.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Item<T> {

@@ -427,7 +427,7 @@ impl Live {
     }
 }
 
-/// What became of a jog.
+/// Result of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jogged {
     /// Its letter: `X`, `Y`, `Z` or `R`.

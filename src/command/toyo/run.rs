@@ -234,7 +234,7 @@ fn after(failure: &Failure) -> Failure {
     Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` tell how it stands")
 }
 
-/// What became of a start.
+/// Result of a start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
     /// The controller took the order.

@@ -36,7 +36,7 @@ pub struct Serve {
     /// Axes of the robot
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     axes: Option<u8>,
-    /// Let characters take as long as on a line of so many bits a second, such as 9600; at once unless given
+    /// Let characters take as long as on a line of N bits a second, such as 9600; at once unless given
     #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
     baud: Option<u32>,
     /// Start state (TOML): modes, memory, inputs, errors, timed events

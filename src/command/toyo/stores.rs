@@ -167,7 +167,7 @@ pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Optio
     format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
 }
 
-/// What became of one cell.
+/// Result of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {

@@ -112,7 +112,7 @@ pub struct History {
     /// The first entry of each list, 1 being the latest
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = within::<u8>(1, 100))]
     from: u8,
-    /// At most so many entries of each list
+    /// At most N entries of each list
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = within::<u8>(1, 100))]
     limit: u8,
     /// Ask for codes and names only, as older controllers know them (0x71 instead of 0x30B)

@@ -395,7 +395,7 @@ impl Watch {
     }
 }
 
-/// What became of a start.
+/// Result of a start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
     /// The controller took the order.

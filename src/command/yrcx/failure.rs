@@ -104,7 +104,7 @@ fn cut(label: &str, by: Cut) -> Failure {
     }
 }
 
-/// What became of what was stopped.
+/// Result of what was stopped.
 const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
 
 /// How a stop went.

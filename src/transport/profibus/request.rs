@@ -16,7 +16,7 @@ const REMEMBERED: usize = 4;
 /// Most characters of an answer.
 const LONGEST: usize = 255;
 
-/// What became of a request, or what was heard instead.
+/// Result of a request, or what was heard instead.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
     /// It was answered.

@@ -27,7 +27,7 @@ pub struct Close {
     force: bool,
 }
 
-/// What became of sessions.
+/// Result of sessions.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Closed {
     sessions: Vec<Session>,

@@ -129,7 +129,7 @@ impl FromStr for Parts {
     }
 }
 
-/// What became of a part.
+/// Result of a part.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PartResult {
     /// `parameters`, `points-1`, `palletizing-03`.

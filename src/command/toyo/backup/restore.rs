@@ -451,7 +451,7 @@ fn settle(result: &mut PartResult, outcome: Result<(Cells, Vec<LeftOut>), Failur
     }
 }
 
-/// What became of a backup.
+/// Result of a backup.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Restored {
     /// In the order of writing.

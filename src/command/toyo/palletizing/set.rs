@@ -100,7 +100,7 @@ fn from_file(file: &Path) -> Result<Vec<Filled>, Failure> {
     Ok(records)
 }
 
-/// What became of records of a program.
+/// Result of records of a program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
     /// 1 to 16.

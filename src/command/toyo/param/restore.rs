@@ -154,7 +154,7 @@ pub fn store(setting: &Setting) -> Result<Store, Failure> {
     Ok(Store { is_optional, ..Store::new(key_text((setting.parameter, setting.row())), cell) })
 }
 
-/// What became of the parameters of a file.
+/// Result of the parameters of a file.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Restored {
     file: String,

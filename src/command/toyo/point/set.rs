@@ -127,7 +127,7 @@ fn store(values: Vec<Value>) -> Result<Store, Failure> {
     Ok(Store::new(row.to_string(), cell))
 }
 
-/// What became of points.
+/// Result of points.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
     /// Whose points these are.

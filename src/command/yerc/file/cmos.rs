@@ -147,7 +147,7 @@ impl<'a> Waiting<'a> {
     }
 }
 
-/// What became of the batch backup.
+/// Result of the batch backup.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BatchBackup {
     /// The local file; null if the backup was left on the controller.

@@ -1,4 +1,4 @@
-//! What became of each of several files.
+//! Result of each of several files.
 //!
 //! One file that fails is a failed command. Of several, each has its result, and the others go on after a refusal; the
 //! exit code is 9 where some were done, and otherwise that of the gravest failure.

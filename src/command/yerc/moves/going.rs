@@ -315,7 +315,7 @@ fn stands(one: &Position, other: &Position) -> bool {
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
 }
 
-/// What became of a motion.
+/// Result of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Moved {
     /// The controller took the order.

@@ -68,7 +68,7 @@ pub struct Label {
     pub line: usize,
 }
 
-/// What became of a text.
+/// Result of a text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
     /// The program, unless a finding is an error.

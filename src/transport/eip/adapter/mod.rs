@@ -94,7 +94,7 @@ pub trait Application: Send {
     fn event(&mut self, now: Now, event: &Event);
 }
 
-/// What became of a connection.
+/// Result of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
     /// It was opened.

@@ -63,7 +63,7 @@ impl Setting {
     pub const INSTANCE: Self = Self(2, 7);
     /// Blinks its light.
     pub const SIGNAL: Self = Self(5, 3);
-    /// What became of a setting that was set.
+    /// Result of a setting that was set.
     pub const RESPONSE: Self = Self(5, 4);
     /// Back to factory settings.
     pub const RESET: Self = Self(5, 6);
@@ -115,7 +115,7 @@ impl Block {
         Self::new(setting, &[&info.to_be_bytes(), value])
     }
 
-    /// What became of a setting that was set.
+    /// Result of a setting that was set.
     pub fn response(setting: Setting, error: u8) -> Self {
         Self::new(Setting::RESPONSE, &[&[setting.0, setting.1, error]])
     }
@@ -259,7 +259,7 @@ impl Dcp {
         Ok(station)
     }
 
-    /// What became of settings that were set, or could not be read: each with its error, 0 for none.
+    /// Result of settings that were set, or could not be read: each with its error, 0 for none.
     pub fn outcomes(&self) -> Vec<(Setting, u8)> {
         let responses = self.blocks.iter().filter(|block| block.setting == Setting::RESPONSE);
         responses

@@ -185,7 +185,7 @@ pub fn write_answer(outer: &Record, statuses: &[(Record, u32)]) -> Vec<u8> {
     outer.emit(BlockType::WRITE.answer(), 0, &inner)
 }
 
-/// What became of each record of a Write.
+/// Result of each record of a Write.
 ///
 /// # Errors
 /// When a block is cut short, or is another one.

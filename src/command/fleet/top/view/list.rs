@@ -1,4 +1,4 @@
-//! The list: a line a robot.
+//! The list: one line per robot.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};

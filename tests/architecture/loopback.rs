@@ -1,0 +1,41 @@
+//! No transcript sends a byte beyond this machine: a line with an address of elsewhere is a dry run, asks the
+//! simulator in its own process, works on files alone, or is refused before anything leaves.
+
+use std::fs;
+use std::net::Ipv4Addr;
+
+use super::source::root;
+
+/// Commands that ask no controller.
+const FILES_ALONE: [&str; 4] = ["robots add ", "robots list", "robots show ", "decode "];
+/// Exit codes of what was refused before it was sent: usage, and rejected by armctl.
+const NOT_SENT: [&str; 2] = ["? 2", "? 7"];
+
+#[test]
+fn transcripts_stay_on_this_machine() {
+    let mut wrong = Vec::new();
+    for entry in fs::read_dir(root().join("tests/cli")).expect("the transcripts are there") {
+        let path = entry.expect("a transcript").path();
+        let Some("console") = path.extension().and_then(|extension| extension.to_str()) else { continue };
+        let text = fs::read_to_string(&path).expect("a transcript is text");
+        for run in text.split("\n$ ").skip(1) {
+            let (line, said) = run.split_once('\n').unwrap_or((run, ""));
+            let is_harmless = line.contains("--dry-run")
+                || line.contains("-t 'sim:")
+                || FILES_ALONE.iter().any(|words| line.contains(words))
+                || said.lines().any(|line| NOT_SENT.contains(&line));
+            if is_elsewhere(line) && !is_harmless {
+                wrong.push(format!("{}: {line}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Whether a line names an address that is not this machine.
+fn is_elsewhere(line: &str) -> bool {
+    let words = line.split(|c: char| !c.is_ascii_digit() && c != '.');
+    words
+        .filter_map(|word| word.parse::<Ipv4Addr>().ok())
+        .any(|address| !address.is_loopback() && !address.is_unspecified())
+}
