@@ -44,14 +44,14 @@ pub fn everywhere(root: &Command) -> BTreeSet<&str> {
         .collect()
 }
 
-/// What can be typed, where that is too long for a line: what must be there stands on a second one.
+/// What can be typed, where that is too long for a line: what is its own stands on a second one.
 fn in_two_lines(usage: &StyledStr) -> Option<StyledStr> {
     const WIDTH: usize = 80;
     let is_long = usage.to_string().chars().count() > WIDTH;
     let styled = usage.ansi().to_string();
     let (_, typed) = styled.split_once("Usage:")?.1.split_once(' ')?;
-    let (before, needed) = typed.rsplit_once(" <--").filter(|_| is_long)?;
-    Some(format!("{before}\n       <--{needed}").into())
+    let (before, own) = typed.split_once("[OPTIONS] ").filter(|_| is_long)?;
+    Some(format!("{before}[OPTIONS]\n       {own}").into())
 }
 
 /// With examples and headings; in short without what it shares with all others, and without its notes.

@@ -42,7 +42,7 @@ pub struct Serve {
     /// Start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults on the line, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7
+    /// Faults on the line, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
     /// Take lines on stdin; `help` lists them

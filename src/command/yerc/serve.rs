@@ -39,7 +39,7 @@ pub struct Serve {
     /// Start state (TOML): modes, variables, jobs, files, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7
+    /// Faults on the line, such as drop=5%,dup=2%,delay=0..50ms,seed=7; also reorder, corrupt, busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
     /// Take lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`

@@ -89,7 +89,7 @@ fn inputs_come_when_they_should() {
     assert_eq!((&data["trace"][1]["time_s"], &data["trace"][2]["time_s"]), (&2.0.into(), &2.0.into()));
     assert_eq!(words(&desk.data(&["./a.txt", "--input", "0/01 00000100"])).len(), 4);
     assert!(objection(&["sim", "run", "a.txt", "--input", "at 2s 0/01/9 on"]).contains("a number from 1 to 8"));
-    assert!(objection(&["sim", "run", "a.txt", "--input", "at soon 0/01/1 on"]).contains("is no duration"));
+    assert!(objection(&["sim", "run", "a.txt", "--input", "at soon 0/01/1 on"]).contains("is not a valid duration"));
 }
 
 #[test]

@@ -207,12 +207,12 @@ mod tests {
     fn mistakes_are_named() {
         for (line, part) in [
             (&["eip", "get", "4"][..], "INSTANCE"),
-            (&["eip", "get", "x", "1", "1"], "no number from 0 to 65535"),
-            (&["eip", "get", "4", "65536", "1"], "no number from 0 to 65535"),
-            (&["eip", "get", "+4", "1", "1"], "no number"),
+            (&["eip", "get", "x", "1", "1"], "not a number from 0 to 65535"),
+            (&["eip", "get", "4", "65536", "1"], "not a number from 0 to 65535"),
+            (&["eip", "get", "+4", "1", "1"], "not a number"),
             (&["eip", "set", "4", "1", "3"], "HEX"),
-            (&["eip", "set", "4", "1", "3", "0"], "no row of bytes"),
-            (&["eip", "set", "4", "1", "3", ""], "no row of bytes"),
+            (&["eip", "set", "4", "1", "3", "0"], "not a valid row of bytes"),
+            (&["eip", "set", "4", "1", "3", ""], "not a valid row of bytes"),
         ] {
             let objection = objection(line);
             assert!(objection.contains(part), "{line:?}: {objection}");

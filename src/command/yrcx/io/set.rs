@@ -211,7 +211,7 @@ mod tests {
             (&["io", "set", "20"], "servo-on=on"),
             (&["io", "set", "20=maybe"], "there are on and off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
-            (&["io", "pulse", "cpu-ok"], "is no signal"),
+            (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
             (&["io", "set", "SOW2=5"], "the controller's to set"),
             (&["io", "set", "SIW1=5"], "belong to remote commands"),
             (&["io", "set", "SIW2=65536"], "does not fit SIW(2)"),

@@ -121,7 +121,9 @@ mod tests {
             assert_eq!(failure.kind, Kind::Usage, "{line}");
             assert!(failure.message.contains(part), "{line}: {failure}");
         }
-        for (time, told) in [("100", "not 100s"), ("0s", "not 0s"), ("1.5ms", "not 0.0015s"), ("a", "is no duration")] {
+        for (time, told) in
+            [("100", "not 100s"), ("0s", "not 0s"), ("1.5ms", "not 0.0015s"), ("a", "is not a valid duration")]
+        {
             let objection = objection(&["push", "--axis", "1", "--to", "1", "--time", time]);
             assert!(objection.contains(told), "{objection}");
         }
