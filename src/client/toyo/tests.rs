@@ -120,6 +120,7 @@ async fn a_watcher_is_told_what_is_changed_before_it_is_and_the_end_puts_it_back
 async fn a_jog_is_seen_to_move_and_to_stand() {
     let mut client = connected(Risk::Motion, "", None).await;
     let before = client.place().await.unwrap();
+    client.ask(&jog("RS", None)).await.unwrap();
     client.ask(&jog("+L", Some(0))).await.unwrap();
     assert_eq!(client.moving(), Some(Moving::Jog));
     tokio::time::sleep(Duration::from_secs(1)).await;

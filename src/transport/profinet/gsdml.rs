@@ -200,12 +200,14 @@ impl Head {
         if fits(&[]) {
             return Some(Vec::new());
         }
+        // Where a module always is there is no room for another one.
+        let is_taken = |slot: &u16| *slot == 0 || self.modules.iter().any(|module| module.fixed.contains(slot));
         let first = |fitting: &Fitting, other: Option<u16>| {
-            fitting.slots.iter().copied().find(|slot| *slot != 0 && Some(*slot) != other)
+            fitting.slots.iter().copied().find(|slot| !is_taken(slot) && Some(*slot) != other)
         };
         let mut choices = Vec::new();
         for fitting in &self.modules {
-            let Some(slot) = first(fitting, None).filter(|slot| !fitting.fixed.contains(slot)) else { continue };
+            let Some(slot) = first(fitting, None) else { continue };
             if fits(&[(slot, fitting)]) {
                 choices.push(vec![(slot, fitting)]);
             }

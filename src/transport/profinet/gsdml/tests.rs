@@ -103,10 +103,10 @@ fn mistakes_are_named_with_line_and_element() {
     let cases = [
         ("VendorID=\"0x0123\"", "", 3, "DeviceIdentity", "VendorID is missing"),
         ("DeviceID=\"77\"", "DeviceID=\"70000\"", 3, "DeviceIdentity", "above 65535"),
-        ("ModuleIdentNumber=\"0x40\"", "ModuleIdentNumber=\"x\"", 14, "ModuleItem", "no number: 'x'"),
+        ("ModuleIdentNumber=\"0x40\"", "ModuleIdentNumber=\"x\"", 14, "ModuleItem", "not a number: 'x'"),
         ("ModuleItemTarget=\"N\"", "ModuleItemTarget=\"Q\"", 8, "ModuleItemRef", "no ModuleItem 'Q'"),
         ("DataType=\"Unsigned16\"/", "DataType=\"Blob\"/", 16, "DataItem", "'Blob' is not known"),
-        ("PhysicalSlots=\"0..3\"", "PhysicalSlots=\"a..3\"", 5, "DeviceAccessPointItem", "no list of numbers"),
+        ("PhysicalSlots=\"0..3\"", "PhysicalSlots=\"a..3\"", 5, "DeviceAccessPointItem", "not a valid list of numbers"),
         ("FixedInSlots=\"1\"", "FixedInSlots=\"0..65535 0..65535\"", 8, "ModuleItemRef", "more than 4096"),
         ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "512 submodules are the most"),
         ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "are no bytes"),

@@ -199,12 +199,12 @@ fn mistakes_in_a_start_state_are_told_with_their_line() {
         ("\n\nspeed = 5", "line 3"),
         ("variables = { B0 = 256 }", "line 1: B0: the value must be 0 to 255"),
         ("variables = { Q0 = 1 }", "'Q0' is not a valid variable"),
-        ("\nio = { 10018 = true }", "line 2: '10018' is not a valid signal"),
+        ("\nio = { 10018 = true }", "line 2: '10018' is not a signal"),
         ("\n[[event]]\nat_ms = 0\ndo = 'alrm 1'", "no such line: 'alrm 1'"),
         ("[[file]]\nname = 'A.JBI'\ntext = 'x'", "'A.JBI' does not hold a job"),
         ("[[file]]\nname = 'A.DAT'\npath = 'nowhere'", "nowhere: no nowhere here"),
         ("job = 'NOBODY'", "there is no job 'NOBODY'"),
-        ("groups = ['R1', 'R9']", "'R9' is not a valid group"),
+        ("groups = ['R1', 'R9']", "'R9' is not a group"),
     ];
     for (text, expected) in cases {
         let error = Start::parse(text, |path| Err(format!("no {path} here"))).unwrap_err();
