@@ -57,7 +57,7 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> 
     catch_interrupts();
     let repl = Repl::new(globals, prefix)?;
     begin_trace(repl.globals.trace.as_deref().filter(|_| !repl.globals.dry_run))?;
-    if can_type() { Box::pin(repl.converse()).await } else { Box::pin(repl.script()).await }
+    if can_type() { Box::pin(repl.read_lines()).await } else { Box::pin(repl.script()).await }
 }
 
 /// What all lines have in common.
@@ -98,7 +98,7 @@ impl Repl {
     }
 
     /// Lines from a terminal.
-    async fn converse(mut self) -> Result<(), RunError> {
+    async fn read_lines(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
         let (manager, thread) = host::start(say)?;

@@ -90,11 +90,11 @@ async fn a_connection_is_rehearsed_without_opening_it() {
     let server = serve(setup());
     let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
     let right = Instances { output: 150, input: 100, configuration: Some(1) };
-    let found = probe::rehearse(&mut client, right).await.unwrap();
+    let found = probe::dry_run(&mut client, right).await.unwrap();
     let expected = Connectable { instances: right, output_size: Some(48), input_size: Some(48) };
     assert_eq!(found.connectable, Some(expected));
     let exchanged = Instances { output: 100, input: 150, ..right };
-    assert_eq!(probe::rehearse(&mut client, exchanged).await.unwrap().connectable, None);
+    assert_eq!(probe::dry_run(&mut client, exchanged).await.unwrap().connectable, None);
     let events = server.with(|adapter, _| adapter.application().events.len());
     assert_eq!(events, 0, "nothing was opened on the way");
     client.close().await;

@@ -23,7 +23,10 @@ impl Client {
             self.plan_fence();
             return Ok(());
         }
-        Box::pin(self.converse(&status_page(0))).await.map(|_| ()).map_err(|error| Error::NotSent(Box::new(error)))
+        Box::pin(self.transact_fenced(&status_page(0)))
+            .await
+            .map(|_| ())
+            .map_err(|error| Error::NotSent(Box::new(error)))
     }
 
     /// Notes it in a dry run. Behind an order that is sent or not, so is this.

@@ -233,7 +233,7 @@ impl Client {
             self.note(request, Reason::default());
             return if request.row().is_order() { Ok(Ok(done())) } else { Err(Error::NotKnown) };
         }
-        let record = match self.converse(request).await? {
+        let record = match self.transact_fenced(request).await? {
             Answer::Refused => return Ok(Err(Refusal(request.clone()))),
             Answer::Done => done(),
             Answer::Data(record) => record,
@@ -251,7 +251,7 @@ impl Client {
             self.fence().await?;
         }
         self.plan_all(std::slice::from_ref(request))?;
-        self.converse(request).await
+        self.transact_fenced(request).await
     }
 
     /// Sends a block that is in no table, and returns what came back. Nobody knows what it does, so it counts as a motion.
@@ -262,7 +262,7 @@ impl Client {
             self.note_text(block, Reason::default());
             return Err(Error::NotKnown);
         }
-        self.take_turn(Risk::Motion).await?;
+        self.acquire(Risk::Motion).await?;
         self.is_fenced = false;
         self.moves(Some(Moving::Program));
         self.session.begin_raw(block);
@@ -327,7 +327,7 @@ impl Client {
 
     /// Notices a silence at once, and asks nothing twice, until [`Client::stop`]: an axis will move until it is told to
     /// stop, and patience must not be in the way of that.
-    pub fn watch_closely(&mut self) {
+    pub fn use_short_timeouts(&mut self) {
         self.set_policy(Policy { timeout: SILENCE, retries: 0, ..self.usual });
     }
 
@@ -361,7 +361,7 @@ impl Client {
     }
 
     /// One request, one answer. Only what changes nothing is sent again after silence.
-    async fn converse(&mut self, request: &Request) -> Result<Answer, Error> {
+    async fn transact_fenced(&mut self, request: &Request) -> Result<Answer, Error> {
         self.authorize(request.risk(), &request.text())?;
         self.transact(request, request.risk() == Risk::Read).await
     }
@@ -371,7 +371,7 @@ impl Client {
         let risk = request.risk();
         request.check()?;
         self.revive(risk).await?;
-        self.take_turn(risk).await?;
+        self.acquire(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Motion {
             self.moves(Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program }));
@@ -399,7 +399,7 @@ impl Client {
 
     /// Where a session shares the line out: waits until it is this client's, until the end of the next [`Client::drive`].
     /// As long as this client moves the robot, no other does.
-    async fn take_turn(&mut self, risk: Risk) -> Result<(), Error> {
+    async fn acquire(&mut self, risk: Risk) -> Result<(), Error> {
         let Some(line) = self.transport.line() else { return Ok(()) };
         let until = Instant::now() + self.policy.timeout.max(self.usual.timeout);
         if risk == Risk::Motion {

@@ -81,7 +81,7 @@ impl Client {
     }
 
     /// Sends a stop at once if the line owes an answer, which [`Client::stop`] would wait for first.
-    pub async fn rush(&mut self, moving: Moving) {
+    pub async fn send_urgent(&mut self, moving: Moving) {
         if let Some(bytes) = self.session.urgent(self.started.elapsed(), &moving.stop()) {
             // A line that is broken fails again in the stop that follows.
             self.send(&bytes).await.unwrap_or_default();
@@ -120,7 +120,7 @@ impl Client {
 
     /// Orders the stop, then looks. That it was answered says little: only the robot itself tells that it stands.
     async fn try_stop(&mut self, moving: Moving, stop: &Request) -> Result<Attempt, Error> {
-        self.rush(moving).await;
+        self.send_urgent(moving).await;
         let answer = self.transact(stop, true).await?;
         let mut state = self.status_of(&[0]).await?;
         if moving == Moving::Program && (state.executing() || state.homing()) {

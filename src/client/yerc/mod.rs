@@ -200,7 +200,7 @@ impl Client {
 
     /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
-        self.admit(request).await?;
+        self.prepare(request).await?;
         self.transact(request, request.risk() == Risk::Read).await
     }
 
@@ -259,7 +259,7 @@ impl Client {
             self.plan_download(request, crate::Reason::default())?;
             return Err(Error::NotKnown.into());
         }
-        self.admit(request).await?;
+        self.prepare(request).await?;
         let mut session = Download::new(&request.into(), limit, self.policy, &self.ids);
         if let Some(wait) = first_wait {
             session = session.with_first_wait(wait);
@@ -300,7 +300,7 @@ impl Client {
             })?;
             return Err(Error::NotKnown.into());
         }
-        self.admit(request).await?;
+        self.prepare(request).await?;
         // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
         self.transport.renew(channel(Division::File));
         self.finished = None;
@@ -335,7 +335,7 @@ impl Client {
         let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
             return Ok(());
         };
-        self.take_turn(Division::File).await?;
+        self.acquire(Division::File).await?;
         let channel = channel(Division::File);
         let until = Instant::now() + self.policy.attempt;
         while Instant::now() < until
@@ -349,7 +349,7 @@ impl Client {
     }
 
     /// The last check before anything leaves; a dry run notes it instead, and has no answer.
-    async fn admit(&mut self, request: &Request) -> Result<(), Error> {
+    async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
         if self.is_dry() {
             self.plan_next(request)?;
@@ -391,7 +391,7 @@ impl Client {
         session: &mut S,
         serve: impl FnMut(Want<'_, S>) -> Result<(), E>,
     ) -> Result<S::Outcome, Cause<E>> {
-        self.take_turn(division).await?;
+        self.acquire(division).await?;
         let driven = self.drive_alone(division, session, serve).await;
         if let Some(session) = self.transport.session() {
             session.over();
@@ -399,7 +399,7 @@ impl Client {
         driven
     }
 
-    async fn take_turn(&mut self, division: Division) -> Result<(), Error> {
+    async fn acquire(&mut self, division: Division) -> Result<(), Error> {
         let Some(session) = self.transport.session() else { return Ok(()) };
         let until = Instant::now() + self.policy.deadline;
         session.take_for(transport::number(channel(division)), until).await.map_err(Error::Session)

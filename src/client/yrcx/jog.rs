@@ -37,7 +37,7 @@ impl Client {
     /// The jog was refused, ended by itself, or was not seen to end: the stop input stays off then. [`Error::Cut`] if
     /// something else ended it before its time.
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
-        self.admit(order.row().id, order.risk())?;
+        self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
             self.note(order, Reason::default());
             for procedure in [false, true].into_iter().filter_map(|on| Procedure::set(input::STOP, on)) {
@@ -90,7 +90,7 @@ impl Client {
         let mut mask = Image::default();
         input::STOP.set(&mut mask, true);
         let (mask, off) = (mask.to_bytes(), Image::default().to_bytes());
-        link.bequeath(on.then_some((&mask[..], &off[..])));
+        link.set_last_will(on.then_some((&mask[..], &off[..])));
     }
 
     /// Turns until the jog has gone on for its time, or has ended.

@@ -319,7 +319,7 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::NotAuthorized`].
-    pub fn permit(&self, what: &str, risk: Risk) -> Result<(), Error> {
+    pub fn authorize(&self, what: &str, risk: Risk) -> Result<(), Error> {
         Ok(self.granted.check(risk, what)?)
     }
 

@@ -70,7 +70,7 @@ impl Client {
 
     /// The same with the whole answer, good or bad.
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
-        self.admit(order.row().id, order.risk())?;
+        self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
             self.note(order, Reason::default());
             if order.risk() == Risk::Read {
@@ -82,7 +82,7 @@ impl Client {
         let until = Instant::now() + self.timeout;
         let mut repetitions = if order.risk() == Risk::Read { self.retries } else { 0 };
         loop {
-            let outcome = self.converse(order).await?;
+            let outcome = self.transact(order).await?;
             match outcome.ended {
                 Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && Instant::now() < until => repetitions -= 1,
                 _ => return self.reply(outcome),
@@ -102,7 +102,7 @@ impl Client {
         if self.is_dry() {
             return self.ask(order).await.map(Some);
         }
-        self.admit(order.row().id, order.risk())?;
+        self.authorize_command(order.row().id, order.risk())?;
         self.start(order).await?;
         loop {
             if let Some(outcome) = self.ended.take() {
@@ -116,7 +116,7 @@ impl Client {
     }
 
     /// One command, one answer.
-    async fn converse(&mut self, order: &Order) -> Result<Outcome, Error> {
+    async fn transact(&mut self, order: &Order) -> Result<Outcome, Error> {
         if order.row().pace == Pace::Jog {
             return Ok(self.see_through(order, None).await?.outcome);
         }
@@ -165,8 +165,8 @@ impl Client {
     }
 
     /// The check before something leaves, and whether this connection may command at all.
-    pub(super) fn admit(&self, name: &str, risk: Risk) -> Result<(), Error> {
-        self.permit(name, risk)?;
+    pub(super) fn authorize_command(&self, name: &str, risk: Risk) -> Result<(), Error> {
+        self.authorize(name, risk)?;
         if !self.is_owner && !self.is_dry() {
             return Err(Error::NotCommanding { what: name.to_owned() });
         }

@@ -19,7 +19,7 @@ impl Client {
     pub async fn next_output(&mut self, order: &Order) -> Result<Done, Error> {
         let is_under_way = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
         if self.is_dry() || !is_under_way {
-            self.admit(order.row().id, order.risk())?;
+            self.authorize_command(order.row().id, order.risk())?;
             if self.is_dry() {
                 return self.ask(order).await;
             }

@@ -53,14 +53,14 @@ impl Client {
     }
 
     /// Waits until nobody else gives a remote command.
-    pub(super) async fn take_turn(&mut self) -> Result<(), Error> {
+    pub(super) async fn acquire(&mut self) -> Result<(), Error> {
         self.is_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
         link.take(Instant::now() + self.timeout).await.map_err(Error::Session)
     }
 
     /// Lets others give a remote command once the last one has ended.
-    pub(super) fn give_turn(&mut self) {
+    pub(super) fn release(&mut self) {
         if std::mem::take(&mut self.is_over)
             && let Transport::Image(link) = &mut self.transport
         {
@@ -89,7 +89,7 @@ impl Client {
             match Status::from_word(seen[0]) {
                 Status::Running => {
                     self.is_over = true;
-                    self.give_turn();
+                    self.release();
                     return Err(Error::OthersUnderWay { words: Box::new(words) });
                 }
                 // It may not have been taken yet.

@@ -19,7 +19,7 @@ impl Client {
     /// [`Error::Unfinished`] if the controller did not confirm it.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Error> {
         if !procedure.only_awaits() {
-            self.admit(procedure.name, procedure.risk)?;
+            self.authorize_command(procedure.name, procedure.risk)?;
         }
         if self.is_dry() {
             self.note_steps(&procedure);

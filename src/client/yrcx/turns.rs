@@ -64,7 +64,7 @@ impl Client {
     /// Has the words of remote commands for itself: nothing is under way there.
     pub(super) async fn have_words(&mut self) -> Result<(), Error> {
         self.end_earlier().await?;
-        self.take_turn().await?;
+        self.acquire().await?;
         self.end_others().await
     }
 
@@ -196,7 +196,7 @@ impl Client {
         if !self.in_flight {
             let next = self.poll();
             self.show()?;
-            self.give_turn();
+            self.release();
             match next {
                 Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(LONG))),
                 // Something has ended, which somebody waits for.

@@ -16,7 +16,7 @@ impl Client {
     /// # Errors
     /// [`Error::WordsNotSent`] if they did not leave within the time-out.
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
-        self.admit("set-words", Risk::Write)?;
+        self.authorize_command("set-words", Risk::Write)?;
         if self.is_dry() {
             let mut words = self.output.next.command();
             for (register, value) in changes {
@@ -31,7 +31,7 @@ impl Client {
         self.have_words().await?;
         let shown = self.show_words(changes).await;
         self.is_over = true;
-        self.give_turn();
+        self.release();
         shown
     }
 

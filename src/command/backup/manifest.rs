@@ -286,7 +286,7 @@ pub fn earlier<C: About>(
 }
 
 /// Whether what a backup is of may be written to this robot: unless `force`, to the robot it is of, or to a simulator.
-pub fn admit(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(), Failure> {
+pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(), Failure> {
     let Manifest { family, robot: name, target, .. } = manifest;
     if *family != robot.family.name() {
         return Err(Failure::usage(format!(

@@ -90,7 +90,7 @@ impl Link {
         }
         let is_stored = self.holds(cell).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", cell.write.text(), failure.message);
-            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(cell.write.command()))
+            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(cell.write.command()))
         })?;
         if !is_stored {
             return Err(Failure::new(

@@ -68,7 +68,7 @@ impl Copy {
         link.ask(&order).await?;
         let found = ask_all(link, screen, "reading it back", &target).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
-            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
+            Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
         })?;
         if differences(&wanted, &found) > 0 {
             return Err(Failure::new(

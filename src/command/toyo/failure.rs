@@ -22,7 +22,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             about(kind, unanswered.to_string()).hint(silence(&unanswered))
         }
         Error::OutcomeUnknown(ref unanswered) => {
-            about(Kind::OutcomeUnknown, error.to_string()).hint(telltale(unanswered.request.as_ref()))
+            about(Kind::OutcomeUnknown, error.to_string()).hint(verification_hint(unanswered.request.as_ref()))
         }
         Error::CutShort(cause) => {
             let message = format!("{}; whether the order was carried out is unknown", failure(label, *cause).message);
@@ -75,8 +75,10 @@ fn silence(Unanswered { counters, unfitting, .. }: &Unanswered) -> &'static str 
 }
 
 /// What tells whether an order was carried out.
-fn telltale(request: Option<&Request>) -> &'static str {
-    request.map_or("`toyo status` tells how the controller stands", |request| refusal::telltale(request.command()))
+fn verification_hint(request: Option<&Request>) -> &'static str {
+    request.map_or("`toyo status` tells how the controller stands", |request| {
+        refusal::verification_hint(request.command())
+    })
 }
 
 /// That something was not put back by a block.

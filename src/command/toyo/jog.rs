@@ -223,7 +223,7 @@ impl Jog {
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
     async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Place) -> Result<u8, Cut> {
         let Some(time) = self.within else { return self.inch(link, live, axis, start).await };
-        link.watch_closely();
+        link.use_short_timeouts();
         let until = Instant::now() + time;
         let mut is_accepted = false;
         match timeout_at(until, self.hold(link, live, axis, until, &mut is_accepted)).await {

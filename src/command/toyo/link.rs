@@ -73,7 +73,7 @@ impl Family for Toyo {
     async fn halt(link: &mut Link) -> Result<String, Failure> {
         let Some(moving) = link.moving() else { return Ok("nothing was sent that moves the robot".to_owned()) };
         // Before anything is written: a terminal that is held must not hold the stop.
-        link.rush(moving).await;
+        link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
         let place = Place::of(&link.stop(moving).await?);
@@ -218,8 +218,8 @@ impl Link {
 
     /// Notices a silence at once, and keeps text about the traffic until [`Link::stop`]: neither patience nor a terminal that
     /// is held must be in the way of that.
-    pub fn watch_closely(&mut self) {
-        self.client.watch_closely();
+    pub fn use_short_timeouts(&mut self) {
+        self.client.use_short_timeouts();
         locked(&self.onlooker).trace.hold();
     }
 

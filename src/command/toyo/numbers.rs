@@ -73,7 +73,7 @@ pub async fn ask_all(
 pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
     link.ask(read).await.map_err(|failure| {
         let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
-        Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command()))
+        Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
     })
 }
 

@@ -137,7 +137,7 @@ fn unexplained(row: &Row) -> String {
 }
 
 /// What tells whether an order was carried out whose answer was lost.
-pub fn telltale(command: Command) -> &'static str {
+pub fn verification_hint(command: Command) -> &'static str {
     match command {
         Command::Home | Command::Sorg => {
             "keep clear; `toyo status` tells whether it moves, and whether the origin is done"

@@ -168,7 +168,7 @@ impl Accepted {
     fn lost(self, failure: Failure) -> Failure {
         let message = format!("{}, but its end was not seen: {}", self.done, failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint(format!("do not send it again: {}", refusal::telltale(self.order)))
+            .hint(format!("do not send it again: {}", refusal::verification_hint(self.order)))
     }
 }
 

@@ -26,13 +26,13 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::OutcomeUnknown { request, waited, counters } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             let what = format!("sent once, no answer within {waited:?}{seen}: it may or may not have been done");
-            about(Kind::OutcomeUnknown, what).hint(format!("ask before you repeat it: {}", telltale(&request)))
+            about(Kind::OutcomeUnknown, what).hint(format!("ask before you repeat it: {}", verification_hint(&request)))
         }
         Error::CutShort { request, cause } => {
             let cause = failure(label, *cause).message;
             let message = format!("{cause}; it was sent, and may or may not have been done");
             Failure::new(Kind::OutcomeUnknown, message)
-                .hint(format!("ask before you repeat it: {}", telltale(&request)))
+                .hint(format!("ask before you repeat it: {}", verification_hint(&request)))
         }
         Error::NotAuthorized(error) => error.into(),
         Error::Session(busy) => session_busy(label, &busy),
@@ -62,7 +62,7 @@ fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
 }
 
 /// What tells whether a request that changes something was carried out.
-fn telltale(request: &Request) -> &'static str {
+fn verification_hint(request: &Request) -> &'static str {
     match request.command {
         0 => "`yerc file list` tells what is there",
         0x78 | 0x300 => "`yerc io get` tells",

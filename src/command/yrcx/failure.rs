@@ -43,7 +43,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             };
             let id = command.row().id;
             let what = format!("{id} was sent, but whether it was carried out is unknown: {why}{held}");
-            about(Kind::OutcomeUnknown, &what).hint(telltale(command))
+            about(Kind::OutcomeUnknown, &what).hint(verification_hint(command))
         }
         Error::Unfinished { name, outcome } => unfinished(label, name, outcome),
         Error::Cut { by, order, ended } => {
@@ -156,7 +156,7 @@ fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
 }
 
 /// What tells whether an order was carried out whose answer was lost.
-fn telltale(command: Command) -> String {
+fn verification_hint(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
@@ -220,10 +220,10 @@ mod tests {
 
     #[test]
     fn what_changes_something_names_what_tells() {
-        assert_eq!(telltale(Command::PointAdd), "`yrcx point get` tells");
-        assert!(telltale(Command::MoveArch).contains("info position"));
-        assert!(telltale(Command::ProgramRun).contains("info tasks"));
-        assert!(telltale(Command::MotorOn).contains("motor power"));
-        assert!(telltale(Command::AlarmReset).contains("status"));
+        assert_eq!(verification_hint(Command::PointAdd), "`yrcx point get` tells");
+        assert!(verification_hint(Command::MoveArch).contains("info position"));
+        assert!(verification_hint(Command::ProgramRun).contains("info tasks"));
+        assert!(verification_hint(Command::MotorOn).contains("motor power"));
+        assert!(verification_hint(Command::AlarmReset).contains("status"));
     }
 }

@@ -320,8 +320,8 @@ impl Link {
     }
 
     /// The last check before something leaves.
-    pub fn permit(&self, name: &str, risk: Risk) -> Result<(), Failure> {
-        self.client.permit(name, risk).map_err(|error| self.failure(error))
+    pub fn authorize(&self, name: &str, risk: Risk) -> Result<(), Failure> {
+        self.client.authorize(name, risk).map_err(|error| self.failure(error))
     }
 
     /// What a controller raises when the link is lost.

@@ -128,7 +128,7 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
 ///
 /// # Errors
 /// Likewise.
-pub async fn rehearse(client: &mut Client, instances: Instances) -> Result<Findings, EipError> {
+pub async fn dry_run(client: &mut Client, instances: Instances) -> Result<Findings, EipError> {
     let mut assemblies = Vec::new();
     for instance in [instances.output, instances.input] {
         assemblies.extend(assembly(client, instance).await?);

@@ -194,9 +194,9 @@ impl ImageLink {
     }
 
     /// Has a session show these bits, mask and value, if this process dies; or no more. Without one, the link dies with it.
-    pub fn bequeath(&mut self, bits: Option<(&[u8], &[u8])>) {
+    pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         if let End::Session(attached) = &mut self.end {
-            attached.bequeath(bits);
+            attached.set_last_will(bits);
         }
     }
 

@@ -108,7 +108,7 @@ pub enum ProfinetError {
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Modules(
         /// What differs, at least one thing.
-        Vec<Misfit>,
+        Vec<ModuleMismatch>,
     ),
     /// The device took everything and never called ApplicationReady.
     #[error("the device did not get ready within {} s", after.as_secs())]
@@ -221,7 +221,7 @@ impl ProfinetError {
 
 /// A module that is not as the layout says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Misfit {
+pub struct ModuleMismatch {
     /// Its slot.
     pub slot: u16,
     /// The subslot, where the submodule is the one that differs.
@@ -232,7 +232,7 @@ pub struct Misfit {
     pub expected: Option<u32>,
 }
 
-impl fmt::Display for Misfit {
+impl fmt::Display for ModuleMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "slot {}", self.slot)?;
         let mut what = "module";

@@ -1,6 +1,6 @@
 //! Layouts to try on a device whose maker's file nobody has.
 
-use super::error::Misfit;
+use super::error::ModuleMismatch;
 use super::layout::{Layout, Submodule};
 use super::wire::record::RealModule;
 
@@ -47,13 +47,13 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
 const FIRST_PORT: u16 = 0x8000;
 
 /// The layout with what the device has where it differs, if it said so: what it has nothing for is left away.
-pub fn adjusted(layout: &Layout, misfits: &[Misfit]) -> Option<Layout> {
+pub fn adjusted(layout: &Layout, mismatches: &[ModuleMismatch]) -> Option<Layout> {
     let fitted = layout.submodules().iter().filter_map(|submodule| {
         let mut submodule = *submodule;
-        for misfit in misfits.iter().filter(|misfit| misfit.slot == submodule.slot) {
-            match misfit.subslot {
-                None => submodule.module = misfit.found?,
-                Some(subslot) if subslot == submodule.subslot => submodule.ident = misfit.found?,
+        for mismatch in mismatches.iter().filter(|mismatch| mismatch.slot == submodule.slot) {
+            match mismatch.subslot {
+                None => submodule.module = mismatch.found?,
+                Some(subslot) if subslot == submodule.subslot => submodule.ident = mismatch.found?,
                 Some(_) => {}
             }
         }
@@ -97,9 +97,9 @@ mod tests {
     #[test]
     fn what_a_device_says_it_has_is_taken() {
         let layout: Layout = "0:1,1:0x99:i48,2:0x102:o48,3:4".parse().unwrap();
-        let misfit = |slot, subslot, found| Misfit { slot, subslot, found, expected: None };
-        let told = [misfit(1, None, Some(0x40)), misfit(2, Some(1), Some(5)), misfit(3, None, None)];
+        let mismatch = |slot, subslot, found| ModuleMismatch { slot, subslot, found, expected: None };
+        let told = [mismatch(1, None, Some(0x40)), mismatch(2, Some(1), Some(5)), mismatch(3, None, None)];
         assert_eq!(adjusted(&layout, &told).unwrap().to_string(), "0:0x1,1:0x40:i48,2:0x102/0x5:o48");
-        assert_eq!(adjusted(&layout, &[misfit(1, None, Some(0x99))]), None, "nothing new");
+        assert_eq!(adjusted(&layout, &[mismatch(1, None, Some(0x99))]), None, "nothing new");
     }
 }

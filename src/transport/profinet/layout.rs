@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::error::Misfit;
+use super::error::ModuleMismatch;
 use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, Offset};
 
 /// Shortest data of a frame.
@@ -151,25 +151,25 @@ impl Layout {
     }
 
     /// What of a device's answer is not as it is here. Modules that do nothing here may differ.
-    pub fn misfits(&self, modules: &[ModuleDiff]) -> Vec<Misfit> {
-        let mut misfits = Vec::new();
+    pub fn mismatches(&self, modules: &[ModuleDiff]) -> Vec<ModuleMismatch> {
+        let mut mismatches = Vec::new();
         for module in modules {
             let expected = self.0.iter().find(|submodule| submodule.slot == module.slot);
             let expected = expected.map(|submodule| submodule.module);
             // A substitute does what is asked of it, and a proper module may have submodules that do not fit.
             if module.state < 2 {
                 let found = (module.state == 1).then_some(module.ident);
-                misfits.push(Misfit { slot: module.slot, subslot: None, found, expected });
+                mismatches.push(ModuleMismatch { slot: module.slot, subslot: None, found, expected });
                 continue;
             }
             for submodule in module.submodules.iter().filter(|submodule| !submodule.is_usable()) {
                 let expected = self.find(module.slot, submodule.subslot).map(|expected| expected.ident);
                 let (slot, subslot) = (module.slot, Some(submodule.subslot));
                 let found = (!submodule.is_missing()).then_some(submodule.ident);
-                misfits.push(Misfit { slot, subslot, found, expected });
+                mismatches.push(ModuleMismatch { slot, subslot, found, expected });
             }
         }
-        misfits
+        mismatches
     }
 
     /// The submodule at a place.

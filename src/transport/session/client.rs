@@ -442,7 +442,7 @@ impl Attached {
 
     /// Has the device shown these bits, mask and value, if this process dies; or no more. It counts from the next image
     /// that is shown on.
-    pub fn bequeath(&mut self, bits: Option<(&[u8], &[u8])>) {
+    pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         let Some(images) = &self.welcome.images else { return };
         let generation = images.generation;
         let will = bits.map(|(mask, value)| Change { generation, mask: mask.to_vec(), value: value.to_vec() });

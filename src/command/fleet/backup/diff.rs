@@ -100,7 +100,7 @@ impl Command for Diff {
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Differences, Failure> {
         let robot = context.robot;
         let old = Self::side(place(&self.old, robot, context.several))?;
-        manifest::admit(&old.manifest, robot, true)?;
+        manifest::check_origin(&old.manifest, robot, true)?;
         let temporary = tempfile::tempdir().context("a folder for a while")?;
         let folder = temporary.path().join("controller");
         let making = Making { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };

@@ -56,7 +56,7 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Fleet>) -> Result<Restored, Failure> {
         let robot = context.robot;
         let folder = place(&self.folder, robot, context.several);
-        manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
+        manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let only = Only(self.only.clone());
         let restoring = Restoring { folder, only, machine: self.machine, force: self.force };
         let (face, context) = opened(context)?;

@@ -101,7 +101,7 @@ impl Command for Restore {
         let folder = own_folder(&self.folder, &robot.name, several);
         let manifest: Manifest = manifest::existing(&folder)?;
         // Whether robot and address are those of the backup; the machine itself is asked later.
-        manifest::admit(&manifest::existing::<serde_json::Value>(&folder)?, robot, self.force)?;
+        manifest::check_origin(&manifest::existing::<serde_json::Value>(&folder)?, robot, self.force)?;
         let parts = self.chosen(&manifest)?;
         if self.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine is about the parameters, which are not among the parts")

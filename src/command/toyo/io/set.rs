@@ -149,7 +149,7 @@ impl Assignment {
         let Some(found) = found else {
             let message =
                 format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
-            return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::telltale(order.command())));
+            return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
         let mut output = Output::new(self, Some(&found));
         if found.byte() & self.mask.care != self.mask.bits {

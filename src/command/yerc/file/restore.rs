@@ -102,7 +102,7 @@ impl Command for Restore {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = own_folder(&self.folder, &robot.name, several);
-        manifest::admit(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
+        manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let manifest: Manifest = manifest::existing(&folder)?;
         let model = &manifest.controller.model;
         if *model != link.model.to_string() && !self.force {

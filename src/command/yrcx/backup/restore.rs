@@ -92,7 +92,7 @@ impl Command for Restore {
         if link.is_dry() {
             return dry_run(link, &jobs);
         }
-        self.admit(link, &manifest.controller).await?;
+        self.check_origin(link, &manifest.controller).await?;
         let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
         let mut found = Found::default();
         let total = jobs.len();
@@ -115,7 +115,7 @@ impl Command for Restore {
 
 impl Restore {
     /// Whether the backup may be written to this controller, and now.
-    async fn admit(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
+    async fn check_origin(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
         let image = link.look().await?;
         if output::PROGRAM_RUNNING.is_on(&image) {
             return Err(Failure::new(Kind::Rejected, "the robot program runs, and may use what would be written")

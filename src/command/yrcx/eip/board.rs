@@ -118,9 +118,9 @@ impl Board {
     }
 
     /// Whether a connection as the URL says could be opened, without opening one; likewise.
-    pub async fn rehearse(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
+    pub async fn dry_run(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
-        let found = probe::rehearse(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
+        let found = probe::dry_run(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
     }
 

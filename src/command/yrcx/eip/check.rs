@@ -33,7 +33,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         }
         None => layers.warn("identity", "it does not say who it is", "check the address"),
     }
-    let owned = match board.rehearse(identity.as_ref()).await {
+    let owned = match board.dry_run(identity.as_ref()).await {
         Err(failure) => {
             layers.fail("connection", &failure);
             identity.is_some_and(|identity| identity.owned)

@@ -46,7 +46,7 @@ impl Command for Get {
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
-        context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
+        context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         let bytes = board_of(context.link)?.get(object).await?;
         context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
@@ -98,8 +98,8 @@ impl Command for Set {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
-        context.link.rehearse_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
-        context.link.permit("yrcx.eip.set", self.risk())?;
+        context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
+        context.link.authorize("yrcx.eip.set", self.risk())?;
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))

@@ -39,7 +39,7 @@ impl Link {
     }
 
     /// In a dry run, notes a message, whose answer is not known then.
-    pub fn rehearse_frame(&mut self, frame: Json) -> Result<(), Failure> {
+    pub fn plan_frame(&mut self, frame: Json) -> Result<(), Failure> {
         self.client.plan_frame(frame, Reason::default());
         if self.client.is_dry() { Err(unknown()) } else { Ok(()) }
     }

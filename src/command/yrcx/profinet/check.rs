@@ -10,7 +10,7 @@ use crate::controller::yrcx::image::Image;
 use crate::failure::Failure;
 use crate::transport::image::{Event, ImageLink};
 use crate::transport::profinet::commission::Found;
-use crate::transport::profinet::error::{Misfit, ProfinetError};
+use crate::transport::profinet::error::{ModuleMismatch, ProfinetError};
 use crate::transport::profinet::layout::Layout;
 use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::frame::ETHER_TYPE;
@@ -97,11 +97,11 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
     let Some(settings) = settings else { return Ok(()) };
     match identity.modules {
         Ok(real) => {
-            let misfits = misfits(&settings.layout, &real);
-            if misfits.is_empty() {
+            let mismatches = mismatches(&settings.layout, &real);
+            if mismatches.is_empty() {
                 layers.ok("modules", format!("as the target says: {}", settings.layout));
             } else {
-                layers.fail("modules", &board.failure(ProfinetError::Modules(misfits)));
+                layers.fail("modules", &board.failure(ProfinetError::Modules(mismatches)));
             }
         }
         Err(error) => {
@@ -118,12 +118,12 @@ fn listed(modules: &[RealModule]) -> String {
 }
 
 /// What of the real modules is not as in the layout.
-fn misfits(layout: &Layout, real: &[RealModule]) -> Vec<Misfit> {
+fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     let expected = layout.expected();
     let differs = expected.iter().filter_map(|module| {
         let found = real.iter().find(|real| real.slot == module.slot).map(|real| real.ident);
         let expected = Some(module.ident);
-        (found != expected).then_some(Misfit { slot: module.slot, subslot: None, found, expected })
+        (found != expected).then_some(ModuleMismatch { slot: module.slot, subslot: None, found, expected })
     });
     differs.collect()
 }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::station::Station;
-use super::{NO_UNIT, board_of, rehearse_search};
+use super::{NO_UNIT, board_of, plan_search};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::Failure;
@@ -21,14 +21,11 @@ impl Command for Identify {
     type Family = Yrcx;
     type Report = Identified;
     const ID: &'static str = "yrcx.profinet.identify";
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
         context.link.no_unit(NO_UNIT)?;
-        rehearse_search(context.link, context.robot)?;
+        plan_search(context.link, context.robot)?;
         let found = board_of(context.link)?.station().await?;
         Ok(Identified { station: Station::from(&found) })
     }

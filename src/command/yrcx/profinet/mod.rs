@@ -54,10 +54,10 @@ fn station_of(robot: &Robot) -> Result<Station, Failure> {
 }
 
 /// In a dry run, notes the question for the station.
-fn rehearse_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
+fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
     let question = commission::looking_for(&station_of(robot)?, 0);
     let hex = text::hex(&commission::identify(Mac::default(), &question));
-    link.rehearse_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: which card the station has" }))
+    link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: which card the station has" }))
 }
 
 /// The frame that sets something, as far as it is known before anybody was asked.

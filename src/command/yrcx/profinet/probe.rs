@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::board::Board;
 use super::station::Station;
-use super::{NO_UNIT, board_of, connect, rehearse_search};
+use super::{NO_UNIT, board_of, connect, plan_search};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
@@ -39,18 +39,13 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = Probed;
     const ID: &'static str = "yrcx.profinet.probe";
+    const INTENT: &'static str =
+        "connect to the station with one layout after the other; the end of each connection stops the robot";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
         // The end of a connection stops the robot, though nothing here sets it in motion.
         if self.tries { Risk::Motion } else { Risk::Read }
-    }
-
-    fn intent(&self) -> String {
-        "connect to the station with one layout after the other; the end of each connection stops the robot".to_owned()
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
@@ -60,9 +55,9 @@ impl Command for Probe {
         if self.tries {
             link.then("a connection with each layout that is possible, until data flows with one");
         }
-        rehearse_search(link, robot)?;
+        plan_search(link, robot)?;
         if self.tries {
-            link.permit(Self::ID, self.risk())?;
+            link.authorize(Self::ID, self.risk())?;
         }
         let board: &Board = board_of(link)?;
         let found = board.station().await?;
@@ -103,8 +98,8 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
             continue;
         }
         let answer = board.attempt(&layout).await?;
-        if let Err(ProfinetError::Modules(misfits)) = &answer {
-            left.extend(guess::adjusted(&layout, misfits));
+        if let Err(ProfinetError::Modules(mismatches)) = &answer {
+            left.extend(guess::adjusted(&layout, mismatches));
         }
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),

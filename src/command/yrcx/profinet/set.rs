@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::Board;
-use super::{NO_UNIT, board_of, frame_for, rehearse_search, station_of};
+use super::{NO_UNIT, board_of, frame_for, plan_search, station_of};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::orders::Done;
 use crate::command::yrcx::link::Yrcx;
@@ -90,9 +90,9 @@ async fn set<C: Fn(&Found) -> Change>(
 ) -> Result<Found, Failure> {
     let Context { robot, link, authority, .. } = context;
     link.no_unit(NO_UNIT)?;
-    rehearse_search(link, robot).known()?;
+    plan_search(link, robot).known()?;
     let hex = frame_for(&station_of(robot)?, &task.block);
-    link.rehearse_frame(json!({ "hex": hex, "about": task.what }))?;
+    link.plan_frame(json!({ "hex": hex, "about": task.what }))?;
     let found = {
         let board: &Board = board_of(link)?;
         let found = board.station().await?;
@@ -100,7 +100,7 @@ async fn set<C: Fn(&Found) -> Change>(
         found
     };
     authority.confirm(&(task.change)(&found)).await?;
-    link.permit(task.id, task.risk)?;
+    link.authorize(task.id, task.risk)?;
     board_of(link)?.set(&found, task.what, task.block, task.is_so).await
 }
 
@@ -117,18 +117,9 @@ impl Command for Blink {
     type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.profinet.blink";
-
-    fn risk(&self) -> Risk {
-        Risk::Write
-    }
-
-    fn intent(&self) -> String {
-        "make the light of the station blink".to_owned()
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const RISK: Risk = Risk::Write;
+    const INTENT: &'static str = "make the light of the station blink";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let task = Task {
@@ -148,6 +139,8 @@ impl Command for SetName {
     type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.profinet.set-name";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
         risk(self.temporary)
@@ -155,14 +148,6 @@ impl Command for SetName {
 
     fn intent(&self) -> String {
         format!("give the station the name '{}'{}", self.name, kept(self.temporary))
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
@@ -193,6 +178,8 @@ impl Command for SetIp {
     type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.profinet.set-ip";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
         risk(self.temporary)
@@ -200,14 +187,6 @@ impl Command for SetIp {
 
     fn intent(&self) -> String {
         format!("give the station the address {}{}", self.address.address, kept(self.temporary))
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
@@ -252,22 +231,10 @@ impl Command for Reset {
     type Family = Yrcx;
     type Report = Done;
     const ID: &'static str = "yrcx.profinet.reset";
-
-    fn risk(&self) -> Risk {
-        Risk::Destroy
-    }
-
-    fn intent(&self) -> String {
-        "make the station forget its name and its address".to_owned()
-    }
-
-    fn confirmation(&self) -> Confirmation {
-        Confirmation::WhenKnown
-    }
-
-    fn connect_mode(&self) -> ConnectMode {
-        ConnectMode::Explicit
-    }
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "make the station forget its name and its address";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         let change = |found: &Found| {

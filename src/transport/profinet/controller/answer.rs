@@ -3,7 +3,7 @@
 use std::net::SocketAddrV4;
 
 use super::super::Now;
-use super::super::error::{Misfit, ProfinetError};
+use super::super::error::{ModuleMismatch, ProfinetError};
 use super::super::settings::Startup;
 use super::super::wire::block::{self, BlockType, Control};
 use super::super::wire::connect::{ModuleDiff, Response};
@@ -76,9 +76,9 @@ impl Controller {
                 Response::Iocr { kind: 2, frame_id, .. } => output = Some(*frame_id),
                 Response::AlarmCr { reference, .. } => alarm = Some(*reference),
                 Response::ModuleDiff(modules) => {
-                    let misfits = self.settings.layout.misfits(modules);
-                    if !misfits.is_empty() {
-                        return Err(ProfinetError::Modules(misfits));
+                    let mismatches = self.settings.layout.mismatches(modules);
+                    if !mismatches.is_empty() {
+                        return Err(ProfinetError::Modules(mismatches));
                     }
                 }
                 _ => {}
@@ -166,10 +166,10 @@ impl Controller {
             Ok(Response::ModuleDiff(modules)) => Some(modules),
             _ => None,
         });
-        let misfits: Vec<Misfit> =
-            modules.flat_map(|modules: Vec<ModuleDiff>| self.settings.layout.misfits(&modules)).collect();
-        if !misfits.is_empty() {
-            return self.release(now, Some(ProfinetError::Modules(misfits)));
+        let mismatches: Vec<ModuleMismatch> =
+            modules.flat_map(|modules: Vec<ModuleDiff>| self.settings.layout.mismatches(&modules)).collect();
+        if !mismatches.is_empty() {
+            return self.release(now, Some(ProfinetError::Modules(mismatches)));
         }
         // It may come before the answer to PrmEnd, which then is not waited for.
         if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {

@@ -2,7 +2,7 @@
 
 use super::super::controller::view::State;
 use super::super::device::{Device, Event, Fault};
-use super::super::error::{Misfit, ProfinetError, Unusable};
+use super::super::error::{ModuleMismatch, ProfinetError, Unusable};
 use super::super::layout::Direction;
 use super::super::settings::{Settings, Startup, Station};
 use super::super::wire::Mac;
@@ -241,8 +241,8 @@ fn what_a_device_does_wrong_has_a_name() {
     let cases: [(Fault, Check); 10] = [
         (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady { .. })),
         (Fault::WrongModule, |why| {
-            let misfit = Misfit { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
-            *why == ProfinetError::Modules(vec![misfit])
+            let mismatch = ModuleMismatch { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x101) };
+            *why == ProfinetError::Modules(vec![mismatch])
         }),
         (Fault::Silent, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Missing, .. })),
         (Fault::BadProvider, |why| matches!(why, ProfinetError::NoData { missing: Unusable::Provider(1, 1), .. })),
@@ -263,8 +263,8 @@ fn what_a_device_does_wrong_has_a_name() {
         assert_eq!((view.generation, view.input), (0, None), "{fault:?} never is an image");
         assert!(world.shown.is_empty(), "{fault:?}");
     }
-    let misfit = Misfit { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x99) };
-    assert_eq!(misfit.to_string(), "slot 1 holds module 0x40, the layout says 0x99");
+    let mismatch = ModuleMismatch { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x99) };
+    assert_eq!(mismatch.to_string(), "slot 1 holds module 0x40, the layout says 0x99");
 }
 
 #[test]
