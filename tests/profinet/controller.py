@@ -1,8 +1,10 @@
 """A controller that others wrote (profinet-py), up to data: what it sends comes back, and it reads who the device is.
 
 It starts as controllers did before 2010, with frames of the older class; with "class2" behind the names, with those of
-today. With "yrcx" the device is a controller, and runs a remote command.
+today. With "yrcx" the device is a controller, and runs a remote command; with "time=SECONDS" it holds the connection for so
+long, and tells how it went: seconds until data flowed, from a cycle of 16 ms at 99 of 100 frames, of processors for 1,000 frames.
 """
+import socket
 import sys
 import time
 
@@ -12,6 +14,7 @@ from profinet.cyclic import CyclicController
 from profinet.util import ethernet_socket, get_mac, s2mac
 
 interface, name, *words = sys.argv[1:]
+begin = time.monotonic()
 if 'class2' in words:
     older = rpc.PNIOCRBlockReqHeader
 
@@ -47,6 +50,25 @@ def show(image, answered):
         time.sleep(0.01)
 
 
+def tell(connected, seconds):
+    """Holds the connection, and looks at its frames as they leave."""
+    looker = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.ntohs(3))
+    looker.bind((interface, 0))
+    looker.settimeout(0.1)
+    end, used, left = time.monotonic() + seconds, time.process_time(), []
+    while time.monotonic() < end:
+        try:
+            frame, address = looker.recvfrom(2048)
+        except TimeoutError:
+            continue
+        # Outgoing, and cyclic.
+        if address[2] == 4 and b'\x88\x92' in frame[12:18] and frame[-1:] is not None:
+            left.append(time.monotonic())
+    used = time.process_time() - used
+    off = sorted(abs(after - before - 0.016) for before, after in zip(left, left[1:]))
+    print('profinet-py figures', connected, off[(len(off) - 1) * 99 // 100], used * 1000 / max(len(left), 1))
+
+
 # SI(00) and SI(06): no emergency stop, no stop.
 image = bytearray(48)
 image[32] = 0x41
@@ -57,6 +79,10 @@ connection.application_ready()
 if 'yrcx' in words:
     # CPU OK; then 0x0501, the versions, until it is done; and ready again.
     show(image, lambda shown: shown[32] & 2)
+    connected = time.monotonic() - begin
+    seconds = [float(word[5:]) for word in words if word.startswith('time=')]
+    if seconds:
+        tell(connected, seconds[0])
     image[0:2] = b'\x01\x05'
     show(image, lambda shown: shown[0:2] == b'\x00\x02')
     image[0:2] = b'\x00\x00'
