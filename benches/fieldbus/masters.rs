@@ -81,7 +81,7 @@ impl Shared {
         ensure!(first > BEGUN, "no exchange came about");
         let start = Instant::now();
         let last = counted(&|_| start.elapsed() >= time);
-        Ok((last - first) as f64 / start.elapsed().as_secs_f64())
+        Ok(f64::from(u32::try_from(last - first)?) / start.elapsed().as_secs_f64())
     }
 }
 

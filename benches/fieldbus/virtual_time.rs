@@ -110,9 +110,9 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
         while let Some(passed) = bus.pass(now) {
             has_passed = true;
             if passed.from == 0 {
-                device.handle(now, &passed.frame)
+                device.handle(now, &passed.frame);
             } else {
-                scanner.handle(now, &passed.frame)
+                scanner.handle(now, &passed.frame);
             }
             if [0x42D, 0x3C5].contains(&passed.frame.id()) {
                 frames.push((passed.at, passed.frame));

@@ -37,6 +37,15 @@ pub fn faults(text: &str) -> Result<FaultSpec, String> {
     if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
 }
 
+/// The same where frames have a checksum, so that a damaged one does not arrive.
+pub fn faults_of_frames(text: &str, link: &str) -> Result<FaultSpec, String> {
+    let spec = faults(text)?;
+    if spec.corrupt.per_10_000() > 0 {
+        return Err(format!("corrupt is not for {link}, whose frames have a checksum"));
+    }
+    Ok(spec)
+}
+
 /// The faults and the mischief of a URL, each as its fieldbus reads it.
 pub fn wrongs<F, M>(
     sim: &Sim,

@@ -8,9 +8,11 @@ use crate::profibus::wire::{CHECKSUM, Parsed, START, Telegram};
 use crate::tap::LINKTYPE_PROFIBUS_DL;
 
 /// Longest line in hexadecimal.
-const MOST_LINE: usize = 1 << 20;
+const MOST_LINE: usize = 16 << 20;
 /// More than the longest telegram has: what is still no telegram then never becomes one.
 const MOST_TELEGRAM: usize = 512;
+/// Most noise that is kept.
+const MOST_NOISE: usize = 1 << 16;
 
 /// How a dump is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,28 +45,26 @@ pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_
             Form::Bytes => file.fill_buf().map(<[u8]>::to_vec).map_err(|_| UNREADABLE),
             Form::Hexadecimal => line(&mut file),
         };
-        let taken = match next {
-            Ok(taken) if taken.is_empty() => break,
-            Ok(taken) => taken,
+        let bytes = match (next, form) {
+            (Ok(taken), Form::Hexadecimal) => parse_hex(&String::from_utf8_lossy(&taken))
+                .map(|bytes| (taken.len(), bytes))
+                .map_err(|_| "a line is not in hexadecimal"),
+            (taken, _) => taken.map(|bytes| (bytes.len(), bytes)),
+        };
+        match bytes {
+            Ok((0, _)) => break,
+            Ok((len, bytes)) => {
+                if form == Form::Bytes {
+                    file.consume(len);
+                }
+                pieces.bytes.extend(bytes);
+                offset += len;
+            }
             Err(problem) => {
                 pieces.summary.damage = Some(Damage { offset, problem });
                 break;
             }
-        };
-        match form {
-            Form::Bytes => {
-                file.consume(taken.len());
-                pieces.bytes.extend(&taken);
-            }
-            Form::Hexadecimal => match parse_hex(&String::from_utf8_lossy(&taken)) {
-                Ok(bytes) => pieces.bytes.extend(bytes),
-                Err(_) => {
-                    pieces.summary.damage = Some(Damage { offset, problem: "a line is not in hexadecimal" });
-                    break;
-                }
-            },
         }
-        offset += taken.len();
         pieces.take(false, &mut each);
     }
     pieces.take(true, &mut each);
@@ -88,7 +88,9 @@ fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
 #[derive(Debug, Default)]
 struct Pieces {
     bytes: Vec<u8>,
-    /// How many bytes at the beginning begin no telegram.
+    /// How many of them were handed on.
+    start: usize,
+    /// How many behind those begin no telegram.
     noise: usize,
     summary: Summary,
 }
@@ -97,13 +99,13 @@ impl Pieces {
     /// Hands on what is whole, and at the end the rest.
     fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
         loop {
-            let rest = &self.bytes[self.noise..];
+            let rest = &self.bytes[self.start + self.noise..];
             if rest.is_empty() {
                 break;
             }
             let len = match Telegram::parse(rest) {
                 Ok(Parsed::Whole(_, len)) => len,
-                Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => return,
+                Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
                 Ok(Parsed::Part(_)) => rest.len(),
                 // All of it, or what is inside would be taken for acknowledges and tokens, which have no check.
                 Err(error) if error.field == CHECKSUM => error.offset + 2,
@@ -116,8 +118,12 @@ impl Pieces {
             self.hand_on(len, each);
             self.noise = 0;
         }
-        self.hand_on(self.noise, each);
-        self.noise = 0;
+        if is_end || self.noise >= MOST_NOISE {
+            self.hand_on(self.noise, each);
+            self.noise = 0;
+        }
+        self.bytes.drain(..self.start);
+        self.start = 0;
     }
 
     /// Hands on so many bytes as one message.
@@ -127,9 +133,9 @@ impl Pieces {
         }
         self.summary.packets += 1;
         let carrier = Carrier::Frame { link_type: LINKTYPE_PROFIBUS_DL };
-        let (number, time, bytes) = (self.summary.packets, Duration::ZERO, &self.bytes[..len]);
+        let (number, time, bytes) = (self.summary.packets, Duration::ZERO, &self.bytes[self.start..self.start + len]);
         each(&Message { number, time, carrier, bytes, is_cut: false });
-        self.bytes.drain(..len);
+        self.start += len;
     }
 }
 

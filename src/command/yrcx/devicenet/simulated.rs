@@ -79,13 +79,7 @@ pub fn setup(mac: Mac, size: usize, bitrate: Bitrate) -> Setup {
 
 /// Faults of frames on their way.
 pub fn faults(text: &str) -> Result<FaultSpec, String> {
-    let spec = simulated::faults(text)?;
-    // A damaged frame is not one that arrives damaged: its checksum has it sent again.
-    if spec.corrupt.per_10_000() > 0 {
-        Err("corrupt is not for CAN, whose frames have a checksum".to_owned())
-    } else {
-        Ok(spec)
-    }
+    simulated::faults_of_frames(text, "CAN")
 }
 
 /// What a slave does wrong, by its name.

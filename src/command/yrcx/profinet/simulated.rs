@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults, start, wrongs};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults_of_frames, start, wrongs};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -22,7 +22,7 @@ const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// A network in this process with a simulator on it, with what the URL wants to go wrong.
 pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
-    let (faults, fault) = wrongs(sim, faults, fault)?;
+    let (faults, fault) = wrongs(sim, |text| faults_of_frames(text, "Ethernet"), fault)?;
     let controller = controller(start(sim.state.as_deref())?);
     let device = |mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
