@@ -123,7 +123,7 @@ const BORDERS: [(&str, &[&str]); 7] = [
 
 /// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
 /// simulators' servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 41] = [
+const LINKS: [&str; 42] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",
@@ -163,6 +163,7 @@ const LINKS: [&str; 41] = [
     "command/yrcx/link.rs",
     "command/yrcx/link/board.rs",
     "command/yrcx/link/onlooker.rs",
+    "command/yrcx/simulated.rs",
     "command/yrcx/testing.rs",
     "command/yrcx/trace.rs",
 ];

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 pub use self::capture::FrameDecoder;
 use crate::command::Report;
-use crate::command::decode::capture::{Input, Selection, file_among};
+use crate::command::decode::capture::{Input, Selection, file_among, parse_hex};
 use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
 use crate::controller::typed;
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
@@ -17,7 +17,6 @@ use crate::controller::yerc::table::service;
 use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
-use crate::transport::capture::parse_hex;
 
 /// Frames of the high-speed Ethernet server, as from a packet capture
 #[derive(Debug, Args)]

@@ -9,6 +9,7 @@ use tokio::time::Instant;
 
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
+use crate::command::decode::capture::parse_hex;
 use crate::command::decode::field_table;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -23,7 +24,6 @@ use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use crate::failure::Failure;
 use crate::output::view::{Cell, View};
-use crate::transport::capture::parse_hex;
 
 /// A request as it is.
 #[derive(Debug, Args)]

@@ -12,13 +12,12 @@ use serde::Serialize;
 pub use self::capture::ImageDecoder;
 use super::raw::words;
 use crate::command::Report;
-use crate::command::decode::capture::{Input, Selection};
+use crate::command::decode::capture::{Input, Selection, holds_telegram, parse_hex};
 use crate::command::decode::{self, field_table, in_parentheses, problem_lines, stdin_bytes};
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
-use crate::transport::capture::{holds_telegram, parse_hex};
 
 /// Words of YRCX remote commands and their answers
 #[derive(Debug, Args)]

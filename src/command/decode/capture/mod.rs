@@ -27,6 +27,7 @@ use crate::output::Format;
 use crate::output::busy::busy;
 use crate::output::envelope::ErrorBody;
 use crate::transport::capture::{Carrier, Message, OpenError, Summary, read};
+pub use crate::transport::capture::{holds_telegram, parse_hex};
 use crate::transport::tap::Direction;
 
 /// What of a capture file is shown.
