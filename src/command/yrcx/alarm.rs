@@ -5,8 +5,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::info::message::{Message, Past, rows};
 use super::info::AlarmReport;
+use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
 use crate::command::frame::dry_run::Reason;
 use crate::command::{Command, Context, Report, commands};
