@@ -1,5 +1,6 @@
 //! From the words of a command line to an exit code.
 
+mod assigned;
 mod batch;
 mod complete;
 mod flags;

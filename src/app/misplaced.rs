@@ -312,7 +312,7 @@ mod tests {
         for (line, expected) in [
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
-            ("armctl list alarm", "`armctl yerc alarm list`"),
+            ("armctl list alarm", "`armctl yerc alarm list` or `armctl yrcx alarm list` or `armctl toyo alarm list`"),
             ("armctl yerc job list", "`armctl yerc file list`"),
             ("armctl yerc file ls", "`armctl yerc file list`"),
             ("armctl yerc io read 1", "`armctl yerc io get`"),
@@ -338,7 +338,8 @@ mod tests {
     #[test]
     fn another_name_of_what_moves_is_no_more_proposed_than_its_own() {
         for line in ["armctl toyo origi", "armctl toyo hom", "armctl yrcx hom", "armctl yrcx origi"] {
-            assert_eq!(tip(line), None, "{line}");
+            let tip = tip(line).unwrap_or_default();
+            assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
         }
         let absent = tip("armctl yerc home").unwrap();
         assert!(

@@ -195,7 +195,10 @@ impl Screen {
         }
         let label = if failure.kind == Kind::Interrupted { "interrupted:" } else { "error:" };
         let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();
-        let hint = failure.hint.as_ref().map(|hint| format!("\n{} {}\n", self.paint_stderr("1;36", "hint:"), escape::lines(hint)));
+        let hint = failure
+            .hint
+            .as_ref()
+            .map(|hint| format!("\n{} {}\n", self.paint_stderr("1;36", "hint:"), escape::lines(hint)));
         let message = escape::lines(&failure.message);
         Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
     }

@@ -3,7 +3,7 @@
 /// Variables of the environment, and what each says.
 pub const VARIABLES: [(&str, &str); 13] = [
     ("ARMCTL_TARGET", "URL or address of the controller, as -t"),
-    ("ARMCTL_ROBOT", "robot of the inventory, as -r: a name or pattern, or several with commas"),
+    ("ARMCTL_ROBOT", "robots of the inventory, as -r: NAME, or NAME,NAME"),
     ("ARMCTL_CONFIG", "the inventory, as --config"),
     ("ARMCTL_OUTPUT", "how to print data, as -o: table, json, jsonl or csv"),
     ("ARMCTL_TIMEOUT", "longest wait for an answer, as --timeout"),
@@ -18,15 +18,16 @@ pub const VARIABLES: [(&str, &str); 13] = [
 ];
 
 /// What counts before and after them.
-pub const ORDER: &str = "Flags count before the environment, the environment before robots.toml. An empty variable is as none; \
-     a wrong value is an error that names it (exit code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error unless a flag \
-     names the robot. What moves, deletes or overwrites takes several robots by -r alone.";
+pub const ORDER: &str = "Flags count before the environment, the environment before robots.toml.
+An empty variable is as none; a wrong value is an error that names it (exit
+code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error unless a flag
+names the robot. What moves, deletes or overwrites takes several robots by -r
+alone.";
 
 /// The topic.
 pub fn text() -> String {
     let line = |(name, what): &(&str, &str)| format!("  {name:<16} {what}\n");
-    let order = ORDER.split(". ").map(|sentence| format!("{}.\n", sentence.trim_end_matches('.')));
-    format!("Environment\n\n{}\n{}", VARIABLES.iter().map(line).collect::<String>(), order.collect::<String>())
+    format!("Environment\n\n{}\n{ORDER}\n", VARIABLES.iter().map(line).collect::<String>())
 }
 
 #[cfg(test)]
@@ -43,6 +44,6 @@ mod tests {
         for name in named.into_iter().filter(|name| name.starts_with("ARMCTL_")) {
             assert!(VARIABLES.iter().any(|(known, _)| *known == name), "{name}");
         }
-        assert!(text().lines().all(|line| line.chars().count() <= 90), "{}", text());
+        assert!(text().lines().all(|line| line.chars().count() <= 80), "{}", text());
     }
 }

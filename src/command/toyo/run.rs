@@ -169,7 +169,8 @@ impl Command for Point {
 impl Point {
     /// Where the point is; nothing where the controller refuses to tell.
     async fn place(&self, link: &mut Link) -> Result<Option<Place>, Failure> {
-        let request = Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+        let request =
+            Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Place::of(&record)))
     }
 

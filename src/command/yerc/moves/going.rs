@@ -7,12 +7,12 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::question::{Question, moved_meanwhile};
-use crate::command::{Context, Report};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::yerc::link::{Link, Refusal, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
+use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};

@@ -20,12 +20,7 @@ struct Goal {
 
 /// Has a motion confirmed that `intent` says in a line. Where somebody is asked, it is read first where the robot is and
 /// where the point is that it goes to; that must be the same place after the answer.
-pub async fn confirm(
-    link: &mut Link,
-    authority: &Authority<'_>,
-    order: &Order,
-    intent: String,
-) -> Result<(), Failure> {
+pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<(), Failure> {
     let change = Change::new(intent);
     if !authority.asks() {
         return authority.confirm(&change).await;
