@@ -75,7 +75,14 @@ mod tests {
     ];
 
     /// Verbs that read something else: names, one program, the numbers of an object.
-    const NO_RANGES: [&str; 4] = ["toyo palletizing get", "toyo param get", "yrcx eip get", "yrcx param get"];
+    const NO_RANGES: [&str; 6] = [
+        "toyo palletizing get",
+        "toyo param get",
+        "toyo program get",
+        "yerc file get",
+        "yrcx eip get",
+        "yrcx param get",
+    ];
 
     /// Every verb that sets something, in the words of the contract.
     const SETTINGS: &[&str] = &[

@@ -63,7 +63,10 @@ impl Question<'_> {
         if let Some(base) = base_told(self.base.0, self.base.1) {
             change = change.item(format!("base: {} {base}", self.preposition));
         }
-        if self.how.is_empty() { change } else { change.note(format!("These are {}.", self.how.trim_end_matches(','))) }
+        match self.how.trim_end_matches(',').strip_prefix("in ") {
+            Some(how) => change.note(format!("In {how}.")),
+            None => change,
+        }
     }
 
     /// How long it takes at least, where the speed is one along the way.

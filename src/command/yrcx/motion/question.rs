@@ -25,7 +25,11 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     if !authority.asks() {
         return authority.confirm(&change).await;
     }
-    let Some(goal) = goal(link, order).await? else { return authority.confirm(&change).await };
+    let Some(goal) = goal(link, order).await? else {
+        let is_point = order.values().int(Key::Point).is_some();
+        let change = if is_point { change.note("Where the point is could not be read.") } else { change };
+        return authority.confirm(&change).await;
+    };
     let here = match goal.unit {
         Unit::Mm => Command::PositionMm,
         Unit::Pulse => Command::PositionPulse,
@@ -49,8 +53,10 @@ async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
         Some(Goal { unit, axes })
     };
     let point = match order.command() {
-        Command::MoveMm | Command::DriveMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
-        Command::MovePulse | Command::DrivePulse => return Ok(goal(Unit::Pulse, &|key| values.int(key))),
+        Command::MoveMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
+        Command::MovePulse => return Ok(goal(Unit::Pulse, &|key| values.int(key))),
+        Command::DriveMm => return Ok(goal(Unit::Mm, &|_| values.int(Key::Target))),
+        Command::DrivePulse => return Ok(goal(Unit::Pulse, &|_| values.int(Key::Target))),
         Command::MovePtp | Command::MoveLinear | Command::MoveArch | Command::DrivePoint => Key::Point,
         Command::MoveCircular => Key::Point2,
         _ => return Ok(None),
