@@ -103,7 +103,6 @@ mod tests {
         "yerc register set 5=1000",
         "yerc var set B0=255 R3=-2.5",
         "yrcx comment set 100='WAIT ORG'",
-        "yrcx eip set 0xF5 1 3=00",
         "yrcx hand-data set 1 data-1=100 data-2=50 data-3=10",
         "yrcx io set servo-on=on",
         "yrcx pallet-data set 10 nx=3 ny=2 first-point=100",
@@ -114,8 +113,9 @@ mod tests {
         "yrcx var set SGR1=-0.5",
     ];
 
-    /// Verbs that set the one thing they are about.
-    const NO_SETTINGS: [&str; 4] = ["toyo coordinate set", "toyo override set", "toyo task set", "yrcx clock set"];
+    /// Verbs that set the one thing they are about, or what has numbers and no name.
+    const NO_SETTINGS: [&str; 5] =
+        ["toyo coordinate set", "toyo override set", "toyo task set", "yrcx clock set", "yrcx eip set"];
 
     fn words(line: &str) -> Vec<OsString> {
         shlex::split(&format!("armctl {line}")).unwrap().into_iter().map(Into::into).collect()

@@ -7,7 +7,6 @@ use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArra
 use dialoguer::console::measure_text_width;
 
 use super::view::{Cell, Section, Table, Tone, View};
-use super::wrap::wrapped;
 use super::{busy, escape};
 
 /// The view as text of at most `width` columns.
@@ -87,8 +86,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
     let mut out = String::new();
     for (name, cell) in fields {
         let text = escape::line(&cell.text);
-        let text = broken(text, room, |word| may_break(word) && measure_text_width(word) > room);
-        let is_beside = text.split([' ', '\n']).all(|word| measure_text_width(word) <= room);
+        let is_beside = least(&text) <= room;
         let (indent, room) = if is_beside { (names + padding, room) } else { (INDENT, width.saturating_sub(INDENT)) };
         let name = if color {
             format!("\x1b[2m{name}\x1b[0m{:1$}", "", names - measure_text_width(name))
@@ -97,7 +95,7 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
         };
         let mut line =
             if is_beside { format!("{name}{:padding$}", "") } else { format!("{}\n{:INDENT$}", name.trim_end(), "") };
-        for (at, part) in wrapped(&text, room).lines().enumerate() {
+        for (at, part) in folded(&text, room).lines().enumerate() {
             if at > 0 {
                 line = format!("{:indent$}", "");
             }
@@ -161,10 +159,15 @@ impl Layout {
         }
     }
 
+    /// Blanks between columns.
+    fn gaps(&self) -> usize {
+        usize::from(PADDING) * self.columns.len().saturating_sub(1)
+    }
+
     /// The width below which it would break words.
     fn least(&self) -> usize {
-        self.columns.iter().map(|column| if column.is_whole { column.width } else { column.least }).sum::<usize>()
-            + usize::from(PADDING) * self.columns.len()
+        let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.least });
+        words.sum::<usize>() + self.gaps()
     }
 
     /// Gives columns that need less than their share what they need; the others share the rest, but none gets less than its
@@ -172,7 +175,9 @@ impl Layout {
     #[must_use]
     pub fn fit(mut self, width: u16) -> Self {
         self.width = width;
-        let room = usize::from(width).saturating_sub(usize::from(PADDING) * self.columns.len());
+        // The last column has blanks behind it, too, where there is room for them.
+        let room =
+            usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
         let at = |column: &Column, share: usize| match column.is_whole {
             true => column.width,
             false => column.width.min(share.max(column.least)),
@@ -224,18 +229,25 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
 /// Longest run of characters that keeps together where it may be broken at all.
 const WORD: usize = 16;
 
-/// Whether a word may be broken: one without end, a frame in hex, a text in a language without blanks.
+/// Whether a word may be broken anywhere: one without end, bytes and bits, a text in a language without blanks.
 fn may_break(word: &str) -> bool {
-    word.len() >= GIANT || !word.is_ascii() || word.bytes().all(|byte| byte.is_ascii_hexdigit())
+    let is_digit = |byte: u8| byte.is_ascii_hexdigit() || b"?_[]".contains(&byte);
+    word.len() >= GIANT || !word.is_ascii() || word.bytes().all(is_digit)
+}
+
+/// What of a word stays on a line: a list has its commas, an address is whole.
+fn pieces(word: &str) -> impl Iterator<Item = &str> {
+    let is_address = word.contains("://");
+    word.split_inclusive(move |c: char| c == ',' && !is_address)
 }
 
 /// The width of a text below which it would break words.
 fn least(text: &str) -> usize {
-    let of_word = |word: &str| {
-        let wide = measure_text_width(word);
-        if may_break(word) { wide.min(WORD) } else { wide }
+    let of_piece = |piece: &str| {
+        let wide = measure_text_width(piece);
+        if may_break(piece) { wide.min(WORD) } else { wide }
     };
-    text.split(' ').map(of_word).max().unwrap_or_default()
+    text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
 }
 
 /// The rows one below the other, each as a list of fields: for a terminal that is too narrow for columns.
@@ -247,43 +259,49 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-/// A word from which on it is broken here, because the layout takes a time for one that grows with its square.
+/// A word without end: to break it like others takes a time that grows with its square.
 const GIANT: usize = 4096;
 
-/// The text with each word that `is_long` in lines of `room` columns.
-fn broken<'t>(text: Cow<'t, str>, room: usize, is_long: impl Fn(&str) -> bool) -> Cow<'t, str> {
-    if !text.split(' ').any(&is_long) {
-        return text;
-    }
-    let mut broken = String::with_capacity(text.len() + text.len() / room + 1);
-    for (index, word) in text.split(' ').enumerate() {
-        if !is_long(word) {
-            if index > 0 && !broken.ends_with('\n') {
-                broken.push(' ');
-            }
-            broken.push_str(word);
-            continue;
-        }
-        let mut column = room;
-        for character in word.chars() {
-            let wide = if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
-            if column + wide > room {
-                if !broken.is_empty() {
-                    broken.push('\n');
-                }
+/// The text in lines of `room` columns, as far as its words allow.
+fn folded(text: &str, room: usize) -> String {
+    let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
+    let mut column = 0;
+    for (at, word) in text.split(' ').enumerate() {
+        let is_short = word.len() < GIANT && measure_text_width(word) <= room;
+        let whole = is_short.then_some(word);
+        let parts = pieces(word).filter(|_| !is_short);
+        for (part_at, part) in whole.into_iter().chain(parts).enumerate() {
+            let gap = usize::from(at > 0 && part_at == 0);
+            let wide = if part.len() < GIANT { measure_text_width(part) } else { usize::MAX / 2 };
+            if column > 0 && column + gap + wide > room {
+                out.push('\n');
                 column = 0;
+            } else if gap > 0 && (column > 0 || out.is_empty()) {
+                out.push(' ');
+                column += 1;
             }
-            column += wide;
-            broken.push(character);
+            if wide <= room || !may_break(part) {
+                out.push_str(part);
+                column += wide;
+                continue;
+            }
+            for character in part.chars() {
+                let wide =
+                    if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
+                if column + wide > room {
+                    out.push('\n');
+                    column = 0;
+                }
+                out.push(character);
+                column += wide;
+            }
         }
-        broken.push('\n');
     }
-    broken.truncate(broken.trim_end_matches('\n').len());
-    broken.into()
+    out
 }
 
 fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
-    let shown = comfy_table::Cell::new(broken(escape::line(&cell.text), room, |word| word.len() >= GIANT));
+    let shown = comfy_table::Cell::new(folded(&escape::line(&cell.text), room));
     let shown = match cell.tone {
         Tone::Plain => shown,
         Tone::Good => shown.fg(Color::Green),
@@ -447,6 +465,30 @@ mod tests {
     }
 
     #[test]
+    fn no_word_is_broken_at_any_width() {
+        let url = "profinet://cell-3@enp4s0?ip=192.168.1.5&cycle=16ms&watchdog=320ms&words=le&startup=advanced";
+        let list = "base:x=1000.000,y=0.000,z=1200.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=0,user=0,form=front";
+        let rows = [
+            ["TESTJOB-OF-THE-THIRD-CELL.JBI", "which synchronizes", "02:00:00:00:00:01 is up"],
+            ["short", "SYNCHRONIZING", url],
+            ["P2", list, "-"],
+        ];
+        let mut table = Table::new(&["name", "text", "where"], "");
+        rows.iter().for_each(|row| table.row(row.map(Cell::from)));
+        let fields = || rows.iter().flatten().map(|text| ("field", Cell::from(*text)));
+        for width in 40..200 {
+            for view in [View::table(table.clone()), View { sections: vec![Section::Fields(fields().collect())] }] {
+                let shown = text(&view, width, false);
+                for piece in rows.iter().flatten().flat_map(|cell| cell.split(' ')).flat_map(pieces) {
+                    assert!(shown.contains(piece), "{width}: {piece}\n{shown}");
+                }
+                let is_long = |line: &&str| line.len() > usize::from(width).max(url.len() + 2);
+                assert_eq!(shown.lines().find(is_long), None, "{width}:\n{shown}");
+            }
+        }
+    }
+
+    #[test]
     fn an_address_stays_on_a_line() {
         let mut table = Table::new(&["robot", "target", "what it says"], "");
         let url = "profinet://cell-3@enp4s0?ip=192.168.1.5";
@@ -462,9 +504,9 @@ mod tests {
         table.row(["weld1".into(), "play".into(), "stopped".into()]);
         table.row(["weld2".into(), "auto".into(), "running".into()]);
         let text = |width| text(&View::table(table.clone()), width, false);
-        assert_eq!(text(22), "ROBOT  MODE  STATE\nweld1  play  stopped\nweld2  auto  running\n");
+        assert_eq!(text(20), "ROBOT  MODE  STATE\nweld1  play  stopped\nweld2  auto  running\n");
         let list = "robot  weld1\nmode   play\nstate  stopped\n\nrobot  weld2\nmode   auto\nstate  running\n";
-        assert_eq!(text(21), list);
+        assert_eq!(text(19), list);
     }
 
     #[test]

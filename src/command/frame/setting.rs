@@ -12,10 +12,11 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Of a verb that sets something: the last two of its words, unless it takes `NAME=VALUE` itself.
+    /// Of a verb that sets something by a name and a value: the last two of its words. What takes `NAME=VALUE` itself has no
+    /// two, and four are coordinates, or the numbers of an object.
     pub fn of(verb: &Command) -> Option<Self> {
         let words: Vec<&Arg> = verb.get_positionals().collect();
-        let [.., _, value] = words[..] else { return None };
+        let ([_, value] | [_, _, value]) = words[..] else { return None };
         let is_list = value.get_num_args().is_some_and(|count| count.max_values() > 1)
             || matches!(value.get_action(), clap::ArgAction::Append);
         (verb.get_name() == "set").then_some(Self { name: words.len() - 2, is_list })

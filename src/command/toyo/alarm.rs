@@ -20,17 +20,17 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
-    /// Errors.
+    /// Alarms.
     pub enum Alarm {
-        /// Show the present error with cause and remedy
+        /// Show the present alarm with cause and remedy
         #[command(alias = "show")]
         List(List),
-        /// Error history, the latest first
+        /// Alarm history, the latest first
         History(History),
-        /// Cancel the error
+        /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
-        /// The point at which the error occurred
+        /// The point at which the alarm occurred
         Point(Point),
     }
 }
