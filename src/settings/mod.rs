@@ -2,6 +2,7 @@
 //!
 //! Flag > environment > robot > the file's `[defaults]` > built-in.
 
+pub mod document;
 pub mod duration;
 pub mod inventory;
 pub mod target;
@@ -116,6 +117,8 @@ pub struct Selection {
     pub sessions: Sessions,
     /// The family of a simulator where the command line does not tell it; `None` for the first one.
     pub simulated: Option<Family>,
+    /// Whether `--sim` means the simulators of all families where the command line does not tell one.
+    pub every_simulator: bool,
 }
 
 /// Which sessions commands go through.
@@ -135,13 +138,14 @@ pub enum Sessions {
 impl Selection {
     /// Whether nothing was said about robots.
     pub fn names_nobody(&self) -> bool {
-        let Self { sim, target, robots, tags, all, environment, sessions: _, simulated: _ } = self;
+        let Self { sim, target, robots, tags, all, environment, sessions: _, simulated: _, every_simulator: _ } = self;
         !(*sim || *all || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty())
     }
 
     /// Whether the command line can mean several robots, so that the answer is a list.
     pub fn is_plural(&self) -> bool {
         self.all
+            || self.sim && self.every_simulator
             || self.robots.len() > 1
             || !self.tags.is_empty()
             || self.robots.iter().any(|name| name.contains(['*', '?']))
@@ -169,7 +173,11 @@ impl Sources {
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         if selection.sim {
-            return Ok(vec![self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family)?]);
+            let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
+            if family.is_none() && selection.every_simulator {
+                return Family::ALL.into_iter().map(|family| simulator(Some(family))).collect();
+            }
+            return Ok(vec![simulator(family)?]);
         }
         if let Some(target) = &selection.target {
             return Ok(vec![self.unnamed(target, Origin::Flag, family)?]);
@@ -220,6 +228,11 @@ impl Sources {
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+    }
+
+    /// The robot at an address, with every setting in force.
+    pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
+        self.unnamed(&Given::Url(target.clone()), Origin::Flag, Some(family))
     }
 
     fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
