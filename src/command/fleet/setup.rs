@@ -44,9 +44,9 @@ impl Setup {
         run.screen
             .ask_note("Set up a robot. Enter takes what is in brackets; until the last answer nothing is written.");
         let Found { family, target } = reached(run).await.map_err(unanswered)?;
-        let robot = described(run, family, target).map_err(unanswered)?;
+        let robot = described(run, family, target).await.map_err(unanswered)?;
         run.screen.ask_note(&format!("\n[[robot]]\n{}", robot.table()));
-        if !run.screen.ask_yes(&format!("Write this to {path}?"), true).map_err(unanswered)? {
+        if !yes(run, format!("Write this to {path}?"), true).await.map_err(unanswered)? {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
         robot.add(run, "setup")?;
@@ -60,8 +60,32 @@ fn unanswered(failure: Failure) -> Failure {
     match failure.kind {
         Kind::Rejected => Failure::new(Kind::Rejected, "there was no answer; nothing was written")
             .hint("`armctl robots add NAME URL --read-only` does the same without questions"),
+        Kind::Interrupted => Failure { message: format!("{}; nothing was written", failure.message), ..failure },
         _ => failure,
     }
+}
+
+/// Asks on a thread of its own, so that Ctrl-C is heard meanwhile.
+async fn asked<T: Send + 'static>(
+    question: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let asked = interruptible(tokio::task::spawn_blocking(question)).await?;
+    asked.map_err(|error| Failure::local(format!("the question failed: {error}")))?
+}
+
+async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
+    let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
+    asked(move || screen.ask_line(&question, usual.as_deref())).await
+}
+
+async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
+    let screen = run.screen;
+    asked(move || screen.ask_choice(question, &options)).await
+}
+
+async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
+    let (screen, question) = (run.screen, question.into());
+    asked(move || screen.ask_yes(&question, usual)).await
 }
 
 /// An address whose check is good enough for whoever sits there.
@@ -73,7 +97,7 @@ async fn reached(run: &Run) -> Result<Found, Failure> {
                 return Ok(found);
             }
             let ways = ["check again", "another address", "go on all the same"];
-            match run.screen.ask_choice("Something is in the way. What now?", &ways.map(String::from))? {
+            match choice(run, "Something is in the way. What now?", ways.map(String::from).into()).await? {
                 0 => {}
                 1 => break,
                 _ => return Ok(found),
@@ -89,13 +113,13 @@ async fn address(run: &Run) -> Result<Found, Failure> {
         "nowhere yet: a simulator",
     ];
     loop {
-        let found = match run.screen.ask_choice("Where is the robot?", &ways.map(String::from))? {
-            0 => typed(run),
+        let found = match choice(run, "Where is the robot?", ways.map(String::from).into()).await? {
+            0 => typed(run).await,
             1 => match look(run).await? {
-                Some((given, family)) => complete(run, &given, family),
+                Some((given, family)) => complete(run, &given, family).await,
                 None => continue,
             },
-            _ => simulator(run),
+            _ => simulator(run).await,
         };
         match found {
             Err(failure) if failure.kind == Kind::Usage => run.screen.failure(&failure),
@@ -104,9 +128,9 @@ async fn address(run: &Run) -> Result<Found, Failure> {
     }
 }
 
-fn typed(run: &Run) -> Result<Found, Failure> {
-    let given = run.screen.ask_line("Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None)?;
-    complete(run, &given.parse()?, None)
+async fn typed(run: &Run) -> Result<Found, Failure> {
+    let given = line(run, "Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None).await?;
+    complete(run, &given.parse()?, None).await
 }
 
 /// One of those that can be found; `None` if it is not among them.
@@ -115,7 +139,7 @@ async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
     let mut places = found.places();
     let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
     let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
-    let at = run.screen.ask_choice("This was found:", &options)?;
+    let at = choice(run, "This was found:", options).await?;
     if at >= places.len() {
         return Ok(None);
     }
@@ -123,22 +147,22 @@ async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
     Ok(Some((target.parse()?, family.and_then(|family| family.parse().ok()))))
 }
 
-fn simulator(run: &Run) -> Result<Found, Failure> {
-    let family = family(run)?;
+async fn simulator(run: &Run) -> Result<Found, Failure> {
+    let family = family(run).await?;
     let question = format!("Address of one that `armctl sim {family}` serves, or sim: for one inside armctl");
-    let given: Given = run.screen.ask_line(&question, Some(families::of(family).simulator()))?.parse()?;
-    complete(run, &given, Some(family))
+    let given = line(run, question, Some(families::of(family).simulator())).await?;
+    complete(run, &given.parse()?, Some(family)).await
 }
 
 /// Asks for what an address does not tell.
-fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
+async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
     let told = match given {
         Given::Url(target) => target.family(),
         Given::Bare(_) => None,
     };
     let family = match known.or(told) {
         Some(family) => family,
-        None => family(run)?,
+        None => family(run).await?,
     };
     let mut target = given.of(Some(family))?;
     target.check(family).map_err(Failure::usage)?;
@@ -146,7 +170,8 @@ fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Fa
     // Simulators serve the first model unless they are told otherwise, and say the other one in their URL.
     if is_open && known.is_none() {
         let models = [Model::Dx200, Model::Fs100];
-        let at = run.screen.ask_choice("Which model is it?", &models.map(|model| model.name().to_uppercase()))?;
+        let names = models.map(|model| model.name().to_uppercase());
+        let at = choice(run, "Which model is it?", names.into()).await?;
         let url = target.url();
         let sign = if url.contains('?') { '&' } else { '?' };
         target = format!("{url}{sign}model={}", models[at.min(1)]).parse()?;
@@ -154,9 +179,9 @@ fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Fa
     Ok(Found { family, target })
 }
 
-fn family(run: &Run) -> Result<Family, Failure> {
+async fn family(run: &Run) -> Result<Family, Failure> {
     let titles = FAMILIES.map(|face| format!("{} ({})", face.title(), face.family()));
-    let at = run.screen.ask_choice("Which controller is it?", &titles)?;
+    let at = choice(run, "Which controller is it?", titles.into()).await?;
     FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
 }
 
@@ -172,26 +197,26 @@ async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
 }
 
 /// What it is called, and what it may be told.
-fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
+async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
     let free = (1_u32..).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
     screen.ask_note("");
     let name = loop {
-        let name = screen.ask_line("Name", free.as_deref())?;
+        let name = line(run, "Name", free.as_deref()).await?;
         match check_new(inventory, &name) {
             Ok(()) => break name,
             Err(failure) => screen.failure(&failure),
         }
     };
-    let read_only = screen.ask_yes("Read-only: take no command that changes something?", true)?;
+    let read_only = yes(run, "Read-only: take no command that changes something?", true).await?;
     let hold = family == Family::Yrcx
         && !read_only
-        && screen.ask_yes("Open a session by itself where a command needs the command connection (hold)?", false)?;
+        && yes(run, "Hold: open a session by itself where a command needs one?", false).await?;
     let is_default = match &inventory.default {
         // The first one is, without a question.
         None if inventory.robots.is_empty() => true,
-        None => screen.ask_yes("Take it when no robot is named (default)?", true)?,
-        Some(other) => screen.ask_yes(&format!("Take it when no robot is named, instead of {other}?"), false)?,
+        None => yes(run, "Take it when no robot is named (default)?", true).await?,
+        Some(other) => yes(run, format!("Take it when no robot is named, instead of {other}?"), false).await?,
     };
     Ok(NewRobot { name, target, family, read_only, hold, tags: Vec::new(), is_default })
 }
