@@ -84,7 +84,10 @@ impl PreparedCommand {
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
-            Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
+            Task::Common(Common::Status(_) | Common::Top(_)) => {
+                run.sources.widen();
+                run.sources.selection.every_simulator = true;
+            }
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
@@ -129,7 +132,9 @@ impl Task {
         match self {
             Self::Family(_, command) if command.driver().is_none() => Need::Nothing,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
+            Self::Common(Common::Robots(robots)) if robots.is_about_file() => Need::Names,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+            Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -178,6 +183,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
             (false, false) => Sessions::Shared,
         },
         simulated: None,
+        every_simulator: false,
     };
     let names = variable("ARMCTL_ROBOT", names)?;
     if let (Some(names), false) = (names, selection.has_flags()) {

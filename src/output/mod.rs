@@ -11,6 +11,7 @@ pub mod leave;
 mod pager;
 pub mod progress;
 pub mod prompt;
+mod question;
 pub mod redraw;
 pub mod render;
 pub mod view;
