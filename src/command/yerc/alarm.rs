@@ -216,7 +216,7 @@ fn may_be_unknown(status: Status) -> bool {
 }
 
 macro_rules! order {
-    ($(#[$doc:meta])* $name:ident, $id:literal, $query:expr, $done:literal) => {
+    ($(#[$doc:meta])* $name:ident, $id:literal, $query:expr, $set:literal = $new:literal, $done:literal) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
         pub struct $name {}
@@ -232,7 +232,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(Done::new($done))
+                Ok(Done::new($set, $new, $done))
             }
         }
     };
@@ -240,12 +240,12 @@ macro_rules! order {
 
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
-    Reset, "yerc.alarm.reset", query::ResetAlarm,
+    Reset, "yerc.alarm.reset", query::ResetAlarm, "alarm" = "reset",
     "alarm reset accepted; `yerc alarm list` shows what is left"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).
-    Cancel, "yerc.alarm.cancel", query::CancelError, "the error is cancelled"
+    Cancel, "yerc.alarm.cancel", query::CancelError, "error" = "cancelled", "the error is cancelled"
 }
 
 /// The alarms that are present, the latest first.

@@ -191,8 +191,14 @@ one_row! {
     done {
         let place = self.place.told();
         match self.place.bit {
-            Some(_) => format!("switched {place} {}", if self.value == 1 { "on" } else { "off" }),
-            None => format!("{place} = {} ({:08b})", self.value, self.value),
+            Some(_) => {
+                let words = format!("switched {place} {}", if self.value == 1 { "on" } else { "off" });
+                Done::new(place, self.value, words)
+            }
+            None => {
+                let words = format!("{place} = {} ({:08b})", self.value, self.value);
+                Done::new(place, self.value, words)
+            }
         }
     };
 }
@@ -226,11 +232,11 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         for (id, line, done) in [
-            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], "DO12 = 7 (00000111)"),
-            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], "switched DO2.1 on"),
+            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!({"set": "DO12", "old": null, "new": 7})),
+            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!({"set": "DO2.1", "old": null, "new": 1})),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            assert_eq!(read_example(id, &line)["done"], done);
+            assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
         assert_eq!(read["ports"], json!([{"port": "DO12", "ok": true, "value": 7, "bits": "00000111"}]));
