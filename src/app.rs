@@ -18,6 +18,7 @@ use std::process::ExitCode;
 
 use anyhow::Context as _;
 use clap::ValueEnum as _;
+use clap::builder::StyledStr;
 
 use self::parser::{Parser, Refusal};
 use self::prepared::{Invocation, PreparedCommand};
@@ -138,26 +139,28 @@ fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind
     kind
 }
 
-/// What the parser has to say: help and version on stdout, mistakes on stderr, as JSON if the line asks for it.
+/// What the parser has to say: help, version and the verbs of a noun on stdout, mistakes on stderr, as JSON if the line asks
+/// for it.
 fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
     let is_json = is_json || wants_json(args);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
     match refusal {
-        Refusal::Text(text) => {
-            let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
-            screen.read(&text).map_err(|failure| tell(&screen, failure.into()))
-        }
-        _ if is_json => Err(tell(&screen, refusal.failure().into())),
-        Refusal::Verb(help, _) => {
-            screen.usage(help);
-            Err(Kind::Usage)
-        }
-        Refusal::Mistake(error) => {
+        // A noun without a verb lists its verbs, which a program that wants JSON did not ask for.
+        Refusal::Verb(text, _) if !is_json => read(&screen, text),
+        Refusal::Text(text) => read(&screen, text),
+        Refusal::Mistake(error) if !is_json => {
             screen.usage(&error.render());
             Err(Kind::Usage)
         }
+        _ => Err(tell(&screen, refusal.failure().into())),
     }
+}
+
+/// A text to read, on stdout.
+fn read(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
+    let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
+    screen.read(&text).map_err(|failure| tell(screen, failure.into()))
 }
 
 /// What a command line that was not parsed, such as that of a help, says about colour.

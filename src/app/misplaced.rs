@@ -23,7 +23,9 @@ const MOST: usize = 4;
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let typed = Typed::new(args, whole);
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => place(&mut error, ContextKind::InvalidSubcommand, &typed, whole),
+        ErrorKind::InvalidSubcommand => {
+            absent(&mut error, &typed).or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole))
+        }
         ErrorKind::UnknownArgument => {
             place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
         }
@@ -35,6 +37,14 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
     error
+}
+
+/// What there is instead of something that a family has not, whatever it is called.
+fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
+    let ([family], [word, ..]) = (&typed.path[..], &typed.rest[..]) else { return None };
+    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| of == family && words.contains(word))?;
+    error.remove(ContextKind::SuggestedSubcommand);
+    Some((*instead).to_owned())
 }
 
 /// Where the wrong word belongs.
@@ -72,6 +82,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     if !may_do_harm(&words, whole) {
         return None;
     }
+    let (_, words) = found(&words, whole);
     let most = leaves::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
     Some(match most.map(|(_, risk)| *risk).max() {
         Some(Risk::Destroy) => "deletes or overwrites",
@@ -90,7 +101,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     let at = words.iter().rposition(|other| other == word)?;
     let is_number = |word: &&str| word.parse::<f64>().is_ok();
     let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
-    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.path.contains(word))? + 1;
+    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.said.contains(word))? + 1;
     // Only the last argument can have been meant to have blanks.
     let is_of_flag = words[first - 1].starts_with('-');
     let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
@@ -129,10 +140,21 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     }
 }
 
-/// Whether the command that these words begin is a dangerous one.
+/// Whether the command that these words begin is a dangerous one, by whichever of its names.
 fn may_do_harm(words: &[&str], whole: &Command) -> bool {
-    let command = words.iter().try_fold(whole, |command, word| command.find_subcommand(word));
-    is_dangerous(words, command.is_some_and(Command::has_subcommands))
+    let (command, path) = found(words, whole);
+    is_dangerous(&path, command.is_some_and(Command::has_subcommands))
+}
+
+/// The command that these words lead to, if they do, and the words with the commands' own names.
+fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
+    let mut command = Some(whole);
+    let path = words.iter().map(|word| {
+        command = command.and_then(|command| command.find_subcommand(word));
+        command.map_or(*word, Command::get_name)
+    });
+    let path = path.collect();
+    (command, path)
 }
 
 /// Takes out of the similar words those of dangerous commands.
@@ -292,7 +314,7 @@ mod tests {
             ("armctl yerc job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
-            ("armctl toyo alarm", "`armctl toyo error show`"),
+            ("armctl toyo alarm", "`armctl toyo alarm list`"),
             ("armctl yrcx error", "`armctl yrcx info alarm`"),
             (
                 "armctl version",

@@ -7,15 +7,17 @@ use clap::{Arg, Command};
 /// The words of a command line, without flags and their values.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Typed<'a> {
-    /// Those that lead to a command.
+    /// Those that lead to a command, by their own names.
     pub path: Vec<&'a str>,
+    /// The same as they were typed: another word may stand for one.
+    pub said: Vec<&'a str>,
     /// What follows them.
     pub rest: Vec<&'a str>,
 }
 
 impl<'a> Typed<'a> {
     /// Of a line, the program's name included.
-    pub fn new(args: &'a [OsString], whole: &Command) -> Self {
+    pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
         let mut commands = vec![whole];
         let mut words = args.iter().skip(1).filter_map(|word| word.to_str());
@@ -29,7 +31,8 @@ impl<'a> Typed<'a> {
             let below = commands.last().and_then(|command| command.find_subcommand(word));
             if let Some(below) = below.filter(|_| typed.rest.is_empty()) {
                 commands.push(below);
-                typed.path.push(word);
+                typed.path.push(below.get_name());
+                typed.said.push(word);
             } else {
                 typed.rest.push(word);
             }
@@ -39,7 +42,7 @@ impl<'a> Typed<'a> {
 
     /// All of them.
     pub fn words(&self) -> Vec<&'a str> {
-        [&self.path[..], &self.rest].concat()
+        [&self.said[..], &self.rest].concat()
     }
 }
 
@@ -75,6 +78,7 @@ mod tests {
             ("armctl yerc job select --line 5 WELD status", "yerc job select", "WELD status"),
             ("armctl get file", "", "get file"),
             ("armctl yerc --watch status", "yerc status", ""),
+            ("armctl toyo error show", "toyo alarm list", ""),
         ] {
             let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
             let typed = Typed::new(&args, &whole);

@@ -15,12 +15,17 @@ const EVERYWHERE: &str = "Options of every command (-r, -t, --sim, --json …): 
 /// The help of the command that `path` leads to. The short one has what is the command's own, and fits a small terminal
 /// where that does.
 pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
-    let Some(command) = path.iter().try_fold(root, |command, word| command.find_subcommand(word)) else {
-        return StyledStr::new();
-    };
+    let mut command = root;
+    let mut names = Vec::new();
+    for word in path {
+        let Some(below) = command.find_subcommand(word) else { return StyledStr::new() };
+        // Another word may lead there.
+        names.push(below.get_name());
+        command = below;
+    }
     let mut command = command.clone();
     if !path.is_empty() {
-        command = furnished(command, root, path, is_long);
+        command = furnished(command, root, &names, is_long);
     }
     if is_long { command.render_long_help() } else { command.render_help() }
 }

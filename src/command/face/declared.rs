@@ -139,10 +139,6 @@ impl<F: Declaration> Face for Declared<F> {
         F::Commands::lay_out(F::arguments(command), is_named)
     }
 
-    fn has_command(&self, word: &str) -> bool {
-        words::has_command::<F::Commands>(word)
-    }
-
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {
         let own = F::read_arguments(matches)?;
         Ok(Typed { own, wish: words::read::<F::Commands>(matches)? })

@@ -360,7 +360,7 @@ mod tests {
             "{}",
             failure.message
         );
-        assert!(failure.hint.unwrap().contains("toyo error cancel"));
+        assert!(failure.hint.unwrap().contains("toyo alarm reset"));
     }
 
     #[test]
