@@ -25,6 +25,7 @@ pub mod session_manager;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod trace;
+pub mod watch;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub(crate) use command_set::commands;

@@ -9,6 +9,7 @@ use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -27,6 +28,8 @@ commands! {
         List(List),
         /// Error history, the latest first
         History(History),
+        /// Print errors as they come and go
+        Watch(Watch<List>),
         /// Cancel the error
         #[command(alias = "cancel")]
         Reset(Reset),
@@ -54,6 +57,12 @@ impl Command for List {
         let error = present(link).await?.map(Explained::of);
         Ok(Present { alarms: error.iter().cloned().collect(), error })
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "toyo.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
 }
 
 /// The code of the error that is present. One that has none is code 00.

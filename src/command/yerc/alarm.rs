@@ -14,6 +14,7 @@ use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::frame::orders::Done;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
@@ -31,6 +32,8 @@ commands! {
         List(List),
         /// Alarm history, the latest of each class first
         History(History),
+        /// Print alarms as they come and go
+        Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
         /// Cancel the error
@@ -75,6 +78,12 @@ impl Command for List {
         items::nothing(report.asked, report.errors())?;
         Ok(report)
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "yerc.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "name", value: None, empty: "no alarm" };
 }
 
 /// The lists of past alarms.

@@ -5,10 +5,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::info::message::{Message, Past, rows};
 use super::info::AlarmReport;
+use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
 use crate::command::frame::dry_run::Reason;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
@@ -24,6 +25,8 @@ commands! {
         List(List),
         /// Alarm history, the latest first
         History(History),
+        /// Print alarms as they come and go
+        Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
     }
@@ -54,6 +57,12 @@ impl Command for List {
         }
         Ok(ActiveAlarms { alarm, warning, alarms })
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "yrcx.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
 }
 
 /// The alarm that is present.

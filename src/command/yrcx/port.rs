@@ -9,6 +9,7 @@ use super::numbers::{named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
 use crate::command::frame::orders::Done;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -24,6 +25,8 @@ commands! {
         Get(Get),
         /// Switch a port or a signal: DO12 7, DO2.1 on
         Set(Set),
+        /// Print each change of ports
+        Watch(Watch<Get>),
     }
 }
 
@@ -106,6 +109,12 @@ pub struct Get {
     /// Ports, or signals of them
     #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place, add = complete::PORT)]
     places: Vec<Place>,
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yrcx.port.watch";
+    const WATCHED: Watched =
+        Watched { list: "ports", name: "port", prefix: "", label: "", value: Some("value"), empty: "no ports" };
 }
 
 impl Command for Get {

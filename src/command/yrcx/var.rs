@@ -11,6 +11,7 @@ use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
 use crate::command::frame::orders::{self, Done};
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -26,6 +27,8 @@ commands! {
         Get(Get),
         /// Set a variable: SGI1 10000, or SGI1 SGI2
         Set(Set),
+        /// Print each change of variables
+        Watch(Watch<Get>),
         /// Add a number or a variable to a variable
         Add(Add),
         /// Subtract a number or a variable from a variable
@@ -44,6 +47,18 @@ pub struct Get {
     #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
         value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = complete::VARIABLE)]
     variables: Vec<Numbers>,
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yrcx.var.watch";
+    const WATCHED: Watched = Watched {
+        list: "variables",
+        name: "variable",
+        prefix: "",
+        label: "",
+        value: Some("value"),
+        empty: "no variables",
+    };
 }
 
 impl Command for Get {

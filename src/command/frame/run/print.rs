@@ -21,6 +21,8 @@ pub enum Place<'a> {
     First,
     /// A later one of a watch.
     Next,
+    /// A later one of a watch whose reports are lines.
+    Line,
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
@@ -137,7 +139,11 @@ impl Run {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
         }
-        if is_first { Place::First } else { Place::Next }
+        match (is_first, stays) {
+            (true, _) => Place::First,
+            (false, true) => Place::Line,
+            (false, false) => Place::Next,
+        }
     }
 
     /// Writes an envelope.
@@ -180,7 +186,7 @@ impl Run {
             _ => {
                 let text = render::text(view, screen.width(), screen.stdout_color());
                 match place {
-                    Place::Alone | Place::First => text,
+                    Place::Alone | Place::First | Place::Line => text,
                     Place::Next if self.redraw.is_on() => text,
                     Place::Next => format!("\n{text}"),
                     Place::Among { robot, first } => {
