@@ -123,14 +123,15 @@ fn screen(globals: &Globals) -> Screen {
         None if globals.json || globals.jq.is_some() => Format::Json,
         None => Format::Table,
     };
-    Screen::new(format, globals.color, globals.quiet, globals.verbose)
+    let is_filtered = globals.jq.is_some() && !globals.json && globals.format.is_none();
+    Screen::new(format, globals.color, globals.quiet, globals.verbose).with_plain_errors(is_filtered)
 }
 
 /// Writes a failure once, in the form that was asked for, and says what kind it was.
 fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
-        if screen.is_json() {
+        if screen.is_json() && !matches!(kind, Kind::Halted(_)) {
             screen.failure_json(&envelope.unwrap_or_else(|| Box::new(Envelope::failed(None, failure))));
         } else {
             screen.failure(&failure);
@@ -180,9 +181,8 @@ fn wants_json(args: &[OsString]) -> bool {
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
     while let Some(word) = words.next() {
         let format = match word {
-            "--json" | "--jq" => return true,
+            "--json" => return true,
             "--format" => words.next(),
-            _ if word.starts_with("--jq=") => return true,
             _ if word.starts_with("--") => word.strip_prefix("--format"),
             // Short flags without a value may stand before the last one, whose value may be the next word.
             _ => match word

@@ -58,12 +58,19 @@ pub struct Screen {
     pub verbosity: u8,
     color: ColorChoice,
     pager: bool,
+    plain_errors: bool,
 }
 
 impl Screen {
     /// Everything as flags and environment want it.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
-        Self { format, quiet, verbosity, color, pager: false }
+        Self { format, quiet, verbosity, color, pager: false, plain_errors: false }
+    }
+
+    /// With errors in words, although data is JSON: `--jq` alone.
+    #[must_use]
+    pub fn with_plain_errors(self, plain_errors: bool) -> Self {
+        Self { plain_errors, ..self }
     }
 
     /// With a pager for long texts to read, or without.
@@ -75,7 +82,14 @@ impl Screen {
     /// Nothing but errors, and those as JSON: for tests.
     #[cfg(test)]
     pub const fn silent() -> Self {
-        Self { format: Format::Json, quiet: true, verbosity: 0, color: ColorChoice::Never, pager: false }
+        Self {
+            format: Format::Json,
+            quiet: true,
+            verbosity: 0,
+            color: ColorChoice::Never,
+            pager: false,
+            plain_errors: false,
+        }
     }
 
     /// The same, but silent about everything that is not an error.
@@ -86,7 +100,7 @@ impl Screen {
 
     /// Whether errors are JSON too.
     pub fn is_json(&self) -> bool {
-        matches!(self.format, Format::Json | Format::Jsonl)
+        matches!(self.format, Format::Json | Format::Jsonl) && !self.plain_errors
     }
 
     /// Whether stdout is a terminal.
@@ -191,6 +205,9 @@ impl Screen {
         }
         let color = self.wants_color(io::stderr().is_terminal());
         let paint = |code: &str, word: &str| if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() };
+        if let Kind::Halted(_) = failure.kind {
+            return Self::stderr(&escape::lines(&failure.message));
+        }
         let label = if failure.kind == Kind::Interrupted { "interrupted:" } else { "error:" };
         let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();
         let hint = failure.hint.as_ref().map(|hint| format!("\n{} {}\n", paint("1;36", "hint:"), escape::lines(hint)));

@@ -31,7 +31,7 @@ pub fn is_end(failure: &Failure) -> bool {
         | Kind::OutcomeUnknown
         | Kind::ConditionNotMet
         | Kind::Mixed => true,
-        Kind::Local | Kind::Usage | Kind::Rejected | Kind::PipeClosed | Kind::Interrupted => false,
+        Kind::Local | Kind::Usage | Kind::Rejected | Kind::PipeClosed | Kind::Interrupted | Kind::Halted(_) => false,
     }
 }
 

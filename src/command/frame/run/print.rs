@@ -49,7 +49,7 @@ impl Run {
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
             self.emit(self.of_stream(envelope))?;
         }
-        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: !self.is_for_people() }))
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: self.screen.is_json() }))
     }
 
     /// Writes what several robots reported, and says it as envelopes.
