@@ -8,7 +8,9 @@ use super::content::{self, Controller, Store};
 use super::parts::Part;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, State};
-use crate::command::backup::{Item, Items, Only, Restored, Restoring};
+use crate::command::backup::{
+    Item, Items, NOT_CHOSEN, NOT_MACHINE, Only, Restored, Restoring, would_leave, would_write,
+};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::local::own_folder;
@@ -90,6 +92,7 @@ impl Command for Restore {
                 .hint("parameters and settings are written with --machine only, and info never"));
         }
         if link.is_dry() {
+            self.plan_items(link, saved().map(|entry| entry.name.as_str()), &jobs);
             return dry_run(link, &jobs);
         }
         self.check_origin(link, &manifest.controller).await?;
@@ -114,6 +117,23 @@ impl Command for Restore {
 }
 
 impl Restore {
+    /// What a dry run says of each part of the backup.
+    fn plan_items<'m>(&self, link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &[Job]) {
+        let parts: Vec<Part> = Part::in_order_of_writing().collect();
+        for name in saved {
+            let part = parts.iter().find(|part| part.to_string() == name);
+            let why = match part {
+                None | Some(Part::Info) => "tells of the controller; nothing of it is written",
+                Some(part) if part.is_machine() && !self.machine => NOT_MACHINE,
+                Some(_) => NOT_CHOSEN,
+            };
+            link.plan_item(match jobs.iter().find(|job| Some(&job.part) == part) {
+                Some(job) => would_write(name, ("values", job.stores.len() as u64), IF_IT_DIFFERS),
+                None => would_leave(name, why),
+            });
+        }
+    }
+
     /// Whether the backup may be written to this controller, and now.
     async fn check_origin(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
         let image = link.look().await?;
