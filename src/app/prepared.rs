@@ -85,8 +85,8 @@ impl PreparedCommand {
             Task::Family(own, _) => run.own = own.clone(),
             Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
-            Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.family(),
-            Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.family(),
+            Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
+            Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
             Task::Common(_) => {}
         }
         Ok(Self { run, task })

@@ -9,6 +9,7 @@ pub mod eip;
 pub mod fault;
 pub mod image;
 pub mod line;
+pub mod local;
 mod port;
 pub mod ports;
 pub mod profibus;

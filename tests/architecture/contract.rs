@@ -5,8 +5,11 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 41] = [
+const YERC: [&str; 44] = [
     "status",
+    "backup",
+    "restore",
+    "diff",
     "alarm list",
     "alarm history",
     "alarm reset",
@@ -49,7 +52,7 @@ const YERC: [&str; 41] = [
     "raw",
 ];
 
-const TOYO: [&str; 73] = [
+const TOYO: [&str; 74] = [
     "status",
     "home",
     "position",
@@ -85,6 +88,7 @@ const TOYO: [&str; 73] = [
     "torque-table set",
     "backup",
     "restore",
+    "diff",
     "program list",
     "program get",
     "program put",

@@ -1,8 +1,14 @@
 //! Backups as all families make and restore them: what is asked for, and what became of each file or part.
 
+pub mod check;
+mod compare;
+mod diff;
 pub mod manifest;
+pub mod options;
 pub mod saving;
 pub mod text_diff;
+mod tolerance;
+pub mod words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -25,6 +31,11 @@ impl Only {
     /// Whether a name is meant.
     pub fn has(&self, name: &str) -> bool {
         self.0.is_empty() || self.0.iter().any(|pattern| fits(pattern, name))
+    }
+
+    /// Whether a thing with several names is meant.
+    pub fn has_any<S: AsRef<str>>(&self, names: &[S]) -> bool {
+        names.iter().any(|name| self.has(name.as_ref()))
     }
 
     /// As it stands in the scope of a backup.

@@ -22,6 +22,8 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo backup press", Write),
     ("toyo backup press --current-task", Read),
     ("toyo backup press --resume", Write),
+    ("toyo diff press", Write),
+    ("toyo diff press --only parameters", Write),
     ("toyo restore press", Destroy),
     ("toyo restore press --only parameters,points-1", Destroy),
     ("toyo bus", Read),

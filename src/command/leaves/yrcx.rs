@@ -22,6 +22,8 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx backup press", Read),
     ("yrcx backup press --points 0..999", Read),
     ("yrcx backup press --only variables --force", Read),
+    ("yrcx diff press", Read),
+    ("yrcx diff press --only 'points*' --tolerance 0.05", Read),
     ("yrcx restore press", Destroy),
     ("yrcx restore press --only 'points*'", Destroy),
     ("yrcx clock get", Read),

@@ -1,10 +1,12 @@
 //! The commands of `toyo`, as its help lists them.
 
+use super::link::Toyo;
 use super::{
     alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
     overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
     timer,
 };
+use crate::command::backup::words::Diff;
 use crate::command::{Offline, Subcommands, commands};
 
 commands! {
@@ -75,6 +77,8 @@ commands! {
         Backup(backup::Backup),
         /// Restore a backup
         Restore(backup::Restore),
+        /// Compare a backup with another one, or with the controller
+        Diff(Diff<Toyo>),
         /// Memory card: read, write
         Card(Subcommands<card::Card>),
         /// Clear memory

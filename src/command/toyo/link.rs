@@ -4,8 +4,9 @@
 mod left;
 mod onlooker;
 
-use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
+
+use derive_more::{Deref, DerefMut};
 
 use super::chosen::Chosen;
 use super::connect;
@@ -36,8 +37,10 @@ use onlooker::{Onlooker, Told, Watching};
 pub struct Toyo;
 
 /// A connection to one controller. What cannot fail is the client's own.
-#[derive(Debug)]
+#[derive(Debug, Deref, DerefMut)]
 pub struct Link {
+    #[deref]
+    #[deref_mut]
     client: Client,
     onlooker: Arc<Mutex<Onlooker>>,
     screen: Screen,
@@ -46,20 +49,6 @@ pub struct Link {
     left: Vec<Left>,
     /// Writes to the EEPROM.
     pub(super) wear: Wear,
-}
-
-impl Deref for Link {
-    type Target = Client;
-
-    fn deref(&self) -> &Client {
-        &self.client
-    }
-}
-
-impl DerefMut for Link {
-    fn deref_mut(&mut self) -> &mut Client {
-        &mut self.client
-    }
 }
 
 impl Family for Toyo {

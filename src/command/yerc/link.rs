@@ -1,8 +1,9 @@
 //! The connection to a controller as commands use it: the client, with its errors in words, and its traffic on record.
 
-use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+
+use derive_more::{Deref, DerefMut};
 
 use super::connect;
 use super::each::{Outcome, Round};
@@ -29,8 +30,10 @@ use crate::transport::tap::Direction;
 pub struct Yerc;
 
 /// A connection to one controller. What cannot fail, or fails without a word about the robot, is the client's own.
-#[derive(Debug)]
+#[derive(Debug, Deref, DerefMut)]
 pub struct Link {
+    #[deref]
+    #[deref_mut]
     client: Client,
     trace: Arc<Mutex<Trace>>,
     screen: Screen,
@@ -39,20 +42,6 @@ pub struct Link {
     pub encoding: Encoding,
     /// Words of a cartesian move, 25 or 26.
     pub move_words: u8,
-}
-
-impl Deref for Link {
-    type Target = Client;
-
-    fn deref(&self) -> &Client {
-        &self.client
-    }
-}
-
-impl DerefMut for Link {
-    fn deref_mut(&mut self) -> &mut Client {
-        &mut self.client
-    }
 }
 
 impl Family for Yerc {

@@ -1,5 +1,5 @@
-//! The fieldbuses that a controller may be reached over. A new one is a folder that implements `fieldbus.rs`, and a line in
-//! each list here; its URLs are registered in `settings/target/bus.rs`.
+//! The fieldbuses that a controller may be reached over. A new one is a folder whose `bus.rs` says what `fieldbus.rs` asks,
+//! and a line here; its URLs are registered in `settings/target/bus.rs`.
 
 use clap::Args;
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
@@ -12,85 +12,58 @@ use super::profibus::bus as profibus;
 #[cfg(target_os = "linux")]
 use super::profinet::bus as profinet;
 
-/// All of them. The first is the one that a simulator is on unless its URL says otherwise.
-pub const BUSES: &[&dyn Fieldbus] = &[
-    &eip::EtherNetIp,
-    &devicenet::DeviceNet,
-    &profibus::ProfibusDp,
+/// Makes the lists that the house goes by.
+macro_rules! fieldbuses {
+    ($($(#[$cfg:meta])* $bus:ident,)*) => {
+        /// All of them. The first is the one that a simulator is on unless its URL says otherwise.
+        pub const BUSES: &[&Fieldbus] = &[$($(#[$cfg])* &$bus::BUS,)*];
+
+        /// How each is searched by `robots discover`: arguments of the command line.
+        #[derive(Debug, Args)]
+        #[group(skip)]
+        pub struct Searches {
+            $($(#[$cfg])* #[command(flatten)] $bus: $bus::Search,)*
+        }
+
+        impl Searches {
+            /// Each with its fieldbus.
+            pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Search)> {
+                vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
+            }
+        }
+
+        /// How each serves a simulated controller to others: arguments of `armctl sim yrcx`.
+        #[derive(Debug, Args)]
+        #[group(skip)]
+        pub struct Servers {
+            $($(#[$cfg])* #[command(flatten)] $bus: $bus::ServeArgs,)*
+        }
+
+        impl Servers {
+            /// Each with its fieldbus.
+            pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Serve)> {
+                vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
+            }
+        }
+
+        /// What devices of each say of themselves.
+        pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
+            vec![$($(#[$cfg])* $bus::Identity::json_schema(generator),)*]
+        }
+    };
+}
+
+fieldbuses! {
+    eip,
+    devicenet,
+    profibus,
     #[cfg(target_os = "linux")]
-    &profinet::ProfinetIo,
-];
-
-/// How each is searched by `robots discover`: arguments of the command line.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub struct Searches {
-    #[command(flatten)]
-    eip: eip::Search,
-    #[command(flatten)]
-    devicenet: devicenet::Search,
-    #[command(flatten)]
-    profibus: profibus::Search,
-    #[cfg(target_os = "linux")]
-    #[command(flatten)]
-    profinet: profinet::Search,
-}
-
-impl Searches {
-    /// Each with its fieldbus.
-    pub fn each(&self) -> Vec<(&'static dyn Fieldbus, &dyn Search)> {
-        vec![
-            (&eip::EtherNetIp, &self.eip),
-            (&devicenet::DeviceNet, &self.devicenet),
-            (&profibus::ProfibusDp, &self.profibus),
-            #[cfg(target_os = "linux")]
-            (&profinet::ProfinetIo, &self.profinet),
-        ]
-    }
-}
-
-/// How each serves a simulated controller to others: arguments of `armctl sim yrcx`.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub struct Servers {
-    #[command(flatten)]
-    eip: eip::ServeArgs,
-    #[command(flatten)]
-    devicenet: devicenet::ServeArgs,
-    #[command(flatten)]
-    profibus: profibus::ServeArgs,
-    #[cfg(target_os = "linux")]
-    #[command(flatten)]
-    profinet: profinet::ServeArgs,
-}
-
-impl Servers {
-    /// Each with its fieldbus.
-    pub fn each(&self) -> Vec<(&'static dyn Fieldbus, &dyn Serve)> {
-        vec![
-            (&eip::EtherNetIp, &self.eip),
-            (&devicenet::DeviceNet, &self.devicenet),
-            (&profibus::ProfibusDp, &self.profibus),
-            #[cfg(target_os = "linux")]
-            (&profinet::ProfinetIo, &self.profinet),
-        ]
-    }
-}
-
-/// What devices of each say of themselves.
-pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
-    vec![
-        eip::Identity::json_schema(generator),
-        devicenet::Node::json_schema(generator),
-        profibus::Station::json_schema(generator),
-        #[cfg(target_os = "linux")]
-        profinet::Station::json_schema(generator),
-    ]
+    profinet,
 }
 
 /// The fieldbus of this name.
-pub fn by_name(name: &str) -> Option<&'static dyn Fieldbus> {
-    BUSES.iter().copied().find(|bus| bus.name() == name)
+pub fn by_name(name: &str) -> Option<&'static Fieldbus> {
+    BUSES.iter().copied().find(|bus| bus.name == name)
 }
 
 #[cfg(test)]
@@ -105,11 +78,11 @@ mod tests {
         }
         let mut alarms = Vec::new();
         for bus in BUSES {
-            assert!(target::BUSES.iter().any(|scheme| scheme.bus == bus.name()), "{bus:?}");
-            assert!(target::bus::simulators().any(|(_, name)| name == bus.name()), "{bus:?}");
-            assert!(bus.link_alarm().known().is_some() && !alarms.contains(&bus.link_alarm()), "{bus:?}");
-            alarms.push(bus.link_alarm());
-            assert_eq!(bus.layers().first(), Some(&"name"), "{bus:?}");
+            assert!(target::BUSES.iter().any(|scheme| scheme.bus == bus.name), "{bus:?}");
+            assert!(target::bus::simulators().any(|(_, name)| name == bus.name), "{bus:?}");
+            assert!(bus.link_alarm.known().is_some() && !alarms.contains(&bus.link_alarm), "{bus:?}");
+            alarms.push(bus.link_alarm);
+            assert_eq!(bus.layers.first(), Some(&"name"), "{bus:?}");
         }
     }
 }

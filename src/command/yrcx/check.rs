@@ -16,7 +16,7 @@ const SIGNALS: [&str; 7] = ["CPU", "emergency stop", "alarm", "remote command", 
 
 /// Looks at them; reads only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-    let of_bus = endpoint(robot)?.fieldbus().layers();
+    let of_bus = endpoint(robot)?.fieldbus().layers;
     let mut layers = Layers::new(robot.label(), [of_bus, &SIGNALS].concat());
     match Yrcx::connect(robot, access, screen).await {
         Err(failure) => layers.fail(of_bus.first().copied().unwrap_or("name"), &failure),

@@ -20,7 +20,7 @@ use crate::transport::image::tap::Tap;
 #[derive(Debug, Clone, Copy)]
 pub enum Endpoint<'a> {
     /// A controller on a fieldbus.
-    Bus(&'a Bus, &'static dyn Fieldbus),
+    Bus(&'a Bus, &'static Fieldbus),
     /// The built-in simulator.
     Sim(&'a target::Sim),
 }
@@ -56,9 +56,9 @@ impl Endpoint<'_> {
         let purpose = if access.mode == ConnectMode::Monitor { Purpose::Look } else { Purpose::Command };
         match *self {
             Self::Bus(bus, fieldbus) => {
-                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();
+                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
                 let at = At { robot, bus, tap: tap.unwrap_or_default() };
-                match fieldbus.open(at, purpose).await {
+                match (fieldbus.open)(at, purpose).await {
                     Ok(link) => Ok((link, recorder)),
                     Err(error) => {
                         // Why it did not open is worth more than what became of the record of it.
@@ -70,7 +70,7 @@ impl Endpoint<'_> {
             // What goes wrong on a network takes one.
             Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.open(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
+                let opened = (fieldbus.open)(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
                 let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok((link.keeping(controller), None))
             }
@@ -87,14 +87,14 @@ impl Endpoint<'_> {
     ) -> Result<(OpenBoard, Option<Recorder>), Failure> {
         match *self {
             Self::Bus(bus, fieldbus) => {
-                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();
-                let opened = fieldbus.board(At { robot, bus, tap: tap.unwrap_or_default() }).await;
+                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
+                let opened = (fieldbus.board)(At { robot, bus, tap: tap.unwrap_or_default() }).await;
                 let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((board, None), recorder))
             }
             Self::Sim(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = fieldbus.board(At { robot, bus: &bus, tap: Tap::default() }).await;
+                let opened = (fieldbus.board)(At { robot, bus: &bus, tap: Tap::default() }).await;
                 let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((board, Some(controller)), None))
             }
@@ -102,9 +102,9 @@ impl Endpoint<'_> {
     }
 
     /// The fieldbus of it; of a simulator, the one that it would be on.
-    pub fn fieldbus(&self) -> &'static dyn Fieldbus {
+    pub fn fieldbus(&self) -> &'static Fieldbus {
         match self {
-            Self::Bus(_, fieldbus) => *fieldbus,
+            Self::Bus(_, fieldbus) => fieldbus,
             Self::Sim(sim) => simulated_on(sim),
         }
     }
@@ -119,13 +119,13 @@ impl Endpoint<'_> {
 }
 
 /// The fieldbus that a simulator is on.
-fn simulated_on(sim: &target::Sim) -> &'static dyn Fieldbus {
+fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
     let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
     named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])
 }
 
 /// Starts a simulated controller on its fieldbus.
-fn simulate(sim: &target::Sim) -> Result<(&'static dyn Fieldbus, Simulation), Failure> {
+fn simulate(sim: &target::Sim) -> Result<(&'static Fieldbus, Simulation), Failure> {
     let fieldbus = simulated_on(sim);
-    Ok((fieldbus, fieldbus.simulate(sim)?))
+    Ok((fieldbus, (fieldbus.simulate)(sim)?))
 }

@@ -65,7 +65,7 @@ pub async fn discover(
         if !is_wanted {
             continue;
         }
-        let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type())?.unzip();
+        let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
         let found = search.search(wait, tap.unwrap_or_default()).await;
         recorder.map_or(Ok(()), Recorder::finish)?;
         match found {

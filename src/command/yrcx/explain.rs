@@ -30,7 +30,7 @@ enum Code {
 
 /// Group and category, or what a fieldbus knows.
 fn code(text: &str) -> Result<Code, String> {
-    if let Some(explained) = BUSES.iter().find_map(|bus| bus.explain(text)) {
+    if let Some(explained) = BUSES.iter().find_map(|bus| (bus.explain)(text)) {
         return Ok(Code::Bus(explained));
     }
     text.parse().map(Code::Alarm).map_err(|error| format!("{error}"))

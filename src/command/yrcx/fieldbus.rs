@@ -19,42 +19,35 @@ use crate::settings::Robot;
 use crate::settings::target::{Bus, Place, Sim, Target};
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{ImageLink, LinkError};
-use crate::transport::tap::LINKTYPE_RAW;
 
-/// A fieldbus: how controllers on it are reached, asked, looked for and simulated.
-pub trait Fieldbus: fmt::Debug + Sync {
+/// A fieldbus: how controllers on it are reached, asked and simulated.
+#[derive(Debug)]
+pub struct Fieldbus {
     /// The name of it: the word of its commands, and what its schemes say that they lead to.
-    fn name(&self) -> &'static str;
-
+    pub name: &'static str,
     /// The alarm of a controller whose link over it is lost; the next number is the one of a loss that lasts.
-    fn link_alarm(&self) -> Alarm;
-
-    /// The kind of packets that records have, as in a capture file: packets of IP unless it has frames of its own.
-    fn link_type(&self) -> u16 {
-        LINKTYPE_RAW
-    }
-
+    pub link_alarm: Alarm,
+    /// The kind of packets that records have, as in a capture file: [`LINKTYPE_RAW`] is packets of IP.
+    ///
+    /// [`LINKTYPE_RAW`]: crate::transport::tap::LINKTYPE_RAW
+    pub link_type: u16,
+    /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
+    pub layers: &'static [&'static str],
     /// Opens a link: one that commands the controller, which then is shown the resting image, or one that only looks and
     /// changes nothing for whoever commands it.
-    fn open<'a>(&'a self, at: At<'a>, purpose: Purpose) -> LocalBoxFuture<'a, Result<ImageLink, LinkError>>;
-
+    pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
     /// Opens what can be asked of the device without a link for images.
-    fn board<'a>(&'a self, at: At<'a>) -> LocalBoxFuture<'a, Result<Box<dyn Board>, LinkError>>;
-
+    pub board: for<'a> fn(At<'a>) -> Opening<'a, Box<dyn Board>>,
     /// What a code means that its devices say no with; `None` for what is no such code.
-    fn explain(&self, _code: &str) -> Option<Explained> {
-        None
-    }
-
-    /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
-    fn layers(&self) -> &'static [&'static str];
-
+    pub explain: fn(code: &str) -> Option<Explained>,
     /// What finds its images in captures.
-    fn decoder(&self) -> Box<dyn BusDecoder>;
-
+    pub decoder: fn() -> Box<dyn BusDecoder>,
     /// Starts a simulated controller on it, with what the URL of a simulator wants to go wrong.
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure>;
+    pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
 }
+
+/// What comes when it is open.
+pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
 
 /// What a device says no with, in words.
 #[derive(Debug, Clone)]
@@ -98,6 +91,11 @@ pub trait Board: fmt::Debug + Any {
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
 }
 
+/// What was opened to ask a device, whatever its fieldbus.
+pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
+    Ok(Box::new(board?))
+}
+
 /// A simulated controller on a fieldbus in this process.
 #[derive(Debug)]
 pub struct Simulation {
@@ -105,6 +103,13 @@ pub struct Simulation {
     pub bus: Bus,
     /// The controller.
     pub controller: Box<dyn fmt::Debug>,
+}
+
+impl Simulation {
+    /// A controller that a URL leads to.
+    pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self, Failure> {
+        Ok(Self { bus: bus_of(url)?, controller: Box::new(controller) })
+    }
 }
 
 /// How one fieldbus is searched, as the command line wants it.

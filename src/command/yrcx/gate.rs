@@ -59,6 +59,7 @@ const READS: &[&str] = &[
     "io watch",
     "auto-mode",
     "backup @/new --only info,settings,pallets,shifts,hands,variables",
+    "diff @/saved",
     "eip identity",
     "eip probe",
     "eip get 1 1 7",

@@ -4,10 +4,10 @@
 mod board;
 mod onlooker;
 
-use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use derive_more::{Deref, DerefMut};
 use futures_util::FutureExt as _;
 
 use self::onlooker::Onlooker;
@@ -43,8 +43,10 @@ use crate::transport::image::{ImageLink, Traffic};
 pub struct Yrcx;
 
 /// A connection to one controller. What cannot fail, or fails without a word about the robot, is the client's own.
-#[derive(Debug)]
+#[derive(Debug, Deref, DerefMut)]
 pub struct Link {
+    #[deref]
+    #[deref_mut]
     client: Client,
     /// The device on the fieldbus, of a link that is for it alone, and what must live as long.
     board: Option<OpenBoard>,
@@ -61,20 +63,6 @@ pub struct Link {
     pub told: Option<Image>,
     /// What a watch has seen and not told yet.
     pub seen: Option<Image>,
-}
-
-impl Deref for Link {
-    type Target = Client;
-
-    fn deref(&self) -> &Client {
-        &self.client
-    }
-}
-
-impl DerefMut for Link {
-    fn deref_mut(&mut self) -> &mut Client {
-        &mut self.client
-    }
 }
 
 impl Family for Yrcx {
@@ -127,7 +115,7 @@ impl Family for Yrcx {
             Entry::Stops(format!(
                 "take the command connection and drop it at the end, which stops the robot: motor power goes off, with \
                  alarm {} (`armctl session open` keeps a connection open)",
-                fieldbus.link_alarm()
+                fieldbus.link_alarm
             ))
         }
     }
@@ -218,7 +206,7 @@ impl Link {
         let label = robot.label();
         client.watch(Onlooker { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
         client.let_go_at(|| abandoned().boxed_local());
-        let link_alarm = connect::endpoint(robot)?.fieldbus().link_alarm();
+        let link_alarm = connect::endpoint(robot)?.fieldbus().link_alarm;
         Ok(Self {
             client,
             board: None,

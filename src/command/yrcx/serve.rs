@@ -41,7 +41,7 @@ impl serve::Serve for ServeArgs {
         let wanted = self.bus.as_deref();
         let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
         let all = self.servers.each();
-        let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name())).map(|(_, serve)| serve);
+        let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name)).map(|(_, serve)| serve);
         let serve = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
         let server = serve.serve(wanted, start(self.state.as_deref())?)?;
         Ok(Started {

@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::status;
 use super::wire::{Status, WireError};
 use crate::image::view::BusError;
+use crate::local::LocalError;
 use crate::plain;
 
 /// Why something did not come about.
@@ -100,15 +101,8 @@ pub enum EipError {
     #[error("the connection is closed")]
     Ended,
     /// A local socket did not work.
-    #[error("{what}: {text}")]
-    Local {
-        /// What was tried.
-        what: &'static str,
-        /// The system's reason.
-        kind: io::ErrorKind,
-        /// In its words.
-        text: String,
-    },
+    #[error(transparent)]
+    Local(#[from] LocalError),
     /// Something that cannot be, such as settings that no connection can have; nothing was sent.
     #[error("{0}")]
     Impossible(
@@ -125,10 +119,6 @@ impl BusError for EipError {
 impl EipError {
     pub(super) fn unreachable(error: &io::Error) -> Self {
         Self::Unreachable { kind: error.kind(), text: plain(error).to_lowercase() }
-    }
-
-    pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
-        Self::Local { what, kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
     /// What the code in it means, and what to do about it.

@@ -176,7 +176,7 @@ impl From<EipError> for LinkError {
             }
             EipError::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
             EipError::Impossible(_) => Self::Settings(cause),
-            EipError::Local { .. } | EipError::Outdated | EipError::Ended => {
+            EipError::Local(_) | EipError::Outdated | EipError::Ended => {
                 Self::Local(cause.advice("check the network settings of this machine, and its firewall"))
             }
         }

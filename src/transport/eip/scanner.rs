@@ -19,6 +19,7 @@ use super::settings::Settings;
 use super::tap::Tap;
 use super::wire::{Command, Cyclic};
 use super::{IO_PORT, Now};
+use crate::local::LocalError;
 
 mod tcp;
 
@@ -85,12 +86,12 @@ impl Scanner {
 
     /// Listens for images on UDP port 2222 of this address, or on any port if another program has that one.
     pub fn start(address: Ipv4Addr) -> Result<Self, EipError> {
-        let failed = |error: &io::Error| EipError::local("UDP socket for images", error);
+        let failed = |error: io::Error| LocalError::new("UDP socket for images", &error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
             bound => bound,
         };
-        Self::on(socket.map_err(|error| failed(&error))?).map_err(|error| failed(&error))
+        Ok(Self::on(socket.map_err(failed)?).map_err(failed)?)
     }
 
     fn on(socket: UdpSocket) -> io::Result<Self> {
@@ -277,12 +278,12 @@ impl Inner {
                     // First, so that no record has an answer before what it answers.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
-                        slot.core.failed(EipError::local("sending an image", &error));
+                        slot.core.failed(LocalError::new("sending an image", &error).into());
                     }
                 }
                 Action::Join(group) => {
                     if let Err(error) = self.join(group, slot.here) {
-                        slot.core.failed(EipError::local("joining the group", &error));
+                        slot.core.failed(LocalError::new("joining the group", &error).into());
                     }
                 }
                 Action::Leave(group) => self.leave(group, slot.here),

@@ -1,7 +1,6 @@
 //! What can go wrong between a controller and a device.
 
 use std::fmt;
-use std::io;
 use std::net::Ipv4Addr;
 use std::time::Duration;
 
@@ -11,7 +10,7 @@ use super::wire::dcp;
 use super::wire::status::Status;
 use super::wire::{Mac, WireError};
 use crate::image::view::BusError;
-use crate::plain;
+use crate::local::LocalError;
 
 /// Why something did not come about.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -183,15 +182,8 @@ pub enum ProfinetError {
         address: Ipv4Addr,
     },
     /// A local socket did not work.
-    #[error("{what}: {text}")]
-    Local {
-        /// What was tried.
-        what: &'static str,
-        /// The system's reason.
-        kind: io::ErrorKind,
-        /// In its words.
-        text: String,
-    },
+    #[error(transparent)]
+    Local(#[from] LocalError),
     /// Something that cannot be, such as settings that no connection can have; nothing was sent.
     #[error("{0}")]
     Impossible(
@@ -206,10 +198,6 @@ impl BusError for ProfinetError {
 }
 
 impl ProfinetError {
-    pub(super) fn local(what: &'static str, error: &io::Error) -> Self {
-        Self::Local { what, kind: error.kind(), text: plain(error).to_lowercase() }
-    }
-
     /// The four bytes of a refusal, if it is one.
     pub const fn status(&self) -> Option<Status> {
         match self {

@@ -125,7 +125,7 @@ impl From<ProfinetError> for LinkError {
             E::PortTaken { .. } => {
                 Self::Silent(cause.advice("close the other program: `ss -lunp sport = 34964` shows which it is"))
             }
-            E::Outdated | E::Ended | E::Local { .. } => {
+            E::Outdated | E::Ended | E::Local(_) => {
                 Self::Local(cause.advice("check the network settings of this machine"))
             }
         }

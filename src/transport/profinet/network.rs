@@ -25,6 +25,7 @@ use super::wire::Mac;
 use super::wire::alarm::Notification;
 use super::wire::rpc;
 use crate::image::tap::{Passed, Tap};
+use crate::local::LocalError;
 
 /// Holds connections over one interface. It is cheap to clone; its thread ends with the last clone and the last
 /// connection.
@@ -89,9 +90,8 @@ impl Network {
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet".to_owned());
-        let thread = thread
-            .spawn(move || runs.run())
-            .map_err(|error| ProfinetError::local("thread of the connections", &error))?;
+        let thread =
+            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the connections", &error))?;
         Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
     }
 
@@ -215,7 +215,7 @@ impl Inner {
                 Action::Frame(bytes) => {
                     slot.tap.pass(|| Passed::Frame(bytes.clone()));
                     if let Err(error) = self.sockets.send_frame(&bytes) {
-                        slot.core.failed(ProfinetError::local("sending a frame", &error));
+                        slot.core.failed(LocalError::new("sending a frame", &error).into());
                     }
                 }
                 Action::Datagram(to, bytes) => {
@@ -223,7 +223,7 @@ impl Inner {
                     let card = slot.core.card().unwrap_or_default();
                     slot.tap.pass(|| Passed::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
-                        slot.core.failed(ProfinetError::local("sending a call", &error));
+                        slot.core.failed(LocalError::new("sending a call", &error).into());
                     }
                 }
             }

@@ -15,6 +15,7 @@ use super::wire::frame::{self, Frame};
 use super::wire::{Mac, arp, rpc};
 use super::{Now, simulated};
 use crate::image::tap::{Passed, Tap};
+use crate::local::LocalError;
 
 /// Room for a frame or a datagram.
 const BUFFER: usize = 65_536;
@@ -80,7 +81,7 @@ impl Frames {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
                 let mut socket = socket;
-                socket.write_all(frame).map_err(|error| ProfinetError::local("sending a frame", &error))?;
+                socket.write_all(frame).map_err(|error| LocalError::new("sending a frame", &error))?;
             }
         }
         Ok(())
@@ -129,7 +130,7 @@ impl Frames {
                     return Ok(Some(buffer));
                 }
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-                Err(error) => return Err(ProfinetError::local("hearing frames", &error)),
+                Err(error) => return Err(LocalError::new("hearing frames", &error).into()),
             }
         }
     }
@@ -142,7 +143,7 @@ impl Calls {
             End::Simulated(network.clone())
         } else {
             let socket = UdpSocket::bind((interface.address()?.address, 0));
-            let socket = socket.map_err(|error| ProfinetError::local("UDP socket for calls", &error))?;
+            let socket = socket.map_err(|error| LocalError::new("UDP socket for calls", &error))?;
             End::Socket(socket, Instant::now())
         };
         Ok(Self { end, tap: interface.tap.clone(), cards: (interface.mac, mac), target })
@@ -158,7 +159,7 @@ impl Calls {
             End::Simulated(network) => network.send_datagram(self.target, bytes),
             End::Socket(socket, _) => {
                 let sent = socket.send_to(bytes, self.target);
-                sent.map_err(|error| ProfinetError::local("calling the device", &error))?;
+                sent.map_err(|error| LocalError::new("calling the device", &error))?;
             }
         }
         Ok(())
@@ -174,7 +175,7 @@ impl Calls {
             End::Socket(socket, start) => {
                 let wait = until.saturating_sub(start.elapsed()).max(Duration::from_millis(1));
                 let timed = socket.set_read_timeout(Some(wait));
-                timed.map_err(|error| ProfinetError::local("calling the device", &error))?;
+                timed.map_err(|error| LocalError::new("calling the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
                 // Nothing, or an interruption: the clock goes on.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };

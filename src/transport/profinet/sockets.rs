@@ -13,6 +13,7 @@ use super::interface::Interface;
 use super::wire::dcp::IpSuite;
 use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
+use crate::local::LocalError;
 
 /// Frames or datagrams taken at once before the clock is looked at.
 const AT_ONCE: usize = 64;
@@ -37,7 +38,7 @@ impl Sockets {
         let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
-        let failed = |error: &io::Error| ProfinetError::local("UDP socket for calls", error);
+        let failed = |error: &io::Error| ProfinetError::from(LocalError::new("UDP socket for calls", error));
         let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
             ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
             _ => failed(&error),

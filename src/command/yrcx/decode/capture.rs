@@ -18,7 +18,7 @@ impl ImageDecoder {
     /// Begins; `all` lists every image.
     pub fn new(all: bool) -> Self {
         let images = Images::new(all);
-        Self { images, buses: BUSES.iter().map(|bus| bus.decoder()).collect() }
+        Self { images, buses: BUSES.iter().map(|bus| (bus.decoder)()).collect() }
     }
 }
 

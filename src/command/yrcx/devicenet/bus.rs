@@ -1,59 +1,30 @@
 //! DeviceNet as one of the fieldbuses.
 
 use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::board::Board;
-pub use super::board::Node;
+pub use super::board::Node as Identity;
 pub use super::discover::Search;
 pub use super::serve::ServeArgs;
 use super::{check, connect, decode, simulated};
-use crate::command::yrcx::decode::images::BusDecoder;
-use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bus_of};
+use crate::command::yrcx::fieldbus::{Fieldbus, Simulation, boxed};
 use crate::controller::yrcx::alarm::Alarm;
-use crate::failure::Failure;
-use crate::settings::target::Sim;
-use crate::settings::target::devicenet::BUS;
+use crate::settings::target::devicenet;
 use crate::transport::capture::LINKTYPE_CAN;
-use crate::transport::image::{ImageLink, LinkError};
 
 /// DeviceNet.
-#[derive(Debug)]
-pub struct DeviceNet;
-
-impl Fieldbus for DeviceNet {
-    fn name(&self) -> &'static str {
-        BUS
-    }
-
-    fn link_alarm(&self) -> Alarm {
-        Alarm::new(12, 541)
-    }
-
-    fn link_type(&self) -> u16 {
-        LINKTYPE_CAN
-    }
-
-    fn open<'a>(&'a self, at: At<'a>, purpose: Purpose) -> LocalBoxFuture<'a, Result<ImageLink, LinkError>> {
-        connect::open(at, purpose).boxed_local()
-    }
-
-    fn board<'a>(&'a self, at: At<'a>) -> LocalBoxFuture<'a, Result<Box<dyn fieldbus::Board>, LinkError>> {
-        async move { Ok(Box::new(Board::new(&at)?) as Box<dyn fieldbus::Board>) }.boxed_local()
-    }
-
-    fn layers(&self) -> &'static [&'static str] {
-        check::LAYERS
-    }
-
-    fn decoder(&self) -> Box<dyn BusDecoder> {
-        Box::new(decode::Decoder::default())
-    }
-
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
+pub const BUS: Fieldbus = Fieldbus {
+    name: devicenet::BUS,
+    link_alarm: Alarm::new(12, 541),
+    link_type: LINKTYPE_CAN,
+    layers: check::LAYERS,
+    open: |at, purpose| connect::open(at, purpose).boxed_local(),
+    board: |at| async move { boxed(Board::new(&at)) }.boxed_local(),
+    explain: |_| None,
+    decoder: || Box::<decode::Decoder>::default(),
+    simulate: |sim| {
         let hub = simulated::on_loopback(sim)?;
         let place = hub.places().first().map(String::as_str).unwrap_or_default();
-        let bus = bus_of(&simulated::target(place))?;
-        Ok(Simulation { bus, controller: Box::new(hub) })
-    }
-}
+        Simulation::at(&simulated::target(place), hub)
+    },
+};

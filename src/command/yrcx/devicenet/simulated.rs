@@ -6,8 +6,7 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
-use super::bus::DeviceNet;
-use crate::command::yrcx::fieldbus::Fieldbus as _;
+use super::bus::BUS;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -60,7 +59,7 @@ pub fn serve(
 ) -> io::Result<Hub<Controller>> {
     let bitrate = setup.bitrate;
     let mut device =
-        Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(DeviceNet.link_alarm()))));
+        Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))));
     device.misbehave(fault);
     Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
 }

@@ -7,9 +7,9 @@ use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::check;
+use super::{check, connect};
 use crate::command::face::layers::Layers;
-use crate::command::yrcx::fieldbus;
+use crate::command::yrcx::fieldbus::{self, At};
 use crate::command::yrcx::link_error::not_open;
 use crate::controller::text;
 use crate::controller::yrcx::image::Image;
@@ -38,9 +38,10 @@ pub struct Board {
 }
 
 impl Board {
-    /// A board that is talked to when something is asked.
-    pub fn new(client: Client, eip: eip::Eip, label: String) -> Self {
-        Self { client, eip, label }
+    /// Finds a board's address; it is talked to when something is asked.
+    pub(super) async fn open(at: &At<'_>) -> Result<Self, LinkError> {
+        let (client, eip) = connect::client(at).await?;
+        Ok(Self { client, eip, label: at.robot.label() })
     }
 
     /// What its URL says.

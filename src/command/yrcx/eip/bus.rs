@@ -1,59 +1,29 @@
 //! EtherNet/IP as one of the fieldbuses.
 
 use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 
 use super::board::Board;
 pub use super::board::Identity;
 pub use super::discover::Search;
 pub use super::serve::ServeArgs;
 use super::{check, connect, decode, simulated};
-use crate::command::yrcx::decode::images::BusDecoder;
-use crate::command::yrcx::fieldbus::{self, At, Fieldbus, Purpose, Simulation, bus_of};
+use crate::command::yrcx::fieldbus::{Fieldbus, Simulation, boxed};
 use crate::controller::yrcx::alarm::Alarm;
-use crate::failure::Failure;
-use crate::settings::target::Sim;
-use crate::settings::target::bus::Scheme;
 use crate::settings::target::eip::SCHEME;
-use crate::transport::image::{ImageLink, LinkError};
+use crate::transport::tap::LINKTYPE_RAW;
 
 /// EtherNet/IP.
-#[derive(Debug)]
-pub struct EtherNetIp;
-
-impl Fieldbus for EtherNetIp {
-    fn name(&self) -> &'static str {
-        let Scheme { bus, .. } = SCHEME;
-        bus
-    }
-
-    fn link_alarm(&self) -> Alarm {
-        Alarm::new(12, 551)
-    }
-
-    fn open<'a>(&'a self, at: At<'a>, purpose: Purpose) -> LocalBoxFuture<'a, Result<ImageLink, LinkError>> {
-        connect::open(at, purpose).boxed_local()
-    }
-
-    fn board<'a>(&'a self, at: At<'a>) -> LocalBoxFuture<'a, Result<Box<dyn fieldbus::Board>, LinkError>> {
-        async move {
-            let (client, eip) = connect::client(&at).await?;
-            Ok(Box::new(Board::new(client, eip, at.robot.label())) as Box<dyn fieldbus::Board>)
-        }
-        .boxed_local()
-    }
-
-    fn layers(&self) -> &'static [&'static str] {
-        check::LAYERS
-    }
-
-    fn decoder(&self) -> Box<dyn BusDecoder> {
-        Box::new(decode::Decoder::default())
-    }
-
-    fn simulate(&self, sim: &Sim) -> Result<Simulation, Failure> {
+pub const BUS: Fieldbus = Fieldbus {
+    name: SCHEME.bus,
+    link_alarm: Alarm::new(12, 551),
+    link_type: LINKTYPE_RAW,
+    layers: check::LAYERS,
+    open: |at, purpose| connect::open(at, purpose).boxed_local(),
+    board: |at| async move { boxed(Board::open(&at).await) }.boxed_local(),
+    explain: |_| None,
+    decoder: || Box::<decode::Decoder>::default(),
+    simulate: |sim| {
         let server = simulated::on_loopback(sim)?;
-        let bus = bus_of(&format!("{}://{}", SCHEME.name, server.address()))?;
-        Ok(Simulation { bus, controller: Box::new(server) })
-    }
-}
+        Simulation::at(&format!("{}://{}", SCHEME.name, server.address()), server)
+    },
+};

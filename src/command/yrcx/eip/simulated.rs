@@ -6,8 +6,7 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 
-use super::bus::EtherNetIp;
-use crate::command::yrcx::fieldbus::Fieldbus as _;
+use super::bus::BUS;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -48,7 +47,7 @@ pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Res
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
     Server::start(
         setup,
-        Controller(Simulated(Simulator::new(start).with_link_alarm(EtherNetIp.link_alarm()))),
+        Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))),
         listen,
         faults.map(Faults::pair),
     )

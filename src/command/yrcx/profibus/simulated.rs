@@ -8,8 +8,7 @@ use std::time::Duration;
 use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
-use super::bus::ProfibusDp;
-use crate::command::yrcx::fieldbus::Fieldbus as _;
+use super::bus::BUS;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
@@ -88,7 +87,7 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
         parameters: vec![Vec::new(), vec![0; 3]],
         rate: options.rate,
     };
-    let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(ProfibusDp.link_alarm())));
+    let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
     slave.misbehave(options.mischief);
     let slave = Shared(Arc::new(Mutex::new(slave)));
     let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;

@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use super::bus::ProfinetIo;
-use crate::command::yrcx::fieldbus::Fieldbus as _;
+use super::bus::BUS;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -76,7 +75,7 @@ pub fn setup(name: &str, layout: Layout) -> Setup {
 
 /// A device with a controller behind it.
 pub fn controller(start: Start) -> Controller {
-    Controller(Simulated(Simulator::new(start).with_link_alarm(ProfinetIo.link_alarm())))
+    Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)))
 }
 
 /// What a device does wrong, by its name.

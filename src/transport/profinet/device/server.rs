@@ -12,6 +12,7 @@ use super::super::error::ProfinetError;
 use super::super::interface::Interface;
 use super::super::sockets::{BUFFER, Sockets};
 use super::{Application, Device, Setup};
+use crate::local::LocalError;
 
 /// A device that answers on an interface until it is dropped. On a real card it hears requests to all only if the card
 /// lets them through: `ip maddress add 01:0e:cf:00:00:00 dev IFACE`.
@@ -51,7 +52,7 @@ impl<A: Application + Send + 'static> Server<A> {
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet-device".to_owned());
         let thread =
-            thread.spawn(move || runs.run()).map_err(|error| ProfinetError::local("thread of the device", &error))?;
+            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the device", &error))?;
         Ok(Self { inner, thread: Some(thread) })
     }
 
