@@ -5,6 +5,7 @@
 pub mod busy;
 pub mod envelope;
 pub mod escape;
+pub mod flat;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;

@@ -4,7 +4,8 @@ use std::cell::RefCell;
 use std::time::Duration;
 
 use clap::Args;
-use jiff::Zoned;
+use jiff::Timestamp;
+use jiff::tz::TimeZone;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -166,14 +167,15 @@ pub struct Changes {
     #[serde(flatten)]
     items: Map<String, Value>,
     #[serde(skip)]
-    time: Zoned,
-    #[serde(skip)]
     watched: Watched,
 }
 
 /// A change.
 #[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct Change {
+    /// When it was seen.
+    #[schemars(with = "String", extend("format" = "date-time"))]
+    time: Timestamp,
     /// `#27010`, `B0`, `SO(02)`.
     name: String,
     /// What it is, where that is known.
@@ -190,7 +192,8 @@ impl Change {
     fn new(thing: &Thing, old: Option<&Thing>, new: Option<&Thing>) -> Self {
         let value = |thing: Option<&Thing>| thing.map_or(Value::Null, |thing| thing.value.clone());
         let item = new.map(|thing| thing.item.clone());
-        Self { name: thing.name.clone(), label: thing.label.clone(), old: value(old), new: value(new), item }
+        let time = Timestamp::UNIX_EPOCH;
+        Self { time, name: thing.name.clone(), label: thing.label.clone(), old: value(old), new: value(new), item }
     }
 
     fn line(&self, time: &str, is_presence: bool) -> String {
@@ -220,11 +223,13 @@ fn plain(value: &Value) -> String {
 
 impl Changes {
     fn new(watched: Watched, mut changes: Vec<Change>) -> Self {
+        let now = Timestamp::now();
+        changes.iter_mut().for_each(|change| change.time = now);
         let mut items: Vec<Value> = changes.iter_mut().filter_map(|change| change.item.take()).collect();
         // Bits of one port come with the same port.
         items.dedup();
         let items = Map::from_iter([(watched.list.to_owned(), Value::Array(items))]);
-        Self { changes, items, time: Zoned::now(), watched }
+        Self { changes, items, watched }
     }
 }
 
@@ -233,9 +238,16 @@ impl Report for Changes {
         if self.changes.is_empty() {
             return View::text(self.watched.empty);
         }
-        let time = self.time.strftime("%Y-%m-%d %H:%M:%S%.3f").to_string();
-        let lines = self.changes.iter().map(|change| Cell::from(change.line(&time, self.watched.value.is_none())));
+        let zone = TimeZone::system();
+        let lines = self.changes.iter().map(|change| {
+            let time = change.time.to_zoned(zone.clone()).strftime("%Y-%m-%d %H:%M:%S%.3f").to_string();
+            Cell::from(change.line(&time, self.watched.value.is_none()))
+        });
         View::default().and(Section::Lines(lines.collect()))
+    }
+
+    fn rows(&self) -> Option<&'static str> {
+        Some("changes")
     }
 }
 
