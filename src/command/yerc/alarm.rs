@@ -23,7 +23,9 @@ use crate::controller::yerc::payload;
 use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::settings::Robot;
+use crate::settings::alarms::{self, Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -69,7 +71,9 @@ impl Command for List {
             // A gap between slots is not described, so all four are read.
             let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
-                Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model)),
+                Ok(alarm) => {
+                    Ok(AlarmEntry::new(&alarm, link.encoding, link.model).explained(context.robot, link.model)?)
+                }
                 Err(denied) => Err(denied.into()),
             };
             alarms.push(ActiveAlarm { slot, outcome: ItemOutcome::new(format!("alarm slot {slot}"), outcome) });
@@ -311,6 +315,8 @@ struct AlarmEntry {
     sub_code: SubCode,
     /// Where it comes from, such as `[SV#1]`; null without texts.
     board: Option<String>,
+    /// What `alarms.toml` says of it; null where it says nothing.
+    explained: Option<Explanation>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -357,7 +363,20 @@ impl AlarmEntry {
                 rendered: rendered.text,
             },
             board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
+            explained: None,
         }
+    }
+
+    /// With what `alarms.toml` says of it.
+    fn explained(mut self, robot: &Robot, model: Model) -> Result<Self, Failure> {
+        let origin = Origin { model: Some(model), ..Origin::of(robot) };
+        self.explained = alarms::find(origin, &self.code.to_string())?;
+        Ok(self)
+    }
+
+    /// The same as a line below a table.
+    fn explanation(&self) -> Option<String> {
+        Some(format!("{}: {}", self.code, self.explained.as_ref()?.line()))
     }
 
     fn sample(&self) -> sample::Alarm {
@@ -414,7 +433,10 @@ impl Report for ActiveAlarms {
             let [code, name, sub_code, time, board] = cells(outcome);
             table.row([(*slot).into(), code, name, sub_code, time, board]);
         }
-        View::table(table)
+        let told = self.alarms.iter().filter_map(|alarm| alarm.outcome.data()?.explanation());
+        let told: Vec<Cell> = told.map(Cell::from).collect();
+        let view = View::table(table);
+        if told.is_empty() { view } else { view.and(Section::Lines(told)) }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -17,6 +17,7 @@ use crate::controller::yrcx::table::Command as Row;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::View;
+use crate::settings::alarms::{self, Origin};
 
 commands! {
     /// Alarms.
@@ -54,6 +55,10 @@ impl Command for List {
         if alarm || warning {
             alarms.push(AlarmReport::of(&link.ask(&latest).await?.values));
             alarms.retain(|alarm| alarm.code.is_some());
+            for alarm in &mut alarms {
+                let code = alarm.code.as_deref().unwrap_or_default();
+                alarm.explained = alarms::find(Origin::of(context.robot), code)?;
+            }
         }
         Ok(ActiveAlarms { alarm, warning, alarms })
     }
