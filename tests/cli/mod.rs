@@ -37,6 +37,7 @@ transcripts! {
     fleets
     help
     information
+    inventory
     jobs
     mistakes
     moves
@@ -62,6 +63,7 @@ transcripts! {
     toyo_system
     usage
     variables
+    words
     yrcx
     yrcx_data
     yrcx_devicenet

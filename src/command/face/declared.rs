@@ -119,6 +119,10 @@ impl<F: Declaration> Face for Declared<F> {
         F::SETUP
     }
 
+    fn simulator(&self) -> &'static str {
+        F::Serve::TARGET
+    }
+
     fn start_state(&self) -> &'static str {
         F::START_STATE
     }
@@ -129,10 +133,6 @@ impl<F: Declaration> Face for Declared<F> {
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
         F::Commands::lay_out(F::arguments(command), is_named)
-    }
-
-    fn has_command(&self, word: &str) -> bool {
-        words::has_command::<F::Commands>(word)
     }
 
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {

@@ -22,9 +22,11 @@ pub mod report;
 pub mod run;
 pub mod script_line;
 pub mod session_manager;
+pub mod setting;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod trace;
+pub mod watch;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub(crate) use command_set::commands;

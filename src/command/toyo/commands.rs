@@ -2,7 +2,7 @@
 
 use super::link::Toyo;
 use super::{
-    backup, bus, card, coordinate, counter, easy, error, home, host, info, init, io, jog, mvm, offset, orders,
+    alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
     overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
     timer,
 };
@@ -17,8 +17,9 @@ commands! {
         Status(status::Status),
         /// Current position of the axes
         Position(position::Position),
-        /// Errors
-        Error(Subcommands<error::Error>),
+        /// Alarms: list, history, reset, point
+        #[command(alias = "error")]
+        Alarm(Subcommands<alarm::Alarm>),
         /// Robot type, versions, axes, task, override
         Info(info::Info),
         /// Settings and errors of CC-Link
@@ -36,6 +37,7 @@ commands! {
         Reset(orders::Reset),
         "Motion":
         /// Return to the origin
+        #[command(alias = "origin")]
         Home(home::Home),
         /// Jog one axis, for a time or in small steps
         Jog(jog::Jog),

@@ -19,7 +19,7 @@ use crate::gate::{Confirmation, Gate};
 const LINES: &[(&str, Risk)] = &[
     ("status", Read), ("home", Motion), ("home --sync 1 --no-wait", Motion), ("position", Read), ("host on", Write),
     ("mode program", Write), ("servo off", Motion), ("stop", Write), ("stop --jog", Write), ("reset", Write),
-    ("error show", Read), ("error history", Read), ("error cancel", Write), ("error point", Read),
+    ("alarm list", Read), ("alarm history", Read), ("alarm reset", Write), ("alarm point", Read),
     ("run sequential 1", Motion), ("run palletizing --program 1", Motion), ("run easy --program 1", Motion),
     ("run point 1", Motion), ("jog X + inch", Motion), ("jog 2 - low --for 500ms", Motion),
     ("param list", Read), ("param get P01", Read), ("param dump", Read),

@@ -17,8 +17,10 @@ commands! {
         Status(status::Status),
         /// Versions, positions, servos, tasks, alarms
         Info(Subcommands<info::Info>),
-        /// Alarms
+        /// Alarms: list, history, reset
         Alarm(Subcommands<alarm::Alarm>),
+        /// Current position of a robot
+        Position(info::Where),
         /// The controller's clock
         Clock(Subcommands<clock::Clock>),
         "Power and operation":
@@ -62,6 +64,7 @@ commands! {
         /// Set the inching distance
         InchDistance(orders::InchDistance),
         /// Return to origin
+        #[command(alias = "home")]
         Origin(motion::Origin),
         /// Reset the absolute position of an axis
         AbsReset(motion::AbsReset),

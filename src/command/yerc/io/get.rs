@@ -12,6 +12,7 @@ use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::signal::Signal;
@@ -27,10 +28,10 @@ use crate::output::view::View;
 )]
 pub struct Get {
     /// Such as 20010, #20010 or 20010..20027
-    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_parser = Signals::parse)]
+    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = Signals::parse)]
     signals: Vec<Signals>,
     /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
-    #[arg(long = "group", value_name = "GROUP", value_parser = Groups::parse)]
+    #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
     groups: Vec<Groups>,
 }
 
@@ -70,6 +71,12 @@ impl Command for Get {
         items::nothing(report.asked(), report.errors())?;
         Ok(report)
     }
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yerc.io.watch";
+    const WATCHED: Watched =
+        Watched { list: "signals", name: "name", prefix: "", label: "class", value: Some("on"), empty: "no signals" };
 }
 
 fn once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {

@@ -8,6 +8,7 @@ use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
 use crate::command::frame::items;
+use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -24,7 +25,7 @@ use crate::output::view::{Cell, Table, View};
                         say so.")]
 pub struct Get {
     /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
-    #[arg(required = true, value_name = "REF", value_parser = Named::parse, add = complete::VARIABLE)]
+    #[arg(required = true, value_name = "REF", value_delimiter = ',', value_parser = Named::parse, add = complete::VARIABLE)]
     variables: Vec<Named>,
     /// Read strings by the 16-byte commands, also from a DX200
     #[arg(long)]
@@ -60,6 +61,12 @@ impl Command for Get {
         items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
         Ok(report)
     }
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yerc.var.watch";
+    const WATCHED: Watched =
+        Watched { list: "variables", name: "name", prefix: "", label: "", value: Some("value"), empty: "no variables" };
 }
 
 /// Variables in the order they were asked for.
