@@ -52,7 +52,7 @@ const YERC: [&str; 44] = [
     "raw",
 ];
 
-const TOYO: [&str; 74] = [
+const TOYO: [&str; 78] = [
     "status",
     "home",
     "position",
