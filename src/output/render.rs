@@ -178,9 +178,8 @@ impl Layout {
         // The last column has blanks behind it, too, where there is room for them.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
-        let at = |column: &Column, share: usize| match column.is_whole {
-            true => column.width,
-            false => column.width.min(share.max(column.least)),
+        let at = |column: &Column, share: usize| {
+            if column.is_whole { column.width } else { column.width.min(share.max(column.least)) }
         };
         let total = |columns: &[Column], share| columns.iter().map(|column| at(column, share)).sum::<usize>();
         let share = (1..=room).rev().find(|share| total(&self.columns, *share) <= room).unwrap_or(1);
