@@ -1,6 +1,6 @@
 //! A command line with all that it needs, before anything is sent.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory as _, ValueEnum as _};
 
@@ -19,6 +19,7 @@ use crate::gate::Gate;
 use crate::output::Format;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
+use crate::settings::alarms;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::Given;
@@ -84,7 +85,10 @@ impl PreparedCommand {
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
-            Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
+            Task::Common(Common::Status(_) | Common::Top(_)) => {
+                run.sources.widen();
+                run.sources.selection.every_simulator = true;
+            }
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
@@ -129,7 +133,9 @@ impl Task {
         match self {
             Self::Family(_, command) if command.driver().is_none() => Need::Nothing,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
+            Self::Common(Common::Robots(robots)) if robots.is_about_file() => Need::Names,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+            Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -158,6 +164,7 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
+    alarms::beside(location(globals.config.clone())?.path());
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }
@@ -178,16 +185,14 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
             (false, false) => Sessions::Shared,
         },
         simulated: None,
+        every_simulator: false,
     };
     let names = variable("ARMCTL_ROBOT", names)?;
     if let (Some(names), false) = (names, selection.has_flags()) {
         (selection.robots, selection.from_environment) = (names, true);
     }
     // Also for a robot that is told by its address: the file says whether that may be changed.
-    let mut location = Location::find(match globals.config {
-        Some(path) => Some(path),
-        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
-    });
+    let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
     }
@@ -236,6 +241,14 @@ const OUTPUT: &str = "ARMCTL_OUTPUT";
 
 fn format(name: &str) -> Result<Format, String> {
     Format::from_str(name, true).map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl and csv"))
+}
+
+/// Where the inventory is.
+fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
+    Ok(Location::find(match config {
+        Some(path) => Some(path),
+        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
+    }))
 }
 
 /// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.

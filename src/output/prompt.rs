@@ -29,7 +29,7 @@ impl Screen {
         Self::ask(&format!("{what} Type '{word}' to go on:")).map(|answer| answer.trim_ascii() == word.as_bytes())
     }
 
-    fn ask(question: &str) -> Result<Vec<u8>, Failure> {
+    pub(super) fn ask(question: &str) -> Result<Vec<u8>, Failure> {
         Self::prose(&format!("{} ", super::escape::line(question)));
         let mut answer = Vec::new();
         // A terminal that cannot be read any more, as it was closed, gives no answer either.

@@ -2,6 +2,8 @@
 //!
 //! Flag > environment > robot > the file's `[defaults]` > built-in.
 
+pub mod alarms;
+pub mod document;
 pub mod duration;
 pub mod inventory;
 pub mod target;
@@ -118,6 +120,8 @@ pub struct Selection {
     pub sessions: Sessions,
     /// The family of a simulator where the command line does not tell it; `None` for the first one.
     pub simulated: Option<Family>,
+    /// Whether `--sim` means the simulators of all families where the command line does not tell one.
+    pub every_simulator: bool,
 }
 
 /// Which sessions commands go through.
@@ -154,6 +158,7 @@ impl Selection {
     /// Whether the command line can mean several robots, so that the answer is a list.
     pub fn is_plural(&self) -> bool {
         self.all
+            || self.sim && self.every_simulator
             || self.robots.len() > 1
             || !self.tags.is_empty()
             || self.robots.iter().any(|name| name.contains(['*', '?']))
@@ -185,7 +190,11 @@ impl Sources {
                 .hint("unset one of them, or name the robot with -r or -t"));
         }
         if selection.sim {
-            return Ok(vec![self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family)?]);
+            let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
+            if family.is_none() && selection.every_simulator {
+                return Family::ALL.into_iter().map(|family| simulator(Some(family))).collect();
+            }
+            return Ok(vec![simulator(family)?]);
         }
         if let Some(target) = &selection.target {
             return Ok(vec![self.unnamed(target, Origin::Flag, family)?]);
@@ -239,6 +248,11 @@ impl Sources {
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+    }
+
+    /// The robot at an address, with every setting in force.
+    pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
+        self.unnamed(&Given::Url(target.clone()), Origin::Flag, Some(family))
     }
 
     fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {

@@ -37,6 +37,7 @@ transcripts! {
     fleets
     help
     information
+    inventory
     jobs
     mistakes
     moves

@@ -197,7 +197,7 @@ impl Run {
         match report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
             Some(failure) => {
-                let told = printed.is_ok() && !self.is_for_people();
+                let told = printed.is_ok() && self.screen.is_json();
                 Err(RunError { failure, envelope: None, told })
             }
             None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
@@ -281,7 +281,7 @@ impl Run {
     async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
-            let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
+            let printed = self.print_many(command, robots, &outcomes, Place::First);
             printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
             return self.verdict(&outcomes);
         }
@@ -311,7 +311,7 @@ impl Run {
             });
             let outcomes = at_a_time(attempts).await;
             let place = self.round(rounds.is_first(), false);
-            let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
+            let envelopes = self.print_many(command, robots, &outcomes, place)?;
             if rounds.is_met(&envelopes)? {
                 return Ok(());
             }

@@ -5,10 +5,11 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{Run, RunError};
-use crate::command::frame::{AnyReport, Outcome};
+use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
-use crate::output::view::{Table, View};
+use crate::output::flat::{Lists, Rows};
+use crate::output::view::{Section, Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 
@@ -21,6 +22,8 @@ pub enum Place<'a> {
     First,
     /// A later one of a watch.
     Next,
+    /// A later one of a watch whose reports are lines.
+    Line,
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
@@ -41,27 +44,26 @@ impl Run {
     pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
         let failure = report.failure();
         if self.is_for_people() {
-            self.show(&report.view(), Place::Alone)?;
+            self.show_one(report, Place::Alone)?;
         } else {
             let envelope = Envelope::local(id, report.data()?);
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
             self.emit(self.of_stream(envelope))?;
         }
-        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: !self.is_for_people() }))
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: self.screen.is_json() }))
     }
 
     /// Writes what several robots reported, and says it as envelopes.
     pub(super) fn print_many(
         &self,
-        id: &str,
+        command: &dyn AnyCommand,
         robots: &[Robot],
         outcomes: &[Outcome],
         place: Place<'_>,
     ) -> Result<Vec<Envelope>, Failure> {
-        let envelopes = robots
-            .iter()
-            .zip(outcomes)
-            .map(|(robot, outcome)| enveloped(robot, id, outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone)));
+        let envelopes = robots.iter().zip(outcomes).map(|(robot, outcome)| {
+            enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
+        });
         let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
@@ -82,7 +84,16 @@ impl Run {
                 Err(failure) => reasons.push((robot, failure.clone())),
             }
         }
-        self.show_many(&views, place)?;
+        if self.screen.format == Format::Csv {
+            let reports = robots.iter().zip(outcomes);
+            let reports = reports.filter_map(|(robot, outcome)| Some((Some(robot), outcome.as_deref().ok()?)));
+            self.show_csv(&reports.collect::<Vec<_>>(), place)?;
+        } else {
+            self.show_many(&views, place)?;
+        }
+        if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
+            self.screen.note(&summary);
+        }
         for (robot, failure) in reasons {
             // Failures of the link name the robot already.
             let label = robot.label();
@@ -92,6 +103,11 @@ impl Run {
             self.screen.failure(&Failure { message, ..failure });
         }
         Ok(envelopes)
+    }
+
+    /// Whether people see a table once, with room below it.
+    fn has_trailer(&self) -> bool {
+        self.screen.format == Format::Table && !self.redraw.is_on() && !self.gate.dry_run
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.
@@ -119,7 +135,7 @@ impl Run {
         place: Place<'_>,
     ) -> Result<(), Failure> {
         if self.is_for_people() {
-            return self.show(&report.view(), place);
+            return self.show_one(report, place);
         }
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
@@ -137,7 +153,11 @@ impl Run {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
         }
-        if is_first { Place::First } else { Place::Next }
+        match (is_first, stays) {
+            (true, _) => Place::First,
+            (false, true) => Place::Line,
+            (false, false) => Place::Next,
+        }
     }
 
     /// Writes an envelope.
@@ -167,26 +187,42 @@ impl Run {
         })
     }
 
+    fn show_one(&self, report: &dyn AnyReport, place: Place<'_>) -> Result<(), Failure> {
+        match self.screen.format {
+            Format::Csv => self.show_csv(&[(None, report)], place),
+            _ => self.show(&report.view(), place),
+        }
+    }
+
+    /// Writes the fields of reports as CSV; later rounds of a watch below the columns of the first.
+    fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: Place<'_>) -> Result<(), Failure> {
+        let is_later = matches!(place, Place::Next | Place::Line);
+        let known = if is_later { self.redraw.columns.take() } else { Vec::new() };
+        let count = known.len();
+        let mut rows = Rows::under(known);
+        for (robot, report) in reports {
+            let lists = match report.rows() {
+                Some(list) => Lists::One(list),
+                None if report.view().sections.iter().any(|part| matches!(part, Section::Table(_))) => Lists::All,
+                None => Lists::None,
+            };
+            let before: Vec<(&str, &str)> = robot.iter().map(|robot| ("robot", robot.name.as_str())).collect();
+            rows.add(&before, &report.data()?, lists);
+        }
+        let has_header = !is_later || rows.columns().len() > count;
+        self.redraw.columns.replace(rows.columns().to_vec());
+        self.screen.data(&rows.csv(has_header))
+    }
+
     fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
         let screen = &self.screen;
-        let is_csv = screen.format == Format::Csv;
+        let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
-            _ if is_csv => {
-                let robot = if let Place::Among { robot, .. } = place { Some(robot.name.as_str()) } else { None };
-                let csv = render::csv(view, robot);
-                let has_header = matches!(place, Place::Alone | Place::First | Place::Among { first: true, .. });
-                if has_header { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
-            }
-            _ => {
-                let text = render::text(view, screen.width(), screen.stdout_color());
-                match place {
-                    Place::Alone | Place::First => text,
-                    Place::Next if self.redraw.is_on() => text,
-                    Place::Next => format!("\n{text}"),
-                    Place::Among { robot, first } => {
-                        format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
-                    }
-                }
+            Place::Alone | Place::First | Place::Line => text,
+            Place::Next if self.redraw.is_on() => text,
+            Place::Next => format!("\n{text}"),
+            Place::Among { robot, first } => {
+                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
             }
         };
         screen.data(&self.redraw.over(text))
