@@ -473,7 +473,9 @@ mod tests {
             ["P2", list, "-"],
         ];
         let mut table = Table::new(&["name", "text", "where"], "");
-        rows.iter().for_each(|row| table.row(row.map(Cell::from)));
+        for row in &rows {
+            table.row(row.map(Cell::from));
+        }
         let fields = || rows.iter().flatten().map(|text| ("field", Cell::from(*text)));
         for width in 40..200 {
             for view in [View::table(table.clone()), View { sections: vec![Section::Fields(fields().collect())] }] {
