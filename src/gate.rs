@@ -191,6 +191,11 @@ impl Change {
     }
 }
 
+/// What was asked about is not so any more.
+pub fn outdated(message: impl Into<String>) -> Failure {
+    Failure::new(Kind::Rejected, message).hint("somebody else is at work there: look, then repeat the command")
+}
+
 /// Nobody can be asked.
 pub fn unasked(robot: &Robot, risk: Risk, text: &str) -> Failure {
     let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };

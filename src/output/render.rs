@@ -178,9 +178,8 @@ impl Layout {
         // The last column has blanks behind it, too, where there is room for them.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
-        let at = |column: &Column, share: usize| match column.is_whole {
-            true => column.width,
-            false => column.width.min(share.max(column.least)),
+        let at = |column: &Column, share: usize| {
+            if column.is_whole { column.width } else { column.width.min(share.max(column.least)) }
         };
         let total = |columns: &[Column], share| columns.iter().map(|column| at(column, share)).sum::<usize>();
         let share = (1..=room).rev().find(|share| total(&self.columns, *share) <= room).unwrap_or(1);
@@ -474,7 +473,9 @@ mod tests {
             ["P2", list, "-"],
         ];
         let mut table = Table::new(&["name", "text", "where"], "");
-        rows.iter().for_each(|row| table.row(row.map(Cell::from)));
+        for row in &rows {
+            table.row(row.map(Cell::from));
+        }
         let fields = || rows.iter().flatten().map(|text| ("field", Cell::from(*text)));
         for width in 40..200 {
             for view in [View::table(table.clone()), View { sections: vec![Section::Fields(fields().collect())] }] {

@@ -52,7 +52,7 @@ const YERC: [&str; 44] = [
     "raw",
 ];
 
-const TOYO: [&str; 74] = [
+const TOYO: [&str; 78] = [
     "status",
     "home",
     "position",
@@ -65,6 +65,11 @@ const TOYO: [&str; 74] = [
     "alarm history",
     "alarm reset",
     "alarm point",
+    // Other words for these.
+    "error show",
+    "error history",
+    "error cancel",
+    "error point",
     "run sequential",
     "run palletizing",
     "run easy",

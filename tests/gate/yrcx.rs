@@ -30,7 +30,9 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
         desk.fails(&format!("-r cell yrcx {line}"), 7, "would move ");
         let mut terminal = Terminal::start(desk.command(&format!("-r cell yrcx {line}")), 100, 24).unwrap();
         terminal.says("REAL CONTROLLER: cell (yrcx, ");
-        said.iter().for_each(|said| terminal.says(said));
+        for said in said {
+            terminal.says(said);
+        }
         terminal.says("Continue?");
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");

@@ -18,7 +18,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
+use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
 use crate::output::view::{Cell, Tone, View};
 
@@ -155,8 +155,7 @@ impl Command for Point {
             authority.confirm(&change).await?;
             if self.place(link).await? != there {
                 let message = format!("point {} was changed since the question; nothing was moved", self.point);
-                return Err(Failure::new(Kind::Rejected, message)
-                    .hint("somebody else is at work there: look, then repeat the command"));
+                return Err(outdated(message));
             }
         } else {
             authority.confirm(&Change::new(Command::intent(self))).await?;

@@ -7,7 +7,7 @@ use crate::controller::units;
 use crate::controller::yerc::payload::JobInfo;
 use crate::controller::yerc::query::ReadJob;
 use crate::failure::{Failure, Kind};
-use crate::gate::Change;
+use crate::gate::{Change, outdated};
 
 /// The job that a start runs, as far as the controller tells it.
 #[derive(Debug, PartialEq, Eq)]
@@ -70,7 +70,6 @@ impl Chosen {
             (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
             (old, new) => format!("{new} is selected now, the question was about {old}"),
         };
-        Err(Failure::new(Kind::Rejected, format!("{message}; nothing was started"))
-            .hint("somebody else is at work there: look, then repeat the command"))
+        Err(outdated(format!("{message}; nothing was started")))
     }
 }

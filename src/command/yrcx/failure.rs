@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn what_changes_something_names_what_tells() {
         assert_eq!(verification_hint(Command::PointAdd), "`yrcx point get` tells");
-        assert!(verification_hint(Command::MoveArch).contains("info position"));
+        assert!(verification_hint(Command::MoveArch).contains("yrcx position"));
         assert!(verification_hint(Command::ProgramRun).contains("info tasks"));
         assert!(verification_hint(Command::MotorOn).contains("motor power"));
         assert!(verification_hint(Command::AlarmReset).contains("status"));

@@ -139,8 +139,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         if let (Some(asked), true) = (&start, is_asked) {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !stands(asked, &now) {
-                return Err(Failure::new(Kind::Rejected, moved_meanwhile(group, &now))
-                    .hint("somebody else is at work there: look, then repeat the command"));
+                return Err(moved_meanwhile(group, &now));
             }
         }
         let start = start.filter(|_| !no_wait);

@@ -6,7 +6,8 @@ use crate::command::yerc::position::{axis_names, in_a_line};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{Position, PositionKind, SpeedClass};
-use crate::gate::Change;
+use crate::failure::Failure;
+use crate::gate::{Change, outdated};
 
 /// A motion in words.
 #[derive(Debug)]
@@ -99,7 +100,7 @@ fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
 }
 
 /// Where the robot stands is not where it stood when that was asked.
-pub(super) fn moved_meanwhile(group: Group, now: &Position) -> String {
+pub(super) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    format!("{group} has moved since the question, to {place}; nothing was ordered")
+    outdated(format!("{group} has moved since the question, to {place}; nothing was ordered"))
 }

@@ -66,13 +66,13 @@ pub struct Which {
 }
 
 /// A row each.
-pub fn rows(past: &Past) -> Table {
+pub fn rows(messages: &Past) -> Table {
     let cells = |AlarmReport { code, meaning, place, part, .. }: &AlarmReport| {
         let [code, place, part] = [code, place, part].map(|text| Cell::maybe(text.as_deref()));
         [code, Cell::maybe(*meaning), place, part]
     };
     let columns = ["alarm", "meaning", "place", "part"];
-    past.table(["number"], columns, "no alarms", |which| [which.number.into()], cells)
+    messages.table(["number"], columns, "no alarms", |which| [which.number.into()], cells)
 }
 
 impl Report for Messages {

@@ -7,8 +7,8 @@ use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::failure::{Failure, Kind};
-use crate::gate::Change;
+use crate::failure::Failure;
+use crate::gate::{Change, outdated};
 
 /// Where a motion ends.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,8 +38,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     authority.confirm(&goal.told(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
-        _ => Err(Failure::new(Kind::Rejected, "the point was changed since the question; nothing was moved")
-            .hint("somebody else is at work there: look, then repeat the command")),
+        _ => Err(outdated("the point was changed since the question; nothing was moved")),
     }
 }
 
