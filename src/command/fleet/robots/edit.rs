@@ -33,6 +33,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     let before = file::read(path)?;
     let folder = files::folder_of(path);
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
     let copy = tempfile::Builder::new().prefix("robots-").suffix(".toml").tempfile_in(&folder);
     let mut copy = copy.with_context(|| folder.display().to_string())?;
     copy.write_all(if before.is_empty() { NEW } else { &before }.as_bytes()).with_context(place)?;
@@ -47,7 +48,11 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     // Named like the copy, so that line and column are those of the file that is to be corrected.
     let checked = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
         file::replace(path, |now| {
-            if now == before { Ok(after) } else { Err(Failure::usage(format!("{} was changed meanwhile", place()))) }
+            if now == before {
+                Ok(after)
+            } else {
+                Err(Failure::usage(format!("{} was changed meanwhile", place())).hint("put both together by hand"))
+            }
         })
     });
     match checked {
