@@ -16,7 +16,7 @@ const COLUMNS: usize = 90;
 /// The pictures: name, and what is typed.
 const PICTURES: [(&str, &[&str]); 5] = [
     ("fleet", &["armctl status"]),
-    ("alarm", &["armctl -r weld2 yerc alarm list", "armctl -r tray toyo error show", "armctl explain yrcx 12.600"]),
+    ("alarm", &["armctl -r weld2 yerc alarm list", "armctl -r tray toyo alarm list", "armctl explain yrcx 12.600"]),
     (
         "refused",
         &["armctl -t udp://192.168.1.31 yerc servo on", "armctl -t udp://192.168.1.31 yerc servo on --dry-run"],

@@ -281,7 +281,7 @@ fn no_order_leaves_twice() {
         ("servo on", "@SVON"),
         ("mode auto", "@MAUT"),
         ("reset", "@REST"),
-        ("error cancel", "@CERR"),
+        ("alarm reset", "@CERR"),
         ("coordinate set 1 2 3 4", "@MRSS TASK=01 X=+0001.00 Y=+0002.00 Z=+0003.00 R=+0004.00 V=00"),
         ("card write", "@WMCA"),
         ("card read", "@RMCA"),

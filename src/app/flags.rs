@@ -2,6 +2,7 @@
 
 use super::prepared::Task;
 use crate::cli::Globals;
+use crate::command::Command as _;
 use crate::command::common::Common;
 use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
@@ -35,8 +36,8 @@ impl Uses {
 
     fn of_common(common: &Common) -> Self {
         match common {
-            Common::Backup(backup) if backup.is_local() => NONE,
-            Common::Diff(diff) if diff.is_local() => NONE,
+            Common::Backup(backup) if !backup.takes_robot() => NONE,
+            Common::Diff(diff) if !diff.takes_robot() => NONE,
             Common::Status(_)
             | Common::Top(_)
             | Common::Restore(_)

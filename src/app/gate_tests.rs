@@ -96,7 +96,7 @@ fn seen(line: &str) -> Result<Seen, String> {
             of(&*command, family)
         }
         Invocation::Task(Task::Common(Common::Status(command))) => of(&command, "toyo"),
-        Invocation::Task(Task::Common(Common::Backup(command))) => of(&command, "toyo"),
+        Invocation::Task(Task::Common(Common::Backup(command))) => of(command.making(), "toyo"),
         Invocation::Task(Task::Common(Common::Restore(command))) => of(&command, "toyo"),
         Invocation::Task(Task::Common(Common::Diff(command))) => of(&command, "toyo"),
         _ => return Err(format!("{line} is for no robot")),
@@ -133,8 +133,7 @@ fn every_command_is_held_by_the_gate() {
             (
                 "a read-only robot",
                 refused(&read_only) == (*risk > Read && !is_stop)
-                    || line.starts_with("backup ")
-                    || line.starts_with("diff "),
+                    || line.split(' ').any(|word| ["backup", "diff"].contains(&word)),
             ),
             ("a fleet", refused(&fleet) == (*risk >= Destroy || (*risk > Read && !is_stop && refused(&read_only)))),
             ("its first grant", intent.granted_at_first() <= if is_when_known { (*risk).min(Write) } else { *risk }),

@@ -23,11 +23,14 @@ const MOST: usize = 4;
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let typed = Typed::new(args, whole);
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => place(&mut error, ContextKind::InvalidSubcommand, &typed, whole),
+        ErrorKind::InvalidSubcommand => {
+            absent(&mut error, &typed).or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole))
+        }
         ErrorKind::UnknownArgument => {
             place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
         }
         ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
+        ErrorKind::InvalidValue => folder(&error, &typed, whole),
         ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| number(&why.to_string())),
         _ => None,
     };
@@ -35,6 +38,14 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
     }
     error
+}
+
+/// What there is instead of something that a family has not, whatever it is called.
+fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
+    let ([family], [word, ..]) = (&typed.path[..], &typed.rest[..]) else { return None };
+    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| of == family && words.contains(word))?;
+    error.remove(ContextKind::SuggestedSubcommand);
+    Some((*instead).to_owned())
 }
 
 /// Where the wrong word belongs.
@@ -72,6 +83,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     if !may_do_harm(&words, whole) {
         return None;
     }
+    let (_, words) = found(&words, whole);
     let most = leaves::leaves().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
     Some(match most.map(|(_, risk)| *risk).max() {
         Some(Risk::Destroy) => "deletes or overwrites",
@@ -90,7 +102,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     let at = words.iter().rposition(|other| other == word)?;
     let is_number = |word: &&str| word.parse::<f64>().is_ok();
     let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
-    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.path.contains(word))? + 1;
+    let first = words[..at].iter().rposition(|word| !is_value(word) || typed.said.contains(word))? + 1;
     // Only the last argument can have been meant to have blanks.
     let is_of_flag = words[first - 1].starts_with('-');
     let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
@@ -104,6 +116,14 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         let quote = if values.concat().contains('\'') { '"' } else { '\'' };
         format!("a value with blanks stands in quotes: {quote}{}{quote}", values.join(" "))
     })
+}
+
+/// The flag for a folder, where that of the format was taken for it.
+fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let has_folder = command.get_arguments().any(|argument| argument.get_long() == Some("dir"));
+    (has_folder && flag.starts_with("--output")).then(|| "--output is the format; the folder is --dir".to_owned())
 }
 
 /// Which number to type instead of one that is refused.
@@ -129,10 +149,21 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     }
 }
 
-/// Whether the command that these words begin is a dangerous one.
+/// Whether the command that these words begin is a dangerous one, by whichever of its names.
 fn may_do_harm(words: &[&str], whole: &Command) -> bool {
-    let command = words.iter().try_fold(whole, |command, word| command.find_subcommand(word));
-    is_dangerous(words, command.is_some_and(Command::has_subcommands))
+    let (command, path) = found(words, whole);
+    is_dangerous(&path, command.is_some_and(Command::has_subcommands))
+}
+
+/// The command that these words lead to, if they do, and the words with the commands' own names.
+fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
+    let mut command = Some(whole);
+    let path = words.iter().map(|word| {
+        command = command.and_then(|command| command.find_subcommand(word));
+        command.map_or(*word, Command::get_name)
+    });
+    let path = path.collect();
+    (command, path)
 }
 
 /// Takes out of the similar words those of dangerous commands.
@@ -281,7 +312,7 @@ mod tests {
         for (line, expected) in [
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
-            ("armctl list alarm", "`armctl yerc alarm list`"),
+            ("armctl list alarm", "`armctl yerc alarm list` or `armctl yrcx alarm list` or `armctl toyo alarm list`"),
             ("armctl yerc job list", "`armctl yerc file list`"),
             ("armctl yerc file ls", "`armctl yerc file list`"),
             ("armctl yerc io read 1", "`armctl yerc io get`"),
@@ -292,8 +323,7 @@ mod tests {
             ("armctl yerc job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
-            ("armctl toyo alarm", "`armctl toyo error show`"),
-            ("armctl yrcx error", "`armctl yrcx info alarm`"),
+            ("armctl yrcx error", "`armctl yrcx alarm list`"),
             (
                 "armctl version",
                 "`armctl --version` or `armctl yerc info` or `armctl yrcx info version` or `armctl toyo info`",
@@ -303,6 +333,19 @@ mod tests {
         ] {
             assert_eq!(tip(line), Some(format!("the command is {expected}")), "{line}");
         }
+    }
+
+    #[test]
+    fn another_name_of_what_moves_is_no_more_proposed_than_its_own() {
+        for line in ["armctl toyo origi", "armctl toyo hom", "armctl yrcx hom", "armctl yrcx origi"] {
+            let tip = tip(line).unwrap_or_default();
+            assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
+        }
+        let absent = tip("armctl yerc home").unwrap();
+        assert!(
+            absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
+            "{absent}"
+        );
     }
 
     #[test]
@@ -338,6 +381,7 @@ mod tests {
             ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
             ("armctl --count 1,5 yerc status", "write a whole number"),
+            ("armctl yerc file get A.JBI --output saved", "--output is the format; the folder is --dir"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");

@@ -6,9 +6,10 @@ use clap::builder::StyledStr;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Command, CommandFactory as _, FromArgMatches, Subcommand};
 
-use super::misplaced;
 use super::typed::Typed;
+use super::{assigned, misplaced};
 use crate::cli::{Cli, FamilyWord, LONG_VERSION, Top, VERSION, Words};
+use crate::command::about::help;
 use crate::command::about::page::page;
 use crate::command::common::Common;
 use crate::command::families;
@@ -41,28 +42,29 @@ pub enum Refusal {
     Text(StyledStr),
     /// It ends before a verb: the help that lists them, and they alone.
     Verb(StyledStr, String),
+    /// It asks for help on something that is not there.
+    Unknown(Failure),
     /// It is wrong.
     Mistake(clap::Error),
 }
 
 impl Refusal {
     fn new(error: clap::Error, args: &[OsString], whole: &Command) -> Self {
-        let Typed { mut path, rest } = Typed::new(args, whole);
+        let Typed { mut path, rest, .. } = Typed::new(args, whole);
         let is_long = args.iter().any(|word| word == "--help");
         match error.kind() {
             ErrorKind::DisplayVersion => Self::Text(error.render()),
             ErrorKind::DisplayHelp => Self::Text(page(whole, &path, is_long)),
             ErrorKind::InvalidSubcommand if rest.first() == Some(&"help") => {
-                let below = |path: &[&str]| path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
-                for word in &rest[1..] {
-                    path.push(word);
-                    if below(&path).is_none() {
-                        path.pop();
-                    }
-                }
+                path.extend(&rest[1..]);
                 let mut whole = whole.clone();
                 whole.build();
-                Self::Text(page(&whole, &path, is_long))
+                if path.iter().try_fold(&whole, |command, word| command.find_subcommand(word)).is_some() {
+                    return Self::Text(page(&whole, &path, is_long));
+                }
+                // No command of the family: a topic, or a command of all.
+                let words: Vec<String> = rest[1..].iter().map(|word| (*word).to_owned()).collect();
+                help::text(&words, true, Cli::command).map_or_else(Self::Unknown, |text| Self::Text(text.into()))
             }
             ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
                 let command = path.iter().try_fold(whole, |command, word| command.find_subcommand(word));
@@ -78,6 +80,7 @@ impl Refusal {
         match self {
             Self::Text(_) => Failure::usage("this prints a text to read").hint("type it at a terminal"),
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
+            Self::Unknown(failure) => failure.clone(),
             Self::Mistake(error) => {
                 let text = error.render().to_string();
                 let message: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();
@@ -120,10 +123,11 @@ impl Parser {
 
     /// Whose command a word is, where it may be one of this family.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
-        let of_family = family.is_some_and(|family| families::of(family).has_command(word));
-        if of_family {
+        let all = laid_out::<Top>(&mut self.all);
+        let of_family = family.and_then(|family| all.find_subcommand(family.name())?.find_subcommand(word));
+        if of_family.is_some() {
             Owner::Family
-        } else if laid_out::<Top>(&mut self.all).find_subcommand(word).is_some() {
+        } else if all.find_subcommand(word).is_some() {
             Owner::All
         } else {
             Owner::Nobody
@@ -142,7 +146,8 @@ fn laid_out<C: Subcommand>(command: &mut Option<Command>) -> &mut Command {
 }
 
 fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words<C>, clap::Error> {
-    let parsed = command.try_get_matches_from_mut(args);
+    let parted = assigned::parted(args, command);
+    let parsed = command.try_get_matches_from_mut(parted.as_deref().unwrap_or(args));
     let words = parsed.and_then(|mut matches| Words::from_arg_matches_mut(&mut matches));
     words.map_err(|error| error.format(command))
 }

@@ -209,6 +209,8 @@ impl Repl {
         let args = self.meaning.args(&words);
         let Words { globals, command } = match self.meaning.parser.parse(&args) {
             Ok(words) => words,
+            // A script wants something done.
+            Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
             Err(error) => {
                 return refuse(&args, &error, self.screen.is_json(), false).map_or_else(Next::Failed, |()| Next::Line);
             }

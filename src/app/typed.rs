@@ -7,19 +7,23 @@ use clap::{Arg, Command};
 /// The words of a command line, without flags and their values.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Typed<'a> {
-    /// Those that lead to a command.
+    /// Those that lead to a command, by their own names.
     pub path: Vec<&'a str>,
+    /// The same as they were typed: another word may stand for one.
+    pub said: Vec<&'a str>,
     /// What follows them.
     pub rest: Vec<&'a str>,
+    /// Where in the line that stands.
+    pub at: Vec<usize>,
 }
 
 impl<'a> Typed<'a> {
     /// Of a line, the program's name included.
-    pub fn new(args: &'a [OsString], whole: &Command) -> Self {
+    pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
         let mut commands = vec![whole];
-        let mut words = args.iter().skip(1).filter_map(|word| word.to_str());
-        while let Some(word) = words.next().filter(|word| *word != "--") {
+        let mut words = args.iter().enumerate().skip(1).filter_map(|(at, word)| Some((at, word.to_str()?)));
+        while let Some((at, word)) = words.next().filter(|(_, word)| *word != "--") {
             if word.starts_with('-') && word.len() > 1 {
                 if takes_next(word, &commands) {
                     words.next();
@@ -29,9 +33,11 @@ impl<'a> Typed<'a> {
             let below = commands.last().and_then(|command| command.find_subcommand(word));
             if let Some(below) = below.filter(|_| typed.rest.is_empty()) {
                 commands.push(below);
-                typed.path.push(word);
+                typed.path.push(below.get_name());
+                typed.said.push(word);
             } else {
                 typed.rest.push(word);
+                typed.at.push(at);
             }
         }
         typed
@@ -39,7 +45,7 @@ impl<'a> Typed<'a> {
 
     /// All of them.
     pub fn words(&self) -> Vec<&'a str> {
-        [&self.path[..], &self.rest].concat()
+        [&self.said[..], &self.rest].concat()
     }
 }
 
@@ -75,6 +81,7 @@ mod tests {
             ("armctl yerc job select --line 5 WELD status", "yerc job select", "WELD status"),
             ("armctl get file", "", "get file"),
             ("armctl yerc --watch status", "yerc status", ""),
+            ("armctl toyo error show", "toyo alarm list", ""),
         ] {
             let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
             let typed = Typed::new(&args, &whole);

@@ -6,6 +6,7 @@ use super::about::{completions, help, man, schema};
 use super::fleet::status::Overview;
 use super::fleet::{backup, robots, session, setup, tools, top};
 use super::frame::run::{Run, RunError};
+use crate::command::Command as _;
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]
@@ -53,8 +54,8 @@ impl Common {
             Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
                 true
             }
-            Self::Backup(backup) => !backup.is_local(),
-            Self::Diff(diff) => !diff.is_local(),
+            Self::Backup(backup) => backup.takes_robot(),
+            Self::Diff(diff) => diff.takes_robot(),
             _ => false,
         }
     }
@@ -87,7 +88,7 @@ impl Common {
             Self::Status(overview) => run.robots(&overview).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,
-            Self::Diff(diff) => diff.run(run).await,
+            Self::Diff(diff) => run.robots(&diff).await,
             Self::Top(top) => Box::pin(top.run(run)).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,

@@ -8,6 +8,11 @@ use super::Screen;
 use crate::failure::{Failure, Kind};
 
 impl Screen {
+    /// Says whom a question is about, with a word that nobody overlooks.
+    pub fn ask_title(&self, word: &str, whom: &str) {
+        Self::prose(&format!("{} {}\n", self.paint_stderr("1;31", word), super::escape::lines(whom)));
+    }
+
     /// Says what a question is about, even under `--quiet`.
     pub fn ask_note(&self, text: &str) {
         Self::prose(&format!("{}\n", super::escape::lines(text)));

@@ -105,8 +105,10 @@ pub struct Selection {
     pub sim: bool,
     /// `--target`.
     pub target: Option<Given>,
-    /// `--robot`, names or globs.
+    /// `--robot`, names or globs; without flags those of `ARMCTL_ROBOT`.
     pub robots: Vec<String>,
+    /// Whether they are those of `ARMCTL_ROBOT`.
+    pub from_environment: bool,
     /// `--tag`.
     pub tags: Vec<String>,
     /// `--all`.
@@ -138,8 +140,18 @@ pub enum Sessions {
 impl Selection {
     /// Whether nothing was said about robots.
     pub fn names_nobody(&self) -> bool {
-        let Self { sim, target, robots, tags, all, environment, sessions: _, simulated: _, every_simulator: _ } = self;
-        !(*sim || *all || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty())
+        !self.has_flags() && self.environment.is_none() && self.robots.is_empty()
+    }
+
+    /// Whether flags say something about robots.
+    pub fn has_flags(&self) -> bool {
+        let by_name = !self.from_environment && !self.robots.is_empty();
+        self.sim || self.all || self.target.is_some() || by_name || !self.tags.is_empty()
+    }
+
+    /// Whether a flag gives this very name: what is only set somewhere may be meant for another command.
+    pub fn is_typed(&self, name: &str) -> bool {
+        !self.from_environment && self.robots.iter().any(|robot| robot == name)
     }
 
     /// Whether the command line can mean several robots, so that the answer is a list.
@@ -172,6 +184,10 @@ impl Sources {
     /// The robots a command of `family` is for (of any family when `None`), at least one.
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
+        if selection.from_environment && selection.environment.is_some() {
+            return Err(Failure::usage("ARMCTL_TARGET and ARMCTL_ROBOT are both set, and each names a robot")
+                .hint("unset one of them, or name the robot with -r or -t"));
+        }
         if selection.sim {
             let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
             if family.is_none() && selection.every_simulator {
@@ -195,7 +211,7 @@ impl Sources {
         let address = family.map_or("udp://HOST", Family::address);
         Err(Failure::usage("no robot selected").hint(format!(
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
-             set ARMCTL_TARGET"
+             set ARMCTL_TARGET or ARMCTL_ROBOT"
         )))
     }
 
@@ -206,9 +222,12 @@ impl Sources {
 
     /// Takes a robot by its name, or by its URL.
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
-        let Selection { sim, target, robots, tags, all, .. } = &mut self.selection;
-        if *sim || *all || target.is_some() || !robots.is_empty() || !tags.is_empty() {
+        if self.selection.has_flags() {
             return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
+        }
+        let Selection { target, robots, from_environment, .. } = &mut self.selection;
+        if std::mem::take(from_environment) {
+            robots.clear();
         }
         if robot.contains(':') || Given::is_bare(robot) {
             *target = Some(robot.parse()?);
@@ -262,7 +281,8 @@ impl Sources {
                 }
             }
             if chosen.len() == before && self.inventory.matching(pattern).next().is_none() {
-                let failure = Failure::usage(format!("there is no robot '{pattern}' in the inventory"));
+                let set = if selection.from_environment { "ARMCTL_ROBOT: " } else { "" };
+                let failure = Failure::usage(format!("{set}there is no robot '{pattern}' in the inventory"));
                 if pattern.contains("://") || pattern.starts_with("sim:") {
                     return Err(failure.hint("a URL is given by -t (--target)"));
                 }

@@ -5,8 +5,11 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 41] = [
+const YERC: [&str; 44] = [
     "status",
+    "backup",
+    "restore",
+    "diff",
     "alarm list",
     "alarm history",
     "alarm reset",
@@ -49,7 +52,7 @@ const YERC: [&str; 41] = [
     "raw",
 ];
 
-const TOYO: [&str; 73] = [
+const TOYO: [&str; 74] = [
     "status",
     "home",
     "position",
@@ -58,10 +61,10 @@ const TOYO: [&str; 73] = [
     "servo",
     "stop",
     "reset",
-    "error show",
-    "error history",
-    "error cancel",
-    "error point",
+    "alarm list",
+    "alarm history",
+    "alarm reset",
+    "alarm point",
     "run sequential",
     "run palletizing",
     "run easy",
@@ -85,6 +88,7 @@ const TOYO: [&str; 73] = [
     "torque-table set",
     "backup",
     "restore",
+    "diff",
     "program list",
     "program get",
     "program put",
@@ -151,7 +155,10 @@ const YRCX: &[&str] = &[
     "info position",
     "info servo",
     "info alarm",
+    "alarm list",
+    "alarm history",
     "alarm reset",
+    "position",
     "io get",
     "io set",
     "io pulse",

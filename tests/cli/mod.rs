@@ -63,6 +63,7 @@ transcripts! {
     toyo_system
     usage
     variables
+    words
     yrcx
     yrcx_data
     yrcx_devicenet

@@ -4,7 +4,7 @@
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
     ("add", &["setup", "robots add"]),
-    ("alarm", &["yerc alarm list", "yrcx info alarm", "toyo error show"]),
+    ("alarm", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
     ("config", &["robots list", "robots edit"]),
     ("configure", &["setup"]),
     ("connect", &["repl", "session open"]),
@@ -12,10 +12,10 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("dir", &["yerc file list", "toyo program list"]),
     ("download", &["yerc file get", "toyo program get", "yrcx backup"]),
     ("edit", &["robots edit"]),
-    ("error", &["yerc alarm list", "yrcx info alarm", "toyo error show"]),
-    ("errors", &["yerc alarm history", "yrcx info message", "toyo error history"]),
+    ("error", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
+    ("errors", &["yerc alarm history", "yrcx alarm history", "toyo alarm history"]),
     ("estop", &["yerc hold on", "yrcx emergency-stop", "toyo stop"]),
-    ("fault", &["yerc alarm list", "yrcx info alarm", "toyo error show"]),
+    ("fault", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
     ("find", &["robots discover"]),
     ("home", &["toyo home", "yrcx origin"]),
     ("homing", &["toyo home", "yrcx origin"]),
@@ -33,13 +33,13 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("origin", &["yrcx origin", "toyo home"]),
     ("pause", &["yerc hold on", "yrcx stop", "toyo stop"]),
     ("ping", &["robots check"]),
-    ("pos", &["yerc position", "yrcx info position", "toyo position"]),
-    ("position", &["yerc position", "yrcx info position", "toyo position"]),
+    ("pos", &["yerc position", "yrcx position", "toyo position"]),
+    ("position", &["yerc position", "yrcx position", "toyo position"]),
     ("power", &["yerc servo", "yrcx power-on", "toyo servo"]),
     ("programs", &["yerc file list", "toyo program list"]),
     ("remove", &["yerc file delete", "toyo program delete"]),
     ("rename", &["robots rename"]),
-    ("reset", &["yerc alarm reset", "yrcx alarm reset", "toyo error cancel"]),
+    ("reset", &["yerc alarm reset", "yrcx alarm reset", "toyo alarm reset"]),
     ("rm", &["yerc file delete", "toyo program delete"]),
     ("run", &["yerc job start", "yrcx run", "toyo run"]),
     ("scan", &["robots discover"]),
@@ -50,8 +50,16 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("upload", &["yerc file put", "toyo program put"]),
     ("version", &["--version", "yerc info", "yrcx info version", "toyo info"]),
     ("watch", &["top", "status --watch"]),
-    ("where", &["yerc position", "yrcx info position", "toyo position"]),
+    ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
+
+/// What a family has not, though others have: the family, the words for it, and what there is instead.
+pub const ABSENT: &[(&str, &[&str], &str)] = &[(
+    "yerc",
+    &["home", "homing", "origin"],
+    "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
+     origin is set at the pendant",
+)];
 
 /// Other words for verbs, and what they are behind a noun that has one of these.
 pub const VERBS: &[(&str, &[&str])] = &[

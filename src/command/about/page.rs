@@ -7,6 +7,7 @@ use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
 use crate::command::face::words::Headings;
+use crate::command::frame::setting::Pair;
 use crate::command::leaves;
 
 /// The line that stands for the options of every command.
@@ -15,12 +16,17 @@ const EVERYWHERE: &str = "Options of every command (-r, -t, --sim, --json …): 
 /// The help of the command that `path` leads to. The short one has what is the command's own, and fits a small terminal
 /// where that does.
 pub fn page(root: &Command, path: &[&str], is_long: bool) -> StyledStr {
-    let Some(command) = path.iter().try_fold(root, |command, word| command.find_subcommand(word)) else {
-        return StyledStr::new();
-    };
+    let mut command = root;
+    let mut names = Vec::new();
+    for word in path {
+        let Some(below) = command.find_subcommand(word) else { return StyledStr::new() };
+        // Another word may lead there.
+        names.push(below.get_name());
+        command = below;
+    }
     let mut command = command.clone();
     if !path.is_empty() {
-        command = furnished(command, root, path, is_long);
+        command = furnished(command, root, &names, is_long);
     }
     if is_long { command.render_long_help() } else { command.render_help() }
 }
@@ -64,6 +70,9 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
     let notes = command.get_after_help().map(|notes| notes.ansi().to_string());
     if let (Some(notes), true) = (&notes, is_long || command.has_subcommands()) {
         let _ = writeln!(after, "{notes}\n");
+    }
+    if Pair::of(&command).is_some() {
+        let _ = writeln!(after, "A name and its value may be one word: NAME=VALUE.\n");
     }
     let examples: Vec<&str> =
         if command.has_subcommands() { Vec::new() } else { leaves::examples(path).take(3).collect() };

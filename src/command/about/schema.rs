@@ -4,9 +4,11 @@ use clap::Args;
 use serde_json::json;
 
 use crate::command::ValueKind;
+use crate::command::backup::check::Checked;
+use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
-use crate::command::fleet::status::Overview;
-use crate::command::fleet::{backup, robots, session, tools};
+use crate::command::fleet::status::{Fleet, Overview};
+use crate::command::fleet::{robots, session, tools};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -49,12 +51,12 @@ impl SchemaOf {
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
-    all.extend(backup::Backup::schemas());
-    all.extend(backup::Restore::schemas());
-    all.extend(backup::Diff::schemas());
+    all.extend(Backup::<Fleet>::schemas());
+    all.extend(Restore::<Fleet>::schemas());
+    all.extend(Diff::<Fleet>::schemas());
     let mut others = tools::schemas();
     others.extend([
-        SchemaEntry::of::<backup::Checked>("backup.check"),
+        SchemaEntry::of::<Checked>("backup.check"),
         SchemaEntry::of::<DryRun>("dry-run"),
         SchemaEntry::of::<Envelope>("envelope"),
         SchemaEntry::of::<ErrorBody>("failure"),

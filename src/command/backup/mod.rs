@@ -1,8 +1,14 @@
 //! Backups as all families make and restore them: what is asked for, and what became of each file or part.
 
+pub mod check;
+mod compare;
+mod diff;
 pub mod manifest;
+pub mod options;
 pub mod saving;
 pub mod text_diff;
+mod tolerance;
+pub mod words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -12,6 +18,7 @@ use serde::Serialize;
 
 use super::Report;
 use super::backup::manifest::{LeftOut, MANIFEST, Saved, State};
+use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::inventory::fits;
@@ -26,6 +33,11 @@ impl Only {
         self.0.is_empty() || self.0.iter().any(|pattern| fits(pattern, name))
     }
 
+    /// Whether a thing with several names is meant.
+    pub fn has_any<S: AsRef<str>>(&self, names: &[S]) -> bool {
+        names.iter().any(|name| self.has(name.as_ref()))
+    }
+
     /// As it stands in the scope of a backup.
     pub fn scope(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|pattern| format!("{ONLY}{pattern}"))
@@ -38,11 +50,13 @@ impl Only {
 
     /// Refuses patterns that fit nothing, as mistyped ones do.
     pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
-        match self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref()))) {
-            Some(pattern) => Err(Failure::usage(format!("nothing is called '{pattern}'"))
-                .hint("--only takes names as the backup lists them, with * and ?, such as 'points*' or '*.JBI'")),
-            None => Ok(()),
-        }
+        let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref())));
+        let Some(pattern) = unknown else { return Ok(()) };
+        let near = nearest(pattern, names.iter().map(AsRef::as_ref));
+        let near = near.map_or(String::new(), |near| format!("did you mean {near}? "));
+        Err(Failure::usage(format!("nothing is called '{pattern}'")).hint(format!(
+            "{near}--only takes names as the backup lists them, with * and ?, such as 'points*' or '*.JBI'"
+        )))
     }
 }
 

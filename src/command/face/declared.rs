@@ -12,11 +12,12 @@ use super::sample::{Detail, Sample};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
 use super::{Face, HeldLink, Watch};
+use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
 use crate::command::frame::connection;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyContext, CommandSet, Context, Driver, Family, OfflineCommand, Own, SchemaEntry};
+use crate::command::{Access, AnyContext, CommandSet, Driver, OfflineCommand, Own, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -25,7 +26,7 @@ use crate::transport::session::host::Guard;
 
 /// A family, as it is written down in its `face.rs`.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
-pub trait Declaration: Family {
+pub trait Declaration: Backups {
     /// What stands behind its word.
     type Commands: CommandSet + Subcommand;
     /// `armctl decode`.
@@ -76,15 +77,6 @@ pub trait Declaration: Family {
     async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure>;
     /// Opens a link for a session to hold.
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
-
-    /// See [`Face::backup_risk`].
-    fn backup_risk(_robot: &Robot) -> Risk {
-        Risk::Read
-    }
-    /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure>;
-    /// Writes a backup back.
-    async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure>;
 }
 
 /// Looks at a robot again and again, for `top`.
@@ -141,10 +133,6 @@ impl<F: Declaration> Face for Declared<F> {
 
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command {
         F::Commands::lay_out(F::arguments(command), is_named)
-    }
-
-    fn has_command(&self, word: &str) -> bool {
-        words::has_command::<F::Commands>(word)
     }
 
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error> {

@@ -45,8 +45,6 @@ pub trait Face: Sync {
     fn augment(&self, command: clap::Command) -> clap::Command;
     /// Its word with as much as is named.
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
-    /// Whether a word is one of its commands.
-    fn has_command(&self, word: &str) -> bool;
     /// What stands behind its word.
     fn read(&self, matches: &mut ArgMatches) -> Result<Typed, clap::Error>;
     /// The schemas of all its reports.

@@ -45,11 +45,6 @@ pub struct Headings(pub fn() -> Vec<(Option<&'static str>, String)>);
 
 impl CommandExt for Headings {}
 
-/// Whether a word is a command of a family.
-pub fn has_command<C: Subcommand>(word: &str) -> bool {
-    Verb::<C>::has_subcommand(word)
-}
-
 /// What is wanted of a family.
 pub fn read<C: CommandSet + Subcommand>(matches: &mut ArgMatches) -> Result<Wish, clap::Error> {
     if matches.subcommand_name().is_none() {

@@ -103,6 +103,16 @@ pub trait Command {
         false
     }
 
+    /// Whether it takes a robot, where that depends on its arguments.
+    fn takes_robot(&self) -> bool {
+        true
+    }
+
+    /// Does it without a robot, where it takes none.
+    fn run_alone(&self) -> Result<Self::Report, Failure> {
+        Err(Failure::local("internal error: this command takes a robot"))
+    }
+
     /// [`CONNECT_MODE`](Self::CONNECT_MODE), where that depends on its arguments.
     fn connect_mode(&self) -> ConnectMode {
         Self::CONNECT_MODE
@@ -197,8 +207,13 @@ impl<C: Command> AnyCommand for C {
         Command::is_endless(self)
     }
 
+    fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
+        let alone = || Ok(Box::new(Command::run_alone(self)?) as Box<_>);
+        (!Command::takes_robot(self)).then(alone)
+    }
+
     fn driver(&self) -> Option<&'static dyn Driver> {
-        Some(connection::driver::<C::Family>())
+        Command::takes_robot(self).then(connection::driver::<C::Family>)
     }
 
     fn connect_mode(&self) -> ConnectMode {

@@ -149,7 +149,7 @@ impl Run {
             return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
-        Gate::pass_many(&intents, |robot| self.sources.selection.robots.contains(&robot.name))?;
+        Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
     }
 

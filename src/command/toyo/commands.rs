@@ -1,10 +1,12 @@
 //! The commands of `toyo`, as its help lists them.
 
+use super::link::Toyo;
 use super::{
-    backup, bus, card, coordinate, counter, easy, error, home, host, info, init, io, jog, mvm, offset, orders,
+    alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
     overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
     timer,
 };
+use crate::command::backup::words::Diff;
 use crate::command::{Offline, Subcommands, commands};
 
 commands! {
@@ -15,8 +17,9 @@ commands! {
         Status(status::Status),
         /// Current position of the axes
         Position(position::Position),
-        /// Errors
-        Error(Subcommands<error::Error>),
+        /// Alarms: list, history, reset, point
+        #[command(alias = "error")]
+        Alarm(Subcommands<alarm::Alarm>),
         /// Robot type, versions, axes, task, override
         Info(info::Info),
         /// Settings and errors of CC-Link
@@ -34,6 +37,7 @@ commands! {
         Reset(orders::Reset),
         "Motion":
         /// Return to the origin
+        #[command(alias = "origin")]
         Home(home::Home),
         /// Jog one axis, for a time or in small steps
         Jog(jog::Jog),
@@ -73,6 +77,8 @@ commands! {
         Backup(backup::Backup),
         /// Restore a backup
         Restore(backup::Restore),
+        /// Compare a backup with another one, or with the controller
+        Diff(Diff<Toyo>),
         /// Memory card: read, write
         Card(Subcommands<card::Card>),
         /// Clear memory

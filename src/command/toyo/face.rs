@@ -1,6 +1,6 @@
 //! What the rest of the house may ask of `toyo`.
 
-use super::backup::{Restore, back_up};
+use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -8,12 +8,13 @@ use super::link::{Link, Toyo};
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview};
+use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::{Access, Command as _, Context};
+use crate::command::{Access, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::{errors, passing, simulator};
 use crate::failure::Failure;
@@ -61,9 +62,14 @@ impl Declaration for Toyo {
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
         Ok(Held::Stream(connect::hold(robot, access, screen).await?).into())
     }
+}
+
+impl Backups for Toyo {
+    const IDS: [&'static str; 3] = ["toyo.backup", "toyo.restore", "toyo.diff"];
+    const BACKUP_RISK: Risk = Risk::Write;
 
     fn backup_risk(robot: &Robot) -> Risk {
-        if robot.read_only.value { Risk::Read } else { Risk::Write }
+        if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
     }
 
     async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
@@ -78,6 +84,6 @@ impl Declaration for Toyo {
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
-        Ok(Restore::of(restoring).run(context).await?.of_folder(&restoring.folder))
+        Ok(restore(context, restoring).await?.of_folder(&restoring.folder))
     }
 }

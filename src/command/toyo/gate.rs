@@ -19,7 +19,7 @@ use crate::gate::{Confirmation, Gate};
 const LINES: &[(&str, Risk)] = &[
     ("status", Read), ("home", Motion), ("home --sync 1 --no-wait", Motion), ("position", Read), ("host on", Write),
     ("mode program", Write), ("servo off", Motion), ("stop", Write), ("stop --jog", Write), ("reset", Write),
-    ("error show", Read), ("error history", Read), ("error cancel", Write), ("error point", Read),
+    ("alarm list", Read), ("alarm history", Read), ("alarm reset", Write), ("alarm point", Read),
     ("run sequential 1", Motion), ("run palletizing --program 1", Motion), ("run easy --program 1", Motion),
     ("run point 1", Motion), ("jog X + inch", Motion), ("jog 2 - low --for 500ms", Motion),
     ("param list", Read), ("param get P01", Read), ("param dump", Read),
@@ -40,7 +40,7 @@ const LINES: &[(&str, Risk)] = &[
     ("easy get 1", Read), ("easy set 1 1 2 3", Destroy), ("easy set 1 loop=9", Destroy), ("easy copy 2 1", Destroy),
     ("easy select 1", Write), ("easy progress", Read),
     ("backup FOLDER/new", Write), ("restore FOLDER/backup --only easy,palletizing-1 --force", Destroy),
-    ("restore FOLDER/backup --only points-1 --force", Destroy),
+    ("restore FOLDER/backup --only points-1 --force", Destroy), ("diff FOLDER/backup", Write),
     ("io in", Read), ("io out", Read), ("io internal", Read), ("io set 1.1=on", Write), ("io direct 1", Write),
     ("counter get 1", Read), ("counter set 1 5", Write), ("timer get 1", Read),
     ("override get", Read), ("override set 50", Write), ("task get", Read), ("task set 1", Write),
@@ -72,7 +72,7 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
     let (mut bench, heard) = Bench::with_faults(STATE, |_, _| Fault::None);
-    if line.starts_with("restore") {
+    if line.starts_with("restore") || line.starts_with("diff") {
         let backup = folder.path().join("backup");
         bench.data(&["backup", backup.to_str().unwrap()]);
     }

@@ -1,5 +1,6 @@
 //! `toyo`: Toyo controllers over RS-232C host communication.
 
+mod alarm;
 pub mod backup;
 mod bus;
 mod card;
@@ -17,7 +18,6 @@ mod coverage;
 mod debts;
 pub mod decode;
 mod easy;
-mod error;
 mod explain;
 pub mod face;
 mod failure;

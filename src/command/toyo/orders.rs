@@ -51,7 +51,7 @@ impl Command for Servo {
             (true, true) => Ok(Done::new("servo power is on")),
             (true, false) => Ok(Done::new("servo power is off")),
             (false, _) => {
-                Err(not_so("servo power").hint("`toyo error show` and `toyo status` tell what is in the way"))
+                Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` tell what is in the way"))
             }
         }
     }
@@ -147,7 +147,7 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
-        Ok(Done::new("the controller was reset; errors are cancelled by `toyo error cancel`"))
+        Ok(Done::new("the controller was reset; errors are cancelled by `toyo alarm reset`"))
     }
 }
 

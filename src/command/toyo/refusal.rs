@@ -65,7 +65,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.has_error() {
         let error = errors::explain(status.error);
-        let then = if row.command == Command::Cerr { "" } else { "; then `toyo error cancel`" };
+        let then = if row.command == Command::Cerr { "" } else { "; then `toyo alarm reset`" };
         return Some((format!("error {}", error.in_a_line()), format!("{}{then}", error.remedy)));
     }
     if row.needs_host && !status.host_on() {

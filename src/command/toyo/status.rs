@@ -62,7 +62,7 @@ pub struct StatusReport {
 }
 
 /// An error code with its meaning.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ErrorCode {
     /// `28`.
     pub code: String,

@@ -176,16 +176,16 @@ impl Accepted {
 pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failure) -> Failure {
     match link.status_of(&[1]).await {
         Ok(Status { error: errors::NONE, .. }) => {
-            tell("an error came up and is gone again").hint("`toyo error history` may tell which")
+            tell("an error came up and is gone again").hint("`toyo alarm history` may tell which")
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
             tell(&format!("an error came up ({})", error.in_a_line()))
-                .hint(format!("{}; then `toyo error cancel`", error.remedy))
+                .hint(format!("{}; then `toyo alarm reset`", error.remedy))
                 .code(format!("{code:02X}"))
         }
         Err(failure) => tell(&format!("an error came up, which could not be read: {}", failure.message))
-            .hint("`toyo error show` tells which"),
+            .hint("`toyo alarm list` tells which"),
     }
 }
 

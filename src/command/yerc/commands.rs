@@ -1,6 +1,8 @@
 //! The commands of `yerc`, as its help lists them.
 
+use super::link::Yerc;
 use super::{alarm, axes, file, hours, info, io, job, moves, orders, position, raw, register, status, var};
+use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
@@ -45,6 +47,12 @@ commands! {
         "Data":
         /// Variables: get, set, dump, restore
         Var(Subcommands<var::Var>),
+        /// Save every file of the controller to a folder
+        Backup(Backup<Yerc>),
+        /// Restore a backup
+        Restore(Restore<Yerc>),
+        /// Compare a backup with another one, or with the controller
+        Diff(Diff<Yerc>),
         "Signals":
         /// Signals: get, set
         Io(Subcommands<io::Io>),

@@ -8,6 +8,7 @@ use super::link::{Link, Yerc};
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview};
+use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
@@ -57,6 +58,10 @@ impl Declaration for Yerc {
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
         Ok(Held::Datagrams(connect::hold(robot, access, screen).await?).into())
     }
+}
+
+impl Backups for Yerc {
+    const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
     async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
         back_up(context, making).await

@@ -1,23 +1,118 @@
-//! `yrcx alarm reset` (4.8.3).
+//! `yrcx alarm list|history|reset` (4.7.7, 4.8.3).
 
 use clap::Args;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::info::AlarmReport;
+use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
+use crate::command::frame::dry_run::Reason;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
-use crate::controller::yrcx::table;
+use crate::controller::yrcx::table::Command as Row;
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::View;
 
 commands! {
-    /// What can be done about alarms.
+    /// Alarms.
     pub enum Alarm {
+        /// Show the present alarm with what to do
+        List(List),
+        /// Alarm history, the latest first
+        History(History),
         /// Reset the alarm
         Reset(Reset),
+    }
+}
+
+/// The alarm that is present: the latest of the history while SO(03) or SO(15) is on.
+#[derive(Debug, Args)]
+#[command(after_help = "`yrcx info alarm` tells the latest alarm of a remote command, which may be none any more.")]
+pub struct List {}
+
+impl Command for List {
+    type Family = Yrcx;
+    type Report = ActiveAlarms;
+    const ID: &'static str = "yrcx.alarm.list";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ActiveAlarms, Failure> {
+        let link = context.link;
+        let latest = link.draft(Row::AlarmHistory)?.with(Key::History, 1).build()?;
+        if link.is_dry() {
+            link.plan_depending(
+                &latest,
+                &latest,
+                Reason::about("which").depending_on("the signals: it is asked if SO(03) or SO(15) is on"),
+            );
+        }
+        let image = link.look().await?;
+        let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
+        let mut alarms = Vec::new();
+        if alarm || warning {
+            alarms.push(AlarmReport::of(&link.ask(&latest).await?.values));
+            alarms.retain(|alarm| alarm.code.is_some());
+        }
+        Ok(ActiveAlarms { alarm, warning, alarms })
+    }
+}
+
+/// The alarm that is present.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ActiveAlarms {
+    /// SO(03): there is an alarm.
+    alarm: bool,
+    /// SO(15): there is a warning.
+    warning: bool,
+    /// The latest; none where both signals are off.
+    alarms: Vec<AlarmReport>,
+}
+
+impl Report for ActiveAlarms {
+    fn view(&self) -> View {
+        match (self.alarms.first(), self.alarm, self.warning) {
+            (Some(alarm), ..) => alarm.view(),
+            (None, true, _) => View::text("an alarm (SO(03) is on), of which the history tells nothing"),
+            (None, false, true) => View::text("a warning (SO(15) is on), of which the history tells nothing"),
+            (None, false, false) => View::text("no alarm"),
+        }
+    }
+}
+
+/// Reads alarms of the history, one after the other: what `yrcx info message` reads.
+#[derive(Debug, Args)]
+#[command(after_help = "`armctl explain yrcx CODE` says what to do about one.")]
+pub struct History {
+    #[command(flatten)]
+    which: Message,
+}
+
+impl Command for History {
+    type Family = Yrcx;
+    type Report = PastAlarms;
+    const ID: &'static str = "yrcx.alarm.history";
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PastAlarms, Failure> {
+        Ok(PastAlarms { alarms: self.which.read(context).await? })
+    }
+}
+
+/// Alarms of the history that are there.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PastAlarms {
+    alarms: Past,
+}
+
+impl Report for PastAlarms {
+    fn view(&self) -> View {
+        View::table(rows(&self.alarms))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.alarms.failure()
     }
 }
 
@@ -34,12 +129,12 @@ impl Command for Reset {
     const ID: &'static str = "yrcx.alarm.reset";
 
     fn risk(&self) -> Risk {
-        table::Command::AlarmReset.row().risk
+        Row::AlarmReset.row().risk
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
-        let order = link.draft(table::Command::AlarmReset)?.build()?;
+        let order = link.draft(Row::AlarmReset)?.build()?;
         link.ask(&order).await?;
         if link.is_dry() {
             return Ok(WasReset { alarm: false, servo_on: false });
@@ -81,7 +176,32 @@ impl Report for WasReset {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{Reply, Scripted, answer, example, read_example, run_on, words};
+    use crate::controller::yrcx::signal::output;
+
+    #[test]
+    fn the_history_is_that_of_messages() {
+        assert_eq!(words(&["alarm", "history", "10"]).unwrap(), [example("4.7.7-reference")]);
+        let past = &read_example("4.7.7-reference", &["alarm", "history", "10"])["alarms"];
+        let messages = &read_example("4.7.7-reference", &["info", "message", "10"])["messages"];
+        assert_eq!((past, &past[0]["code"]), (messages, &json!("12.551")));
+        assert_eq!(words(&["alarm", "history"]).unwrap().len(), 10);
+    }
+
+    #[test]
+    fn what_is_present_is_the_latest_while_a_signal_says_so() {
+        let none = json!({ "alarm": false, "warning": false, "alarms": [] });
+        let (data, peer) = run_on(Scripted::new([]), &["alarm", "list"]);
+        assert_eq!((data.unwrap(), peer.taken.len()), (none, 0), "nothing is asked");
+        let mut shown = Scripted::new([Reply::Ends(1, answer("4.7.7-reference"))]);
+        output::ALARM.set(&mut shown.image, true);
+        let (data, peer) = run_on(shown, &["alarm", "list"]);
+        let data = data.unwrap();
+        assert_eq!((&data["alarm"], &data["alarms"][0]["code"]), (&json!(true), &json!("12.551")));
+        assert_eq!(peer.taken[0][2], 1, "the latest");
+    }
 
     #[test]
     fn the_example_of_the_manual() {

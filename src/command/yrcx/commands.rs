@@ -1,10 +1,12 @@
 //! The commands of `yrcx`, as its help lists them.
 
+use super::link::Yrcx;
 use super::motion::Moving;
 use super::{
     alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
     profibus, profinet, program, raw, status, var,
 };
+use crate::command::backup::words::{Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
@@ -15,8 +17,10 @@ commands! {
         Status(status::Status),
         /// Versions, positions, servos, tasks, alarms
         Info(Subcommands<info::Info>),
-        /// Alarms
+        /// Alarms: list, history, reset
         Alarm(Subcommands<alarm::Alarm>),
+        /// Current position of a robot
+        Position(info::Where),
         /// The controller's clock
         Clock(Subcommands<clock::Clock>),
         "Power and operation":
@@ -60,6 +64,7 @@ commands! {
         /// Set the inching distance
         InchDistance(orders::InchDistance),
         /// Return to origin
+        #[command(alias = "home")]
         Origin(motion::Origin),
         /// Reset the absolute position of an axis
         AbsReset(motion::AbsReset),
@@ -98,7 +103,9 @@ commands! {
         /// Save points, data, variables and parameters to a folder
         Backup(backup::Backup),
         /// Restore a backup
-        Restore(backup::Restore),
+        Restore(Restore<Yrcx>),
+        /// Compare a backup with another one, or with the controller
+        Diff(Diff<Yrcx>),
         "Signals":
         /// Read and switch dedicated and general I/O (SI / SO)
         Io(Subcommands<io::Io>),

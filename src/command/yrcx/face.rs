@@ -2,7 +2,7 @@
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
-use super::backup::{Restore, back_up};
+use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -12,12 +12,13 @@ use super::top::Poller;
 use super::trace::Recorder;
 use super::unit::Unit;
 use super::{check, hold, overview};
+use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
-use crate::command::{Access, Command as _, Context, Own};
+use crate::command::{Access, Context, Own};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -72,12 +73,16 @@ impl Declaration for Yrcx {
         let finish = recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>);
         Ok(HeldLink { held: Held::Images(images), finish })
     }
+}
+
+impl Backups for Yrcx {
+    const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
 
     async fn back_up(context: Context<'_, Self>, making: Making) -> Result<BackedUp, Failure> {
         back_up(context, making).await
     }
 
     async fn restore(context: Context<'_, Self>, restoring: &Restoring) -> Result<Restored, Failure> {
-        Restore::of(restoring).run(context).await
+        restore(context, restoring).await
     }
 }

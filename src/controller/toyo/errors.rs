@@ -135,7 +135,7 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
         0x13,
         "emergency stop",
         "the emergency stop is or was pressed",
-        "make sure that it is safe, release it, then `toyo error cancel`",
+        "make sure that it is safe, release it, then `toyo alarm reset`",
     ),
     (
         0x60,

@@ -8,5 +8,5 @@ mod save;
 #[cfg(test)]
 mod tests;
 
-pub use restore::Restore;
+pub use restore::{Restore, restore};
 pub use save::{Backup, back_up};

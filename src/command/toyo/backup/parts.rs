@@ -28,16 +28,6 @@ pub enum Part {
     Program(u8),
 }
 
-/// Some parts, as an operator names them: one, or all of a kind.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Parts {
-    kind: &'static str,
-    number: Option<u8>,
-}
-
-/// Words for parts, with how many there can be.
-const KINDS: [(&str, u8); 5] = [("parameters", 0), ("easy", 0), ("palletizing", 16), ("points", 4), ("program", 4)];
-
 impl Part {
     /// All that a controller with these tasks can have, in the order of reading and writing.
     pub fn all(points: &[u8], programs: &[u8]) -> Vec<Self> {
@@ -65,6 +55,18 @@ impl Part {
         self.words().0
     }
 
+    /// What it is called: its name, that without a leading zero, and its kind.
+    pub fn names(self) -> [String; 3] {
+        [self.to_string(), self.plain_name(), self.kind().to_owned()]
+    }
+
+    fn plain_name(self) -> String {
+        match self.words() {
+            (word, None) => word.to_owned(),
+            (word, Some(number)) => format!("{word}-{number}"),
+        }
+    }
+
     fn words(self) -> (&'static str, Option<u8>) {
         match self {
             Self::Parameters => ("parameters", None),
@@ -90,42 +92,16 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let parts: Parts = name.parse()?;
-        Ok(match (parts.kind, parts.number) {
-            ("parameters", _) => Self::Parameters,
-            ("easy", _) => Self::Easy,
-            ("palletizing", Some(number)) => Self::Palletizing(number),
-            ("points", Some(task)) => Self::Points(task),
-            ("program", Some(task)) => Self::Program(task),
-            (kind, _) => return Err(format!("'{name}' is not a single part; write {kind}-1")),
-        })
-    }
-}
-
-impl Parts {
-    /// Whether a part is one of these.
-    pub fn has(self, part: Part) -> bool {
-        let (kind, number) = part.words();
-        kind == self.kind && (self.number.is_none() || self.number == number)
-    }
-}
-
-impl FromStr for Parts {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        let (word, number) = name.split_once('-').map_or((name, None), |(word, number)| (word, Some(number)));
-        let Some((kind, most)) = KINDS.into_iter().find(|(kind, _)| *kind == word) else {
-            let near = nearest(word, KINDS.iter().map(|(kind, _)| *kind));
-            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-            return Err(format!("there is no part '{name}'{near}"));
-        };
-        let Some(number) = number else { return Ok(Self { kind, number: None }) };
-        match number.parse().ok().filter(|number| (1..=most).contains(number)) {
-            Some(number) => Ok(Self { kind, number: Some(number) }),
-            None if most == 0 => Err(format!("there is one part {kind} only")),
-            None => Err(format!("{kind} has numbers from 1 to {most}")),
+        let all = Self::all(&[1, 2, 3, 4], &[1, 2, 3, 4]);
+        let exact = |part: &&Self| part.to_string() == name || part.plain_name() == name;
+        if let Some(part) = all.iter().find(exact) {
+            return Ok(*part);
         }
+        let names: Vec<String> = all.iter().map(ToString::to_string).collect();
+        Err(match nearest(name, names.iter().map(String::as_str)) {
+            Some(near) => format!("there is no part '{name}'; did you mean {near}?"),
+            None => format!("there is no part '{name}'"),
+        })
     }
 }
 
@@ -230,14 +206,10 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_chosen_alone_or_all_of_a_kind() {
-        let parts = |name: &str| name.parse::<Parts>();
-        assert!(parts("points").unwrap().has(Part::Points(3)));
-        assert!(parts("points-2").unwrap().has(Part::Points(2)) && !parts("points-2").unwrap().has(Part::Points(3)));
-        assert!(parts("palletizing-3").unwrap().has(Part::Palletizing(3)));
-        assert_eq!(parts("point").unwrap_err(), "there is no part 'point'; did you mean points?");
-        assert_eq!(parts("points-5").unwrap_err(), "points has numbers from 1 to 4");
-        assert_eq!(parts("easy-1").unwrap_err(), "there is one part easy only");
-        assert_eq!("points".parse::<Part>().unwrap_err(), "'points' is not a single part; write points-1");
+    fn parts_are_called_by_number_or_by_kind() {
+        let part = |name: &str| name.parse::<Part>();
+        assert_eq!((part("points-2"), part("palletizing-3")), (Ok(Part::Points(2)), Ok(Part::Palletizing(3))));
+        assert_eq!(part("point-2").unwrap_err(), "there is no part 'point-2'; did you mean points-2?");
+        assert_eq!(Part::Palletizing(3).names(), ["palletizing-03", "palletizing-3", "palletizing"]);
     }
 }

@@ -1,6 +1,6 @@
 //! `toyo restore`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::content::{self, Content};
 use super::manifest::{Controller, Manifest};
-use super::parts::{self, Part, PartResult, Parts};
+use super::parts::{self, Part, PartResult};
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, MANIFEST, State};
+use crate::command::backup::options::RestoreOptions;
 use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
@@ -44,23 +45,17 @@ use crate::output::view::View;
                   else are written in program mode; a controller in another mode is switched to it, and back."
 )]
 pub struct Restore {
-    /// Folder of the backup
-    folder: PathBuf,
-    /// These parts only, such as parameters,points-1,program
-    #[arg(long, value_name = "PART", value_delimiter = ',')]
-    only: Vec<Parts>,
-    /// Write machine and special parameters, too
-    #[arg(long)]
-    machine: bool,
+    #[command(flatten)]
+    options: RestoreOptions,
     /// Go on with a restore that was cut off; with a part, those before it are not even compared
     #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
     resume: Option<Part>,
-    /// Write the backup of one robot or machine to another
-    #[arg(long)]
-    force: bool,
-    /// Parts whose names fit
-    #[arg(skip)]
-    patterns: Only,
+}
+
+/// What is asked for of a restore.
+struct Asked {
+    restoring: Restoring,
+    resume: Option<Part>,
 }
 
 /// A part with what is to be stored.
@@ -97,21 +92,34 @@ impl Command for Restore {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, authority } = context;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        let manifest: Manifest = manifest::existing(&folder)?;
+        let restoring = self.options.restoring();
+        let folder = own_folder(&restoring.folder, &context.robot.name, context.several);
+        Asked { restoring: Restoring { folder, ..restoring }, resume: self.resume }.run(context).await
+    }
+}
+
+/// Writes back what a backup holds.
+pub async fn restore(context: Context<'_, Toyo>, restoring: &Restoring) -> Result<Restored, Failure> {
+    Asked { restoring: restoring.clone(), resume: None }.run(context).await
+}
+
+impl Asked {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
+        let Context { link, screen, robot, authority, .. } = context;
+        let folder = &self.restoring.folder;
+        let manifest: Manifest = manifest::existing(folder)?;
         // Whether robot and address are those of the backup; the machine itself is asked later.
-        manifest::check_origin(&manifest::existing::<serde_json::Value>(&folder)?, robot, self.force)?;
+        manifest::check_origin(&manifest::existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
-        if self.machine && !parts.contains(&Part::Parameters) {
+        if self.restoring.machine && !parts.contains(&Part::Parameters) {
             return Err(Failure::usage("--machine is about the parameters, which are not among the parts")
                 .hint("leave --machine away, or name `parameters` with --only"));
         }
         let mut jobs = Vec::new();
         for part in parts {
             if let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) {
-                copy.check(&folder)?;
-                jobs.push(Job { part, content: Content::load(part, &folder, screen)? });
+                copy.check(folder)?;
+                jobs.push(Job { part, content: Content::load(part, folder, screen)? });
             }
         }
         if link.is_dry() {
@@ -124,18 +132,10 @@ impl Command for Restore {
             outcome => tasks::done(link, outcome).await,
         }
     }
-}
-
-impl Restore {
-    /// Of what is asked for in any family.
-    pub fn of(restoring: &Restoring) -> Self {
-        let Restoring { folder, only: patterns, machine, force } = restoring.clone();
-        Self { folder, only: Vec::new(), machine, resume: None, force, patterns }
-    }
 
     /// Whether all of the backup is restored.
     fn is_whole(&self) -> bool {
-        self.only.is_empty() && self.patterns == Only::default()
+        self.restoring.only == Only::default()
     }
 
     /// The parts to restore, in the order of writing.
@@ -143,10 +143,9 @@ impl Restore {
         let tasks = [1, 2, 3, 4];
         let mut parts = Part::all(&tasks, &tasks);
         parts.retain(|part| manifest.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some()));
-        let names: Vec<String> = parts.iter().map(ToString::to_string).collect();
-        self.patterns.check(&names)?;
-        parts.retain(|part| self.only.is_empty() || self.only.iter().any(|only| only.has(*part)));
-        parts.retain(|part| self.patterns.has(&part.to_string()));
+        let only = &self.restoring.only;
+        only.check(&parts.iter().flat_map(|part| part.names()).collect::<Vec<_>>())?;
+        parts.retain(|part| only.has_any(&part.names()));
         if parts.is_empty() {
             return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
         }
@@ -170,8 +169,8 @@ impl Restore {
         jobs: &[Job],
     ) -> Result<Restored, Failure> {
         let found = content::controller(link).await?;
-        if !self.force {
-            identify(backup, &found, self.machine)?;
+        if !self.restoring.force {
+            identify(backup, &found, self.restoring.machine)?;
         }
         let mut results: Vec<PartResult> = jobs.iter().map(|job| pending(job.part)).collect();
         let mut machine = self.machine_stores(jobs)?;
@@ -223,7 +222,7 @@ impl Restore {
 
     /// Machine and special parameters, where they are wanted.
     fn machine_stores(&self, jobs: &[Job]) -> Result<Vec<Store>, Failure> {
-        let stores = jobs.iter().filter(|_| self.machine).map(|job| job.content.machine_stores());
+        let stores = jobs.iter().filter(|_| self.restoring.machine).map(|job| job.content.machine_stores());
         Ok(stores.collect::<Result<Vec<_>, _>>()?.concat())
     }
 

@@ -1,7 +1,5 @@
 //! `toyo backup`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,6 +8,7 @@ use super::content::{self, Text};
 use super::manifest::Controller;
 use super::parts::{self, Part, PartResult};
 use crate::command::backup::manifest::Entry;
+use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{self, Task, cut_off_by_ctrl_c};
 use crate::command::backup::{self, Item, Making, Only};
 use crate::command::frame::dry_run::unknown;
@@ -33,17 +32,11 @@ use crate::settings::Robot;
                   points and 35 ms for each step.\n\nEach task is made the current one for a while, which is a change: \
                   a read-only robot refuses it, unless --current-task leaves the other tasks out.")]
 pub struct Backup {
-    /// Folder, made if it is not there
-    folder: PathBuf,
+    #[command(flatten)]
+    options: BackupOptions,
     /// Points and program of the current task only, so that nothing is changed
     #[arg(long)]
     current_task: bool,
-    /// Go on with a backup that is not whole; parts that are there already are kept
-    #[arg(long, conflicts_with = "force")]
-    resume: bool,
-    /// Make a new backup over the one in the folder
-    #[arg(long)]
-    force: bool,
 }
 
 /// In the scope of a backup, where the other tasks are not in it.
@@ -59,10 +52,8 @@ impl Command for Backup {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<BackedUp, Failure> {
-        let Self { folder, current_task, resume, force } = self;
-        let scope = current_task.then(|| vec![CURRENT_TASK.to_owned()]);
-        let making = Making { folder: folder.clone(), scope, resume: *resume, force: *force };
-        let (controller, made) = make(context, making, *current_task).await?;
+        let making = self.options.making(self.current_task.then(|| CURRENT_TASK.to_owned()));
+        let (controller, made) = make(context, making, self.current_task).await?;
         Ok(BackedUp::new(controller, made))
     }
 }
@@ -106,8 +97,8 @@ async fn save(
     let controller = content::controller(link).await?;
     let mut chosen = parts(link, &controller, task.scope.iter().any(|word| word == CURRENT_TASK)).await?;
     let only = Only::of_scope(&task.scope);
-    only.check(&chosen.iter().map(ToString::to_string).collect::<Vec<_>>())?;
-    chosen.retain(|part| only.has(&part.to_string()));
+    only.check(&chosen.iter().flat_map(|part| part.names()).collect::<Vec<_>>())?;
+    chosen.retain(|part| only.has_any(&part.names()));
     let mut list = task.begin((screen, robot), controller.clone(), |earlier, entry| {
         let is_wanted = chosen.iter().any(|part| part.to_string() == entry.name);
         is_wanted && earlier.controller.robot_type == controller.robot_type

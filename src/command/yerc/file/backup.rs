@@ -11,6 +11,7 @@ use super::name::{self, Shown, TypeArg, type_word};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::backup::manifest::{Entry, Hash, Saved};
+use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{Content, Part, Task, cut_off_by_ctrl_c};
 use crate::command::backup::{self, Item, Items, Making, Only};
 use crate::command::frame::local::{LocalNames, Target};
@@ -28,30 +29,21 @@ use crate::settings::Robot;
 /// Fetches every file into a folder.
 #[derive(Debug, Args)]
 pub struct Backup {
-    /// Folder, made if it is not there
-    folder: PathBuf,
+    #[command(flatten)]
+    options: BackupOptions,
     /// Which types, such as jbi,dat [default: all, or those of the backup that goes on]
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
     types: Vec<TypeArg>,
-    /// Go on with a backup that is not whole; files that are there already are kept
-    #[arg(long, conflicts_with = "force")]
-    resume: bool,
-    /// Make a new backup over the one in the folder
-    #[arg(long)]
-    force: bool,
 }
 
 const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
 
 impl Backup {
-    /// What is asked for, as the list says it; `None` if nobody says.
-    fn scope(&self) -> Option<Vec<String>> {
+    /// The types that are asked for, as the list says it; none for all.
+    fn types(&self) -> Vec<String> {
         let types = TypeArg::chosen(&self.types);
-        match types.len() {
-            0 => None,
-            all if all == FileType::ALL.len() => Some(Vec::new()),
-            _ => Some(types.into_iter().map(|kind| format!("{TYPE}{}", type_word(kind))).collect()),
-        }
+        let is_all = types.len() == FileType::ALL.len();
+        types.into_iter().filter(|_| !is_all).map(|kind| format!("{TYPE}{}", type_word(kind))).collect()
     }
 }
 
@@ -71,9 +63,10 @@ impl Command for Backup {
     const ID: &'static str = "yerc.file.backup";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<BackedUp, Failure> {
-        let Self { folder, resume, force, .. } = self;
-        let making = Making { folder: folder.clone(), scope: self.scope(), resume: *resume, force: *force };
-        Ok(back_up(context, making).await?.into())
+        let making = self.options.making(self.types());
+        // All types are what nobody needs to say, but not what a backup goes on with.
+        let scope = making.scope.or_else(|| (!self.types.is_empty()).then(Vec::new));
+        Ok(back_up(context, Making { scope, ..making }).await?.into())
     }
 }
 

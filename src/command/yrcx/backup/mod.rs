@@ -10,5 +10,5 @@ mod save;
 #[cfg(test)]
 mod tests;
 
-pub use restore::Restore;
+pub use restore::restore;
 pub use save::{Backup, back_up, points};

@@ -1,50 +1,20 @@
 //! `yrcx restore`.
 
-use std::path::PathBuf;
-
-use clap::Args;
-
 use super::content::{self, Controller, Store};
 use super::parts::Part;
+use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, State};
-use crate::command::backup::{Item, Items, Only, Restored, Restoring};
+use crate::command::backup::{Item, Items, Restored, Restoring};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::local::own_folder;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
-use crate::command::{Command, Context};
-use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
+use crate::gate::Change;
 use crate::output::Screen;
-
-/// Writes back what a backup holds.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "All files are checked first, against their hashes and for their content. Each value is compared \
-                  before it is written: what the controller holds already is not written. So after a restore that was \
-                  cut off the same command goes on where it ended. What the backup does not have stays as it is: \
-                  remote commands cannot remove a point.\n\nParameters and settings (speeds, inching distance, hand \
-                  system) change how the robot moves, and are left out unless --machine is given. While the robot \
-                  program runs, nothing is written."
-)]
-pub struct Restore {
-    /// Folder of the backup
-    folder: PathBuf,
-    /// Parts whose names fit, such as variables or 'points*' (repeatable)
-    #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
-    only: Vec<String>,
-    /// Write parameters and settings, too
-    #[arg(long)]
-    machine: bool,
-    /// Write the backup of other robots
-    #[arg(long)]
-    force: bool,
-}
 
 /// A part with what is to be written.
 struct Job {
@@ -52,84 +22,64 @@ struct Job {
     stores: Vec<Store>,
 }
 
-impl Restore {
-    /// Of what is asked for in any family.
-    pub fn of(restoring: &Restoring) -> Self {
-        let Restoring { folder, only: Only(only), machine, force } = restoring.clone();
-        Self { folder, only, machine, force }
+/// Writes back what a backup holds.
+pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Result<Restored, Failure> {
+    let Context { link, screen, authority, .. } = context;
+    let Restoring { folder, only, machine, force } = restoring;
+    link.no_unit("a backup is of the whole controller")?;
+    let manifest: manifest::Manifest<Controller> = manifest::existing(folder)?;
+    let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
+    only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
+    let mut jobs = Vec::new();
+    for part in Part::in_order_of_writing().filter(|part| only.has(&part.to_string()) && *part != Part::Info) {
+        let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) else { continue };
+        if part.is_machine() && !machine {
+            continue;
+        }
+        copy.check(folder)?;
+        jobs.push(Job { part, stores: content::load(part, folder)? });
     }
+    if jobs.is_empty() {
+        return Err(Failure::usage("there is nothing to write in these parts")
+            .hint("parameters and settings are written with --machine only, and info never"));
+    }
+    if link.is_dry() {
+        return dry_run(link, &jobs);
+    }
+    check_origin(link, &manifest.controller, *force).await?;
+    let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
+    let mut found = Found::default();
+    let total = jobs.len();
+    for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
+        screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
+        found.compare(link, screen, job, item).await?;
+    }
+    authority.confirm(&found.change(&folder.display().to_string())).await?;
+    // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
+    match interruptible(write_all(link, screen, &jobs, &found, &mut items)).await {
+        Ok(outcome) => outcome?,
+        Err(failure) => {
+            let first = items.iter_mut().find(|item| matches!(item.state, State::NotTried));
+            first.ok_or_else(|| failure.clone())?.fail(failure);
+        }
+    }
+    Ok(Restored::new(folder, Items::new(items)))
 }
 
-impl Command for Restore {
-    type Family = Yrcx;
-    type Report = Restored;
-    const ID: &'static str = "yrcx.restore";
-    const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite what the controller stores by the backup";
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, authority } = context;
-        link.no_unit("a backup is of the whole controller")?;
-        let folder = own_folder(&self.folder, &robot.name, several);
-        let manifest: manifest::Manifest<Controller> = manifest::existing(&folder)?;
-        let only = Only(self.only.clone());
-        let saved = || manifest.files.iter().filter(|entry| entry.copy.is_some());
-        only.check(&saved().map(|entry| entry.name.as_str()).collect::<Vec<_>>())?;
-        let mut jobs = Vec::new();
-        for part in Part::in_order_of_writing().filter(|part| only.has(&part.to_string()) && *part != Part::Info) {
-            let Some(copy) = manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref()) else { continue };
-            if part.is_machine() && !self.machine {
-                continue;
-            }
-            copy.check(&folder)?;
-            jobs.push(Job { part, stores: content::load(part, &folder)? });
-        }
-        if jobs.is_empty() {
-            return Err(Failure::usage("there is nothing to write in these parts")
-                .hint("parameters and settings are written with --machine only, and info never"));
-        }
-        if link.is_dry() {
-            return dry_run(link, &jobs);
-        }
-        self.check_origin(link, &manifest.controller).await?;
-        let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
-        let mut found = Found::default();
-        let total = jobs.len();
-        for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
-            screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
-            found.compare(link, screen, job, item).await?;
-        }
-        authority.confirm(&found.change(&folder.display().to_string())).await?;
-        // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
-        match interruptible(write_all(link, screen, &jobs, &found, &mut items)).await {
-            Ok(outcome) => outcome?,
-            Err(failure) => {
-                let first = items.iter_mut().find(|item| matches!(item.state, State::NotTried));
-                first.ok_or_else(|| failure.clone())?.fail(failure);
-            }
-        }
-        Ok(Restored::new(&folder, Items::new(items)))
+/// Whether the backup may be written to this controller, and now.
+async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Result<(), Failure> {
+    let image = link.look().await?;
+    if output::PROGRAM_RUNNING.is_on(&image) {
+        return Err(Failure::new(Kind::Rejected, "the robot program runs, and may use what would be written")
+            .hint("stop it first (`yrcx stop`), then restore"));
     }
-}
-
-impl Restore {
-    /// Whether the backup may be written to this controller, and now.
-    async fn check_origin(&self, link: &mut Link, backup: &Controller) -> Result<(), Failure> {
-        let image = link.look().await?;
-        if output::PROGRAM_RUNNING.is_on(&image) {
-            return Err(Failure::new(Kind::Rejected, "the robot program runs, and may use what would be written")
-                .hint("stop it first (`yrcx stop`), then restore"));
-        }
-        let found = Controller::ask(link).await?;
-        if found.robots != backup.robots && !self.force {
-            let message =
-                format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
-            return Err(Failure::new(Kind::Rejected, message)
-                .hint("take the backup of this controller; --force writes it all the same"));
-        }
-        Ok(())
+    let found = Controller::ask(link).await?;
+    if found.robots != backup.robots && !force {
+        let message = format!("the backup is of robot type {}, the controller has {}", backup.types(), found.types());
+        return Err(Failure::new(Kind::Rejected, message)
+            .hint("take the backup of this controller; --force writes it all the same"));
     }
+    Ok(())
 }
 
 fn pending(part: Part) -> Item {

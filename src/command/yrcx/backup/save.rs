@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::PathBuf;
 
 use clap::Args;
 
 use super::content::{self, Controller, GAP, Text, Wanted};
 use super::parts::{POINTS, Part, THOUSAND};
 use crate::command::backup::manifest::{Entry, State};
+use crate::command::backup::options::BackupOptions;
 use crate::command::backup::saving::{self, Saving, Task, cut_off_by_ctrl_c};
 use crate::command::backup::{BackedUp, Item, Making, Only};
 use crate::command::frame::dry_run::unknown;
@@ -28,20 +28,11 @@ use crate::settings::Robot;
                   says which were read. A controller refuses what is not defined, and may note that in its history of \
                   alarms.")]
 pub struct Backup {
-    /// Folder, made if it is not there
-    folder: PathBuf,
+    #[command(flatten)]
+    options: BackupOptions,
     /// Points, 0 to 29999: 0..999 or 0..99,500
     #[arg(long, value_name = "POINT", value_delimiter = ',', value_parser = points)]
     points: Vec<String>,
-    /// Parts whose names fit, such as variables or 'points*' (repeatable)
-    #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
-    only: Vec<String>,
-    /// Go on with a backup that is not whole; files that are there already are kept
-    #[arg(long, conflicts_with = "force")]
-    resume: bool,
-    /// Make a new backup over the one in the folder
-    #[arg(long)]
-    force: bool,
 }
 
 /// Points that can be asked for, as typed.
@@ -52,23 +43,14 @@ pub fn points(text: &str) -> Result<String, String> {
 /// Before numbers of points, in the scope of a backup.
 const OF_POINTS: &str = "points ";
 
-impl Backup {
-    /// What is asked for, as the list says it; `None` if nobody says.
-    fn scope(&self) -> Option<Vec<String>> {
-        let points = self.points.iter().map(|range| format!("{OF_POINTS}{range}"));
-        let scope: Vec<String> = points.chain(Only(self.only.clone()).scope()).collect();
-        Some(scope).filter(|scope| !scope.is_empty())
-    }
-}
-
 impl Command for Backup {
     type Family = Yrcx;
     type Report = BackedUp;
     const ID: &'static str = "yrcx.backup";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackedUp, Failure> {
-        let Self { folder, resume, force, .. } = self;
-        back_up(context, Making { folder: folder.clone(), scope: self.scope(), resume: *resume, force: *force }).await
+        let points = self.points.iter().map(|range| format!("{OF_POINTS}{range}"));
+        back_up(context, self.options.making(points)).await
     }
 }
 

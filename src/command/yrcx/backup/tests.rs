@@ -210,7 +210,7 @@ fn a_folder_that_was_tampered_with_is_not_written_back() {
     std::fs::write(&points, text.replace("150.000", "151.000")).unwrap();
     let failure = desk.failure("restore @/saved");
     assert!(failure.message.ends_with("its content was changed (SHA-256)"), "{failure}");
-    let dry = frames(&["restore", desk.path("saved").to_str().unwrap()]).unwrap_err();
+    let dry = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap_err();
     assert_eq!(dry.kind, Kind::Local, "a dry run says so as well");
     desk.data("restore @/saved --only shifts");
     assert_eq!(desk.failure("restore @/saved --only shift").kind, Kind::Usage);
@@ -252,7 +252,7 @@ fn dry_runs_show_what_would_be_read_and_written() {
     assert_eq!((sent[0][0].as_str(), sent.last().unwrap()[0].as_str()), ("0x0501", "0x0101"));
     assert!(!desk.path("new").exists());
     desk.data("backup @/saved --only pallets");
-    let sent = frames(&["restore", desk.path("saved").to_str().unwrap()]).unwrap();
+    let sent = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap();
     // All is read before the first is written.
     let last: Vec<_> = sent[sent.len() - 6..].iter().map(|frame| (&frame["about"], &frame["wi"][0])).collect();
     assert_eq!(last[2], (&json!("pallets 10, to compare"), &json!("0x0109")));

@@ -12,7 +12,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::{Cell, Table, View};
 
 /// Reads messages of the alarm history, one after the other.
 #[derive(Debug, Args)]
@@ -21,10 +21,22 @@ use crate::output::view::{Cell, View};
     `armctl explain yrcx CODE`."
 )]
 pub struct Message {
-    /// Numbers in the history, 1 to 500: 10, or 1..50
+    /// Numbers in the history, 1 (the latest) to 500: 10, or 1..50
     #[arg(value_name = "N", value_delimiter = ',', default_value = "1..10",
         value_parser = |text: &str| Numbers::parse(table::Command::AlarmHistory, Key::History, text))]
     numbers: Vec<Numbers>,
+}
+
+impl Message {
+    /// Reads them.
+    pub async fn read(&self, context: Context<'_, Yrcx>) -> Result<Past, Failure> {
+        let nouns = ["message", "messages"];
+        let field = (table::Command::AlarmHistory, Key::History);
+        let (numbers, messages) = read_numbers(context, nouns, field, &self.numbers, AlarmReport::of).await?;
+        let mut messages = messages.rows(numbers.into_iter().map(|number| Which { number }));
+        messages.retain(|_, alarm| alarm.code.is_some());
+        Ok(messages)
+    }
 }
 
 impl Command for Message {
@@ -33,36 +45,39 @@ impl Command for Message {
     const ID: &'static str = "yrcx.info.message";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Messages, Failure> {
-        let nouns = ["message", "messages"];
-        let field = (table::Command::AlarmHistory, Key::History);
-        let (numbers, messages) = read_numbers(context, nouns, field, &self.numbers, AlarmReport::of).await?;
-        let mut messages = messages.rows(numbers.into_iter().map(|number| Which { number }));
-        messages.retain(|_, alarm| alarm.code.is_some());
-        Ok(Messages { messages })
+        Ok(Messages { messages: self.read(context).await? })
     }
 }
 
 /// Messages that are there.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Messages {
-    messages: Rows<Which, AlarmReport>,
+    messages: Past,
 }
+
+/// What the history tells.
+pub type Past = Rows<Which, AlarmReport>;
 
 /// Which message.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Which {
+pub struct Which {
     /// Its number in the history.
     number: i32,
 }
 
+/// A row each.
+pub fn rows(past: &Past) -> Table {
+    let cells = |AlarmReport { code, meaning, place, part, .. }: &AlarmReport| {
+        let [code, place, part] = [code, place, part].map(|text| Cell::maybe(text.as_deref()));
+        [code, Cell::maybe(*meaning), place, part]
+    };
+    let columns = ["alarm", "meaning", "place", "part"];
+    past.table(["number"], columns, "no alarms", |which| [which.number.into()], cells)
+}
+
 impl Report for Messages {
     fn view(&self) -> View {
-        let cells = |AlarmReport { code, meaning, place, part, .. }: &AlarmReport| {
-            let [code, place, part] = [code, place, part].map(|text| Cell::maybe(text.as_deref()));
-            [code, Cell::maybe(*meaning), place, part]
-        };
-        let columns = ["alarm", "meaning", "place", "part"];
-        View::table(self.messages.table(["number"], columns, "no alarms", |which| [which.number.into()], cells))
+        View::table(rows(&self.messages))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -2,7 +2,7 @@
 
 mod alarm;
 mod arm;
-mod message;
+pub mod message;
 mod origin;
 mod position;
 mod robot;
@@ -21,7 +21,7 @@ commands! {
         /// Model numbers of a robot and its axes
         System(robot::System),
         /// Current position of a robot
-        Position(position::Where),
+        Position(position::Info),
         /// Servo state per axis
         Servo(servo::Servo),
         /// Origin return status
@@ -48,4 +48,5 @@ commands! {
 }
 
 pub use alarm::AlarmReport;
+pub use position::Where;
 pub use servo::{AxisServo, servos};

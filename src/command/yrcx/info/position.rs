@@ -1,4 +1,4 @@
-//! `yrcx info position` (4.7.4).
+//! `yrcx position`, and the same as `yrcx info position` (4.7.4).
 
 use std::time::Duration;
 
@@ -36,10 +36,31 @@ pub struct Where {
     until: Option<String>,
 }
 
-impl Command for Where {
+/// The same below `yrcx info`.
+#[derive(Debug, Args)]
+pub struct Info {
+    #[command(flatten)]
+    which: Where,
+}
+
+impl Command for Info {
     type Family = Yrcx;
     type Report = Place;
     const ID: &'static str = "yrcx.info.position";
+
+    fn is_endless(&self) -> bool {
+        self.which.is_endless()
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Place, Failure> {
+        self.which.run(context).await
+    }
+}
+
+impl Command for Where {
+    type Family = Yrcx;
+    type Report = Place;
+    const ID: &'static str = "yrcx.position";
 
     fn is_endless(&self) -> bool {
         self.continuous

@@ -1,4 +1,4 @@
-//! `toyo error show|history|cancel|point`.
+//! `toyo alarm list|history|cancel|point`.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -20,27 +20,29 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 
 commands! {
-    /// Errors.
-    pub enum Error {
-        /// Show the present error with cause and remedy
-        Show(Show),
-        /// Error history, the latest first
+    /// Alarms.
+    pub enum Alarm {
+        /// Show the present alarm with cause and remedy
+        #[command(alias = "show")]
+        List(List),
+        /// Alarm history, the latest first
         History(History),
-        /// Cancel the error
-        Cancel(Cancel),
-        /// The point at which the error occurred
+        /// Reset the alarm
+        #[command(alias = "cancel")]
+        Reset(Reset),
+        /// The point at which the alarm occurred
         Point(Point),
     }
 }
 
 /// The error that is present (TO 2-2, 4-1).
 #[derive(Debug, Args)]
-pub struct Show {}
+pub struct List {}
 
-impl Command for Show {
+impl Command for List {
     type Family = Toyo;
     type Report = Present;
-    const ID: &'static str = "toyo.error.show";
+    const ID: &'static str = "toyo.alarm.list";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Present, Failure> {
         let link = context.link;
@@ -49,7 +51,8 @@ impl Command for Show {
             link.plan(&status_page(1), "which");
             return Err(unknown());
         }
-        Ok(Present { error: present(link).await?.map(Explained::of) })
+        let error = present(link).await?.map(Explained::of);
+        Ok(Present { alarms: error.iter().cloned().collect(), error })
     }
 }
 
@@ -62,12 +65,14 @@ async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
 /// The error that is present.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Present {
-    /// Null if there is none.
+    /// One at most.
+    alarms: Vec<Explained>,
+    /// The same one, as scripts know it that say `error show`; null if there is none.
     error: Option<Explained>,
 }
 
 /// An error with what may be behind it.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Explained {
     #[serde(flatten)]
     code: ErrorCode,
@@ -86,11 +91,11 @@ impl Explained {
 
 impl Report for Present {
     fn view(&self) -> View {
-        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy }) = &self.error else {
-            return View::text("no error");
+        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy }) = self.alarms.first() else {
+            return View::text("no alarm");
         };
         View::fields([
-            ("error", Cell::from(format!("{code}: {meaning}")).tone(Tone::Bad)),
+            ("alarm", Cell::from(format!("{code}: {meaning}")).tone(Tone::Bad)),
             ("cause", (*cause).into()),
             ("remedy", (*remedy).into()),
         ])
@@ -108,7 +113,7 @@ pub struct History {
 impl Command for History {
     type Family = Toyo;
     type Report = Past;
-    const ID: &'static str = "toyo.error.history";
+    const ID: &'static str = "toyo.alarm.history";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Past, Failure> {
         let link = context.link;
@@ -203,12 +208,12 @@ impl Report for Past {
 
 /// Cancels the error, and looks whether it is gone (TO 2-7).
 #[derive(Debug, Args)]
-pub struct Cancel {}
+pub struct Reset {}
 
-impl Command for Cancel {
+impl Command for Reset {
     type Family = Toyo;
     type Report = Cancelled;
-    const ID: &'static str = "toyo.error.cancel";
+    const ID: &'static str = "toyo.alarm.reset";
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
@@ -251,7 +256,7 @@ pub struct Point {}
 impl Command for Point {
     type Family = Toyo;
     type Report = PointReport;
-    const ID: &'static str = "toyo.error.point";
+    const ID: &'static str = "toyo.alarm.point";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<PointReport, Failure> {
         let record = context.link.ask(&Request::bare(table::Command::Merp)).await?;
@@ -280,29 +285,31 @@ mod tests {
 
     #[test]
     fn what_is_asked() {
-        assert_eq!(blocks(&["error", "show"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
-        assert_eq!(blocks(&["error", "cancel"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
-        assert_eq!(blocks(&["error", "point"]).unwrap(), ["@MERP"]);
-        assert_eq!(blocks(&["error", "history", "--limit", "2"]).unwrap(), ["@EHTR NO=01", "@EHTR NO=02"]);
-        assert_eq!(blocks(&["error", "history"]).unwrap().len(), 20);
-        assert!(objection(&["error", "history", "--limit", "100"]).contains("1..=99"));
+        assert_eq!(blocks(&["alarm", "list"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
+        assert_eq!(blocks(&["alarm", "reset"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
+        assert_eq!(blocks(&["alarm", "point"]).unwrap(), ["@MERP"]);
+        assert_eq!(blocks(&["alarm", "history", "--limit", "2"]).unwrap(), ["@EHTR NO=01", "@EHTR NO=02"]);
+        assert_eq!(blocks(&["alarm", "history"]).unwrap().len(), 20);
+        assert!(objection(&["alarm", "history", "--limit", "100"]).contains("1..=99"));
     }
 
     #[test]
     fn an_error_is_shown_and_cancelled() {
         let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
-        let error = &bench.data(&["error", "show"])["error"];
+        let data = bench.data(&["error", "show"]);
+        let error = &data["error"];
+        assert_eq!(data["alarms"], serde_json::json!([error]));
         assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
         assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
-        assert_eq!(bench.data(&["error", "cancel"])["error"], serde_json::Value::Null);
-        assert_eq!(bench.data(&["error", "show"])["error"], serde_json::Value::Null);
-        assert_eq!(bench.data(&["error", "point"])["point"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["alarm", "reset"])["error"], serde_json::Value::Null);
+        assert_eq!(bench.data(&["alarm", "list"]), serde_json::json!({ "alarms": [], "error": null }));
+        assert_eq!(bench.data(&["alarm", "point"])["point"], serde_json::Value::Null);
     }
 
     #[test]
     fn an_error_that_stays_is_a_failure() {
         let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
-        let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["error", "cancel"]).unwrap();
+        let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["alarm", "reset"]).unwrap();
         assert_eq!(data["error"]["code"], "24");
         let failure = failure.unwrap();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
@@ -312,7 +319,7 @@ mod tests {
     fn the_history_ends_where_it_is_empty() {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
         let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
-        let data = bench.data(&["error", "history"]);
+        let data = bench.data(&["alarm", "history"]);
         let entries = data["entries"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
         assert_eq!(
@@ -321,13 +328,13 @@ mod tests {
         );
         assert_eq!((&entries[1]["power_off"], &entries[1]["error"]), (&true.into(), &serde_json::Value::Null));
         assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
-        assert_eq!(bench.data(&["error", "history", "--limit", "1"])["entries"].as_array().unwrap().len(), 1);
+        assert_eq!(bench.data(&["alarm", "history", "--limit", "1"])["entries"].as_array().unwrap().len(), 1);
     }
 
     #[test]
     fn a_controller_without_history_says_so() {
         let failure =
-            Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["error", "history"]).unwrap_err();
+            Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["alarm", "history"]).unwrap_err();
         assert_eq!(failure.kind, Kind::Refused);
         assert!(failure.hint.unwrap().contains("KCA-25"));
     }
