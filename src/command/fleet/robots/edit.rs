@@ -1,9 +1,7 @@
 //! `armctl robots edit` and `path`: the file itself.
 
-use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::Context as _;
 use schemars::JsonSchema;
@@ -15,6 +13,7 @@ use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, plain};
 use crate::files;
+use crate::output::editor;
 use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
@@ -78,8 +77,7 @@ fn open_editor(path: &Path) -> Result<(), Failure> {
     let words = words.ok_or_else(|| Failure::usage(format!("the editor '{line}' is not a command")).hint(hint()))?;
     // Ctrl-C in the editor is the editor's.
     catch_interrupts();
-    let arguments = words[1..].iter().map(OsString::from).chain([path.into()]);
-    let ended = Command::new(&words[0]).args(arguments).status();
+    let ended = editor::wait_for(&words, path);
     let ended = ended.map_err(|error| Failure::usage(format!("editor '{line}': {}", plain(&error))).hint(hint()))?;
     if ended.success() {
         return Ok(());
