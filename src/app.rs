@@ -131,14 +131,15 @@ fn screen(globals: &Globals) -> Screen {
         None if globals.json || globals.jq.is_some() => Format::Json,
         None => Format::Table,
     };
-    Screen::new(format, globals.color(), globals.quiet, globals.verbose)
+    let is_filtered = globals.jq.is_some() && !globals.json && globals.format.is_none();
+    Screen::new(format, globals.color(), globals.quiet, globals.verbose).with_plain_errors(is_filtered)
 }
 
 /// Writes a failure once, in the form that was asked for, and says what kind it was.
 fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
-        if screen.is_json() {
+        if screen.is_json() && !matches!(kind, Kind::Halted(_)) {
             screen.failure_json(&envelope.unwrap_or_else(|| Box::new(Envelope::failed(None, failure))));
         } else {
             screen.failure(&failure);
@@ -190,9 +191,8 @@ fn wants_json(args: &[OsString]) -> Option<bool> {
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
     while let Some(word) = words.next() {
         let format = match word {
-            "--json" | "--jq" => return Some(true),
+            "--json" => return Some(true),
             "--output" | "--format" => words.next(),
-            _ if word.starts_with("--jq=") => return Some(true),
             _ if word.starts_with("--") => {
                 ["--output=", "--format="].into_iter().find_map(|flag| word.strip_prefix(flag))
             }

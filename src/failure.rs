@@ -31,6 +31,9 @@ pub enum Kind {
     Mixed,
     /// Ctrl-C.
     Interrupted,
+    /// A filter ended by itself, with this exit code: `halt_error` of jq.
+    #[serde(skip)]
+    Halted(u8),
     /// The answer to a question that a dry run does not ask. It ends a command there, and is never shown.
     #[serde(skip)]
     NotKnown,
@@ -54,7 +57,10 @@ impl Kind {
 
     /// The process exit code.
     pub fn exit(self) -> u8 {
-        // Every kind has a row: a test counts them.
+        if let Self::Halted(code) = self {
+            return code;
+        }
+        // Every other kind has a row: a test counts them.
         Self::TABLE.iter().find(|(kind, ..)| *kind == self).map_or(1, |row| row.1)
     }
 }

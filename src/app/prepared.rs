@@ -1,6 +1,6 @@
 //! A command line with all that it needs, before anything is sent.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory as _, ValueEnum as _};
 
@@ -19,6 +19,7 @@ use crate::gate::Gate;
 use crate::output::Format;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
+use crate::settings::alarms;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::Given;
@@ -163,6 +164,7 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
+    alarms::beside(location(globals.config.clone())?.path());
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }
@@ -190,10 +192,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         (selection.robots, selection.from_environment) = (names, true);
     }
     // Also for a robot that is told by its address: the file says whether that may be changed.
-    let mut location = Location::find(match globals.config {
-        Some(path) => Some(path),
-        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
-    });
+    let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
     }
@@ -242,6 +241,14 @@ const OUTPUT: &str = "ARMCTL_OUTPUT";
 
 fn format(name: &str) -> Result<Format, String> {
     Format::from_str(name, true).map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl and csv"))
+}
+
+/// Where the inventory is.
+fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
+    Ok(Location::find(match config {
+        Some(path) => Some(path),
+        None => variable("ARMCTL_CONFIG", |path| Ok(path.into()))?,
+    }))
 }
 
 /// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.

@@ -8,6 +8,8 @@ pub struct Plan {
     /// Each under the key of its family (`hex`, `wi`, `bits`, `text`), beside `about` and `depends_on` where there is a
     /// [`Reason`].
     pub frames: Vec<Value>,
+    /// What a long work would do with each of its files or parts, in the form of the command.
+    pub items: Vec<Value>,
     /// What follows that cannot be shown, in words.
     pub then: Option<String>,
 }
@@ -32,6 +34,27 @@ impl<'a> Reason<'a> {
     pub fn depending_on(self, what: &'a str) -> Self {
         Self { depends_on: Some(what), ..self }
     }
+}
+
+/// A field of an order that moves something, in words: `("speed", "50.0 mm/s")`.
+pub type FieldInWords = (String, String);
+
+/// A frame with its fields in words, if it has any.
+pub fn with_fields(mut frame: Value, fields: &[FieldInWords]) -> Value {
+    if let Some(frame) = frame.as_object_mut().filter(|_| !fields.is_empty()) {
+        let field = |(name, value): &FieldInWords| json!({ "name": name, "value": value });
+        frame.insert("fields".to_owned(), fields.iter().map(field).collect());
+    }
+    frame
+}
+
+/// Fields of two orders, of which nothing is known where both differ.
+pub fn in_common(one: Vec<FieldInWords>, other: &[FieldInWords]) -> Vec<FieldInWords> {
+    let of = |(index, (name, value)): (usize, FieldInWords)| {
+        let is_same = other.get(index).is_some_and(|(_, other)| *other == value);
+        (name, if is_same { value } else { "?".to_owned() })
+    };
+    one.into_iter().enumerate().map(of).collect()
 }
 
 impl Plan {

@@ -49,8 +49,9 @@ impl Filter {
         asked.map_err(|trouble| match trouble {
             Trouble::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
                 .hint("filters see the whole envelope: try '.data', or leave --jq away to see it"),
-            Trouble::Failed(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
+            Trouble::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
                 .hint("--json shows what the filter is given"),
+            Trouble::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
         })
     }
 }
@@ -65,7 +66,7 @@ fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> 
     let program = program::Program::new(filter).map_err(Trouble::Mistake)?;
     let Some(input) = input else { return Ok(()) };
     let input = serde_json::from_value(input.clone()).map_err(|error| Trouble::Failed(error.to_string()))?;
-    program.run(input, take).map_err(Trouble::Failed)
+    program.run(input, take).map_err(Trouble::from)
 }
 
 /// Where the process for filters writes its answers.

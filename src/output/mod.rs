@@ -6,6 +6,7 @@ pub mod busy;
 pub mod editor;
 pub mod envelope;
 pub mod escape;
+pub mod flat;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;
@@ -60,12 +61,19 @@ pub struct Screen {
     pub verbosity: u8,
     color: ColorChoice,
     pager: bool,
+    plain_errors: bool,
 }
 
 impl Screen {
     /// Everything as flags and environment want it.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
-        Self { format, quiet, verbosity, color, pager: false }
+        Self { format, quiet, verbosity, color, pager: false, plain_errors: false }
+    }
+
+    /// With errors in words, although data is JSON: `--jq` alone.
+    #[must_use]
+    pub fn with_plain_errors(self, plain_errors: bool) -> Self {
+        Self { plain_errors, ..self }
     }
 
     /// With a pager for long texts to read, or without.
@@ -77,7 +85,14 @@ impl Screen {
     /// Nothing but errors, and those as JSON: for tests.
     #[cfg(test)]
     pub const fn silent() -> Self {
-        Self { format: Format::Json, quiet: true, verbosity: 0, color: ColorChoice::Never, pager: false }
+        Self {
+            format: Format::Json,
+            quiet: true,
+            verbosity: 0,
+            color: ColorChoice::Never,
+            pager: false,
+            plain_errors: false,
+        }
     }
 
     /// The same, but silent about everything that is not an error.
@@ -88,7 +103,7 @@ impl Screen {
 
     /// Whether errors are JSON too.
     pub fn is_json(&self) -> bool {
-        matches!(self.format, Format::Json | Format::Jsonl)
+        matches!(self.format, Format::Json | Format::Jsonl) && !self.plain_errors
     }
 
     /// Whether stdout is a terminal.
@@ -194,6 +209,9 @@ impl Screen {
     pub fn failure(&self, failure: &Failure) {
         if failure.kind == Kind::PipeClosed {
             return;
+        }
+        if let Kind::Halted(_) = failure.kind {
+            return Self::stderr(&escape::lines(&failure.message));
         }
         let label = if failure.kind == Kind::Interrupted { "interrupted:" } else { "error:" };
         let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();

@@ -1,6 +1,6 @@
 //! A text on a terminal that is written over the one before.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
 use dialoguer::console::{Term, measure_text_width};
 
@@ -11,6 +11,8 @@ pub struct Redraw {
     /// Lines that the next text replaces.
     old: Cell<usize>,
     is_on: Cell<bool>,
+    /// Columns of the CSV that was begun.
+    pub columns: RefCell<Vec<String>>,
 }
 
 impl Redraw {

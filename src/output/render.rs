@@ -344,13 +344,13 @@ fn csv_cell(cell: &Cell) -> String {
 
 /// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
 /// formula. Signed numbers are none, nor is the dash that stands for nothing.
-fn harmless(text: &str) -> String {
+pub(super) fn harmless(text: &str) -> String {
     let shown = escape::lines(text);
     let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
-fn csv_line(out: &mut String, fields: &[String]) {
+pub(super) fn csv_line(out: &mut String, fields: &[String]) {
     for (index, field) in fields.iter().enumerate() {
         if index > 0 {
             out.push(',');

@@ -2,6 +2,7 @@
 //!
 //! Flag > environment > robot > the file's `[defaults]` > built-in.
 
+pub mod alarms;
 pub mod document;
 pub mod duration;
 pub mod inventory;

@@ -45,6 +45,28 @@ fn schemas_are_schemas() {
     }
 }
 
+/// What a command answers with is what it set, and to what: a sentence is for people.
+#[test]
+fn no_report_is_a_sentence() {
+    const SENTENCES: [&str; 7] = ["done", "message", "text", "result", "summary", "told", "words"];
+    let is_text = |schema: &serde_json::Value| schema["type"] == "string" && schema.get("enum").is_none();
+    let mut found = Vec::new();
+    for entry in armctl::command::about::schema::all() {
+        let schema = (entry.schema)().to_value();
+        let Some(fields) = schema["properties"].as_object() else { continue };
+        let is_sentence =
+            |(name, schema): (&String, &serde_json::Value)| SENTENCES.contains(&name.as_str()) && is_text(schema);
+        // `failure` is an error, whose message is one; `done` of the inventory is `added` or `removed`.
+        if !matches!(entry.id, "failure" | "robots.add" | "robots.remove") && fields.iter().any(is_sentence) {
+            found.push(entry.id);
+        }
+    }
+    assert_eq!(found, Vec::<&str>::new(), "reports whose data is a sentence");
+    let of = |id: &str| armctl::command::about::schema::all().into_iter().find(|entry| entry.id == id);
+    let hold = (of("yerc.hold").expect("hold reports").schema)().to_value();
+    assert!(["set", "old", "new"].iter().all(|name| hold["properties"].get(name).is_some()), "{hold}");
+}
+
 #[test]
 fn every_robot_command_has_a_schema_and_help() {
     let ids: Vec<&str> = armctl::command::about::schema::all().iter().map(|entry| entry.id).collect();

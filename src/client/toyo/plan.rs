@@ -1,11 +1,13 @@
 //! What a dry run notes instead of sending it.
 
 use armctl_controller::Risk;
+use armctl_controller::toyo::describe::{Sender, describe};
 use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table::commands::Row;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Client, Error, Transport};
+use crate::plan::with_fields;
 use crate::{Plan, Reason};
 
 impl Client {
@@ -60,6 +62,13 @@ impl Client {
         Ok(())
     }
 
+    /// Says in a dry run what would be done with a file or a part.
+    pub fn plan_item(&mut self, item: Value) {
+        if let Some(plan) = self.transport.notes() {
+            plan.items.push(item);
+        }
+    }
+
     /// Says in a dry run what follows that cannot be shown.
     pub fn then(&mut self, what: &str) {
         if let Some(plan) = self.transport.notes() {
@@ -73,7 +82,11 @@ impl Client {
 
     pub(super) fn note_text(&mut self, text: &str, reason: Reason<'_>) {
         if let Some(plan) = self.transport.notes() {
-            plan.note(json!({ "text": text }), reason);
+            let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
+            let moves = Row::named(word).is_some_and(|row| row.risk == Risk::Motion) && !text.contains('?');
+            let notes = if moves { describe(text, Sender::Host, None).fields } else { Vec::new() };
+            let fields: Vec<_> = notes.into_iter().map(|note| (note.name.to_owned(), note.meaning)).collect();
+            plan.note(with_fields(json!({ "text": text }), &fields), reason);
         }
     }
 }

@@ -1,13 +1,16 @@
 //! What a dry run notes instead of sending it.
 
+use armctl_controller::Risk;
 use armctl_controller::text::hex;
+use armctl_controller::yerc::describe::{Sender, describe};
 use armctl_controller::yerc::files::{ack_frame, data_frame};
 use armctl_controller::yerc::query::Query;
 use armctl_controller::yerc::request::Request;
-use armctl_controller::yerc::wire::{LAST_BLOCK, MAX_DATA};
-use serde_json::json;
+use armctl_controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_DATA};
+use serde_json::{Value, json};
 
 use super::{Client, Error, Transport};
+use crate::plan::{FieldInWords, in_common, with_fields};
 use crate::{NotAuthorized, Plan, Reason};
 
 impl Client {
@@ -57,7 +60,18 @@ impl Client {
     /// request with other answers: where both differ nothing is known.
     pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
-        self.note_masked(&request.frame(id), &other.frame(id), reason);
+        let (frame, other_frame) = (request.frame(id), other.frame(id));
+        let fields = in_common(fields(request, &frame), &fields(other, &other_frame));
+        if let Some(plan) = self.transport.notes() {
+            plan.note(with_fields(json!({ "hex": masked(&frame, &other_frame) }), &fields), reason);
+        }
+    }
+
+    /// Says in a dry run what would be done with a file or a part.
+    pub fn plan_item(&mut self, item: Value) {
+        if let Some(plan) = self.transport.notes() {
+            plan.items.push(item);
+        }
     }
 
     /// Says in a dry run what follows that cannot be shown.
@@ -105,7 +119,8 @@ impl Client {
         let id = self.ids.next_id();
         let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
         if let Some(plan) = self.transport.notes() {
-            plan.note(json!({ "hex": hex(&request.frame(id)) }), reason);
+            let frame = request.frame(id);
+            plan.note(with_fields(json!({ "hex": hex(&frame) }), &fields(request, &frame)), reason);
         }
         id
     }
@@ -129,6 +144,17 @@ impl Client {
             plan.note(json!({ "hex": hex(&frame) }), Reason { about: Some(&about), depends_on });
         }
     }
+}
+
+/// What an order that moves something says, in words: its instance, and its data. What is reserved is left out.
+fn fields(request: &Request, frame: &[u8]) -> Vec<FieldInWords> {
+    const INSTANCE: usize = 26;
+    if request.risk() < Risk::Motion {
+        return Vec::new();
+    }
+    let notes = describe(frame, Sender::Client, None).fields.into_iter();
+    let told = notes.filter(|note| note.offset == INSTANCE || note.offset >= HEADER_LEN);
+    told.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
 }
 
 /// Bytes as digits, with `??` where two frames differ.

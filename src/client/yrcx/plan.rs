@@ -1,11 +1,14 @@
 //! What a dry run notes instead of sending it.
 
+use armctl_controller::Risk;
+use armctl_controller::yrcx::describe;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
 use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::procedure::{Procedure, Step};
 use serde_json::{Value, json};
 
 use super::{Client, Error, Transport};
+use crate::plan::{FieldInWords, in_common, with_fields};
 use crate::{Plan, Reason};
 
 impl Client {
@@ -43,13 +46,21 @@ impl Client {
     pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
-        self.plan_frame(json!({ "wi": words }), reason);
+        let fields = in_common(fields(order), &fields(other));
+        self.plan_frame(with_fields(json!({ "wi": words }), &fields), reason);
     }
 
     /// Notes in a dry run what goes to the device on the fieldbus and not to the controller.
     pub fn plan_frame(&mut self, frame: Value, reason: Reason<'_>) {
         if let Some(plan) = self.notes() {
             plan.note(frame, reason);
+        }
+    }
+
+    /// Says in a dry run what would be done with a file or a part.
+    pub fn plan_item(&mut self, item: Value) {
+        if let Some(plan) = self.notes() {
+            plan.items.push(item);
         }
     }
 
@@ -68,7 +79,7 @@ impl Client {
     }
 
     pub(super) fn note(&mut self, order: &Order, reason: Reason<'_>) {
-        self.plan_frame(json!({ "wi": hex(order.words()) }), reason);
+        self.plan_frame(with_fields(json!({ "wi": hex(order.words()) }), &fields(order)), reason);
     }
 
     /// Notes what each edge of a procedure shows.
@@ -91,6 +102,15 @@ impl Client {
             plan.note(json!({ "bits": hex(&image.0[COMMAND_WORDS..]) }), reason);
         }
     }
+}
+
+/// What an order that moves something says, in words. What is not said is left out.
+fn fields(order: &Order) -> Vec<FieldInWords> {
+    if order.risk() < Risk::Motion {
+        return Vec::new();
+    }
+    let notes = describe::command(order.words()).fields.into_iter();
+    notes.filter(|note| !note.meaning.starts_with("none")).map(|note| (note.name, note.meaning)).collect()
 }
 
 /// Words as they are written: `0x0604`.

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use super::Report;
 use super::backup::manifest::{LeftOut, MANIFEST, Saved, State};
@@ -212,6 +213,21 @@ pub fn gravity(kind: Kind) -> u8 {
         _ => 0,
     }
 }
+
+/// What a dry run says of a file or a part that would be written: how much it is, as `bytes` or `values`.
+pub fn would_write(item: impl fmt::Display, (unit, count): (&str, u64), depends_on: &str) -> Value {
+    json!({ "item": item.to_string(), "action": "write", unit: count, "depends_on": depends_on })
+}
+
+/// What a dry run says of a file or a part of the backup that is not written.
+pub fn would_leave(item: impl fmt::Display, why: &str) -> Value {
+    json!({ "item": item.to_string(), "action": "leave", "why": why })
+}
+
+/// Why a dry run leaves what is not among the chosen ones.
+pub const NOT_CHOSEN: &str = "not chosen";
+/// Why it leaves what makes another machine of it.
+pub const NOT_MACHINE: &str = "makes it another machine: written with --machine only";
 
 /// Result of each file or part, in the order of working.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

@@ -7,11 +7,11 @@ use serde_json::Value;
 use super::report::Report;
 pub use crate::client::{Plan, Reason};
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Table, View};
+use crate::output::view::{Cell, Section, Table, View};
 
 impl From<Plan> for DryRun {
-    fn from(Plan { frames, then }: Plan) -> Self {
-        Self { frames, complete: then.is_none(), then }
+    fn from(Plan { frames, items, then }: Plan) -> Self {
+        Self { frames, items, complete: then.is_none(), then }
     }
 }
 
@@ -31,7 +31,7 @@ pub fn is_end(failure: &Failure) -> bool {
         | Kind::OutcomeUnknown
         | Kind::ConditionNotMet
         | Kind::Mixed => true,
-        Kind::Local | Kind::Usage | Kind::Rejected | Kind::PipeClosed | Kind::Interrupted => false,
+        Kind::Local | Kind::Usage | Kind::Rejected | Kind::PipeClosed | Kind::Interrupted | Kind::Halted(_) => false,
     }
 }
 
@@ -63,6 +63,11 @@ pub struct DryRun {
                    "type": "array", "items": {"type": "string"}},
             "bits": {"description": "The words of bits (yrcx).", "type": "array", "items": {"type": "string"}},
             "text": {"description": "The line (toyo); `?` where an answer decides.", "type": "string"},
+            "fields": {"description": "What an order that moves something says, field by field; `?` where an answer \
+                                       decides.",
+                       "type": "array",
+                       "items": {"type": "object", "required": ["name", "value"],
+                                 "properties": {"name": {"type": "string"}, "value": {"type": "string"}}}},
             "about": {"description": "What it is for.", "type": "string"},
             "depends_on": {"description": "What of the answers before it decides how it looks, or whether it is sent.",
                            "type": "string"}
@@ -70,6 +75,21 @@ pub struct DryRun {
         "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
     }))]
     pub frames: Vec<Value>,
+    /// What would be done with each file or part: `write`, if what it `depends_on` is so, or `leave`, and `why`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("items" = {
+        "type": "object",
+        "required": ["item", "action"],
+        "properties": {
+            "item": {"description": "The file or the part.", "type": "string"},
+            "action": {"enum": ["write", "leave"]},
+            "bytes": {"description": "Of a file.", "type": "integer"},
+            "values": {"description": "Of a part.", "type": "integer"},
+            "depends_on": {"description": "What of the answers decides whether it is written.", "type": "string"},
+            "why": {"description": "Why it is left as it is.", "type": "string"}
+        }
+    }))]
+    pub items: Vec<Value>,
     /// Whether these are all; if not, what follows depends on answers in a way that cannot be shown.
     pub complete: bool,
     /// What follows, in words; null where nothing does.
@@ -95,13 +115,38 @@ impl Report for DryRun {
             };
             plain.row([(index + 1).into(), shown.as_str().into()]);
             explained.row([(index + 1).into(), purpose(frame).unwrap_or_default().into(), shown.into()]);
+            for field in frame["fields"].as_array().into_iter().flatten() {
+                let [name, value] = ["name", "value"].map(|key| text(field, key).unwrap_or_default());
+                plain.row(["".into(), format!("{name}: {value}").into()]);
+                explained.row(["".into(), name.into(), value.into()]);
+            }
         }
         if let Some(then) = &self.then {
             plain.row(["…".into(), then.as_str().into()]);
             explained.row(["…".into(), then.as_str().into(), "".into()]);
         }
         let has_purpose = self.frames.iter().any(|frame| purpose(frame).is_some());
-        View::table(if has_purpose { explained } else { plain })
+        let frames = Section::Table(if has_purpose { explained } else { plain });
+        let items = (!self.items.is_empty()).then(|| Section::Table(self.planned_items()));
+        View { sections: items.into_iter().chain([frames]).collect() }
+    }
+}
+
+impl DryRun {
+    fn planned_items(&self) -> Table {
+        let mut table = Table::new(&["item", "would be", "size", "note"], "");
+        for item in &self.items {
+            let text = |key: &str| item[key].as_str().unwrap_or_default();
+            let size =
+                ["bytes", "values"].into_iter().find_map(|unit| Some(format!("{} {unit}", item[unit].as_u64()?)));
+            let done = if text("action") == "write" { "written" } else { "left" };
+            let note = match (text("depends_on"), text("why")) {
+                ("", why) => why.to_owned(),
+                (on, _) => format!("depends on {on}"),
+            };
+            table.row([text("item").into(), done.into(), Cell::maybe(size), note.into()]);
+        }
+        table
     }
 }
 

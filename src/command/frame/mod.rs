@@ -26,6 +26,7 @@ pub mod setting;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod trace;
+pub mod watch;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub(crate) use command_set::commands;

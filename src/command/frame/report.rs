@@ -17,6 +17,11 @@ pub trait Report: Serialize + JsonSchema {
     fn failure(&self) -> Option<Failure> {
         None
     }
+
+    /// The list whose things are the rows of a spreadsheet, where that is not every list of a table.
+    fn rows(&self) -> Option<&'static str> {
+        None
+    }
 }
 
 /// A report, or why there is none.
@@ -30,6 +35,8 @@ pub trait AnyReport {
     fn view(&self) -> View;
     /// See [`Report::failure`].
     fn failure(&self) -> Option<Failure>;
+    /// See [`Report::rows`].
+    fn rows(&self) -> Option<&'static str>;
 }
 
 impl<R: Report> AnyReport for R {
@@ -43,6 +50,10 @@ impl<R: Report> AnyReport for R {
 
     fn failure(&self) -> Option<Failure> {
         Report::failure(self)
+    }
+
+    fn rows(&self) -> Option<&'static str> {
+        Report::rows(self)
     }
 }
 

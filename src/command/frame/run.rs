@@ -197,7 +197,7 @@ impl Run {
         match report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
             Some(failure) => {
-                let told = printed.is_ok() && !self.is_for_people();
+                let told = printed.is_ok() && self.screen.is_json();
                 Err(RunError { failure, envelope: None, told })
             }
             None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),

@@ -64,6 +64,7 @@ pub const LINES: &[&str] = &[
     "decode yerc '59 45 52 43 20 00 00 00'",
     "decode yrcx --wi 0x0001,0x0004,0,0x0032",
     "decode yrcx capture.pcapng --every-image",
+    "decode yrcx 68 05 05 68 85 82 6D 3C 3E EE 16",
     "decode toyo '@STAS SNO=0'",
     "decode toyo capture.pcapng --port 4001",
     "explain yerc 0x2060",

@@ -9,6 +9,7 @@ use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -17,7 +18,8 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::settings::alarms::{self, Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -27,6 +29,8 @@ commands! {
         List(List),
         /// Alarm history, the latest first
         History(History),
+        /// Print alarms as they come and go
+        Watch(Watch<List>),
         /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
@@ -51,9 +55,18 @@ impl Command for List {
             link.plan(&status_page(1), "which");
             return Err(unknown());
         }
-        let error = present(link).await?.map(Explained::of);
+        let mut error = present(link).await?.map(Explained::of);
+        if let Some(error) = &mut error {
+            error.explained = alarms::find(Origin::of(context.robot), &error.code.code.to_string())?;
+        }
         Ok(Present { alarms: error.iter().cloned().collect(), error })
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "toyo.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
 }
 
 /// The code of the error that is present. One that has none is code 00.
@@ -80,25 +93,30 @@ struct Explained {
     cause: &'static str,
     /// What to do.
     remedy: &'static str,
+    /// What `alarms.toml` says of it; null where it says nothing, and where it was not asked.
+    explained: Option<Explanation>,
 }
 
 impl Explained {
     fn of(code: u8) -> Self {
         let explanation = errors::explain(code);
-        Self { code: ErrorCode::of(code), cause: explanation.cause, remedy: explanation.remedy }
+        Self { code: ErrorCode::of(code), cause: explanation.cause, remedy: explanation.remedy, explained: None }
     }
 }
 
 impl Report for Present {
     fn view(&self) -> View {
-        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy }) = self.alarms.first() else {
+        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy, explained }) = self.alarms.first()
+        else {
             return View::text("no alarm");
         };
-        View::fields([
+        let mut fields = vec![
             ("alarm", Cell::from(format!("{code}: {meaning}")).tone(Tone::Bad)),
             ("cause", (*cause).into()),
             ("remedy", (*remedy).into()),
-        ])
+        ];
+        fields.extend(Explanation::field(explained.as_ref()));
+        View::default().and(Section::Fields(fields))
     }
 }
 

@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::link::Toyo;
 use super::link::wrong;
+use super::values::json;
 use crate::command::frame::orders::Done;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
@@ -82,7 +83,14 @@ impl Command for Set {
         let values = [task, x, y, z, r, speed].map(Clone::clone).into();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
-        Ok(Done::new(format!("task {} has {}", field("task").meaning(task), self.aim())))
+        let number = |name: &str, value: &Value| json(field(name), value);
+        let mut new = serde_json::Map::new();
+        for (name, value) in [("x", x), ("y", y), ("z", z), ("r", r)] {
+            new.insert(format!("{name}_mm"), number(name, value));
+        }
+        let words = format!("task {} has {}", field("task").meaning(task), self.aim());
+        let done = Done::new("coordinates", new, words).with("task", number("task", task));
+        Ok(if *speed == Value::Number(0) { done } else { done.with("speed_row", number("speed", speed)) })
     }
 }
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::items::{self, Item, read_each};
 use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -23,6 +24,8 @@ commands! {
         Get(Get),
         /// Set a counter
         Set(Set),
+        /// Print each change of counters
+        Watch(Watch<Get>),
     }
 }
 
@@ -65,6 +68,18 @@ impl Command for Get {
         let counters = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("counter", *number, answer, count));
         Ok(Counters { counters: counters.collect() })
     }
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "toyo.counter.watch";
+    const WATCHED: Watched = Watched {
+        list: "counters",
+        name: "counter",
+        prefix: "counter ",
+        label: "",
+        value: Some("count"),
+        empty: "no counters",
+    };
 }
 
 impl Command for Set {

@@ -9,7 +9,8 @@ use crate::controller::toyo::errors;
 use crate::controller::typed;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
+use crate::settings::alarms::{self, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Error code of a Toyo controller
@@ -30,7 +31,9 @@ impl OfflineCommand for Explain {
     const ID: &'static str = "explain.toyo";
 
     fn run(&self, _screen: &Screen) -> Result<ToyoCode, Failure> {
-        Ok(ToyoCode::from(self.code))
+        let code = ToyoCode::from(self.code);
+        let explained = alarms::find(Origin::any(Family::Toyo), &code.code)?;
+        Ok(ToyoCode { explained, ..code })
     }
 }
 
@@ -49,13 +52,15 @@ pub struct ToyoCode {
     cause: &'static str,
     /// What to do.
     remedy: &'static str,
+    /// What `alarms.toml` says of it; null where it says nothing.
+    explained: Option<Explanation>,
 }
 
 impl From<u8> for ToyoCode {
     fn from(code: u8) -> Self {
         if code == errors::NONE {
             let (name, cause, remedy) = ("no error".to_owned(), "nothing is wrong", "nothing is to be done");
-            return Self { code: "00".to_owned(), known: true, name, axis: None, cause, remedy };
+            return Self { code: "00".to_owned(), known: true, name, axis: None, cause, remedy, explained: None };
         }
         let found = errors::explain(code);
         let (cause, remedy) = (found.cause, found.remedy);
@@ -66,18 +71,21 @@ impl From<u8> for ToyoCode {
             axis: found.axis,
             cause,
             remedy,
+            explained: None,
         }
     }
 }
 
 impl Report for ToyoCode {
     fn view(&self) -> View {
-        View::fields([
+        let mut fields = vec![
             ("code", self.code.as_str().into()),
             ("meaning", self.name.as_str().into()),
             ("cause", self.cause.into()),
             ("what to do", self.remedy.into()),
-        ])
+        ];
+        fields.extend(Explanation::field(self.explained.as_ref()));
+        View::default().and(Section::Fields(fields))
     }
 }
 

@@ -36,7 +36,7 @@ impl Command for Host {
         context.link.ask(&Request::bare(command)).await?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
-            return Ok(Done::new(done));
+            return Ok(Done::new("host_on", is_on, done));
         }
         Err(not_so("the host").hint("`toyo status` tells who commands"))
     }

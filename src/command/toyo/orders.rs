@@ -48,8 +48,8 @@ impl Command for Servo {
         let done = becomes(link, (3, "whether it is"), |status| status.servo_on() == is_on).await?;
         link.has_ended();
         match (done, is_on) {
-            (true, true) => Ok(Done::new("servo power is on")),
-            (true, false) => Ok(Done::new("servo power is off")),
+            (true, true) => Ok(Done::new("servo_on", true, "servo power is on")),
+            (true, false) => Ok(Done::new("servo_on", false, "servo power is off")),
             (false, _) => {
                 Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` tell what is in the way"))
             }
@@ -94,6 +94,17 @@ impl ModeName {
         }
     }
 
+    /// Name and value, as `status` gives them.
+    const fn data(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Program => ("run_mode", "program"),
+            Self::Step => ("run_mode", "step"),
+            Self::Auto => ("run_mode", "automatic"),
+            Self::Sequential => ("program_kind", "sequential"),
+            Self::Palletizing => ("program_kind", "palletizing"),
+        }
+    }
+
     const fn in_force(self) -> &'static str {
         match self {
             Self::Program => "programs are edited (program mode)",
@@ -124,7 +135,8 @@ impl Command for Mode {
         let (link, mode) = (context.link, self.mode);
         link.ask(&Request::bare(mode.command())).await?;
         if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
-            return Ok(Done::new(mode.in_force()));
+            let (set, new) = mode.data();
+            return Ok(Done::new(set, new, mode.in_force()));
         }
         Err(not_so("the mode").hint("parameter M10 may have chosen easy or external point mode: `toyo param get M10`"))
     }
@@ -147,7 +159,8 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
-        Ok(Done::new("the controller was reset; errors are cancelled by `toyo alarm reset`"))
+        let words = "the controller was reset; errors are cancelled by `toyo alarm reset`";
+        Ok(Done::new("programs", "reset", words))
     }
 }
 

@@ -91,6 +91,7 @@ impl<K: Kind> Command for Select<K> {
                 not_held(&order, &format!("program {found} is chosen")).hint("a program that runs stays chosen")
             );
         }
-        Ok(Done::new(format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN)))
+        let words = format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN);
+        Ok(Done::new(K::WHAT.replace(' ', "_"), self.program, words))
     }
 }

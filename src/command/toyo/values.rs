@@ -252,6 +252,14 @@ fn number(form: Number, units: i32) -> Json {
     if form.scale() > 1 { Json::from(f64::from(units) / f64::from(form.scale())) } else { Json::from(units) }
 }
 
+/// A value in the unit of its field; null where it is no number.
+pub fn json(field: &Field, value: &Value) -> Json {
+    match (&field.form, value) {
+        (Form::Number(form), Value::Number(units)) => number(*form, *units),
+        _ => Json::Null,
+    }
+}
+
 /// `ax1=5`: name and value. What begins with something else, such as `<=`, is a value.
 pub fn assignment(text: &str) -> Option<(&str, &str)> {
     let (name, value) = text.split_once('=')?;

@@ -14,6 +14,7 @@ use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::frame::orders::Done;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
@@ -22,7 +23,9 @@ use crate::controller::yerc::payload;
 use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::settings::Robot;
+use crate::settings::alarms::{self, Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -31,6 +34,8 @@ commands! {
         List(List),
         /// Alarm history, the latest of each class first
         History(History),
+        /// Print alarms as they come and go
+        Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
         /// Cancel the error
@@ -66,7 +71,9 @@ impl Command for List {
             // A gap between slots is not described, so all four are read.
             let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
-                Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model)),
+                Ok(alarm) => {
+                    Ok(AlarmEntry::new(&alarm, link.encoding, link.model).explained(context.robot, link.model)?)
+                }
                 Err(denied) => Err(denied.into()),
             };
             alarms.push(ActiveAlarm { slot, outcome: ItemOutcome::new(format!("alarm slot {slot}"), outcome) });
@@ -75,6 +82,12 @@ impl Command for List {
         items::nothing(report.asked, report.errors())?;
         Ok(report)
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "yerc.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "name", value: None, empty: "no alarm" };
 }
 
 /// The lists of past alarms.
@@ -223,7 +236,7 @@ fn may_be_unknown(status: Status) -> bool {
 }
 
 macro_rules! order {
-    ($(#[$doc:meta])* $name:ident, $id:literal, $query:expr, $done:literal) => {
+    ($(#[$doc:meta])* $name:ident, $id:literal, $query:expr, $set:literal = $new:literal, $done:literal) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
         pub struct $name {}
@@ -239,7 +252,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(Done::new($done))
+                Ok(Done::new($set, $new, $done))
             }
         }
     };
@@ -247,12 +260,12 @@ macro_rules! order {
 
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
-    Reset, "yerc.alarm.reset", query::ResetAlarm,
+    Reset, "yerc.alarm.reset", query::ResetAlarm, "alarm" = "reset",
     "alarm reset accepted; `yerc alarm list` shows what is left"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).
-    Cancel, "yerc.alarm.cancel", query::CancelError, "the error is cancelled"
+    Cancel, "yerc.alarm.cancel", query::CancelError, "error" = "cancelled", "the error is cancelled"
 }
 
 /// The alarms that are present, the latest first.
@@ -309,6 +322,8 @@ struct AlarmEntry {
     sub_code: SubCode,
     /// Where it comes from, such as `[SV#1]`; null without texts.
     board: Option<String>,
+    /// What `alarms.toml` says of it; null where it says nothing.
+    explained: Option<Explanation>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -355,7 +370,20 @@ impl AlarmEntry {
                 rendered: rendered.text,
             },
             board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
+            explained: None,
         }
+    }
+
+    /// With what `alarms.toml` says of it.
+    fn explained(mut self, robot: &Robot, model: Model) -> Result<Self, Failure> {
+        let origin = Origin { model: Some(model), ..Origin::of(robot) };
+        self.explained = alarms::find(origin, &self.code.to_string())?;
+        Ok(self)
+    }
+
+    /// The same as a line below a table.
+    fn explanation(&self) -> Option<String> {
+        Some(format!("{}: {}", self.code, self.explained.as_ref()?.line()))
     }
 
     fn sample(&self) -> sample::Alarm {
@@ -412,7 +440,10 @@ impl Report for ActiveAlarms {
             let [code, name, sub_code, time, board] = cells(outcome);
             table.row([(*slot).into(), code, name, sub_code, time, board]);
         }
-        View::table(table)
+        let told = self.alarms.iter().filter_map(|alarm| alarm.outcome.data()?.explanation());
+        let told: Vec<Cell> = told.map(Cell::from).collect();
+        let view = View::table(table);
+        if told.is_empty() { view } else { view.and(Section::Lines(told)) }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -8,7 +8,8 @@ use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::{Section, View};
+use crate::output::view::{Cell, Section, View};
+use crate::settings::alarms::{self, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Status code (1 byte) or added status code (2 bytes) of an FS100 or DX200
@@ -24,10 +25,19 @@ impl OfflineCommand for Explain {
     const ID: &'static str = "explain.yerc";
 
     fn run(&self, _screen: &Screen) -> Result<Codes, Failure> {
-        let found = status::lookup(&self.code).map_err(|error| {
+        let mut found = status::lookup(&self.code).map_err(|error| {
             Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
         })?;
-        Ok(Codes { codes: found.into_iter().map(Code::from).collect() })
+        let number = alarm_number(&self.code);
+        if number.is_some() {
+            // What is no status code of the manuals is an alarm number, as people read it on the pendant.
+            found.retain(|explanation| explanation.known);
+        }
+        let mut codes: Vec<Code> = found.into_iter().map(Code::from).collect();
+        if let Some(number) = number {
+            codes.push(Code::of_alarm(number)?);
+        }
+        Ok(Codes { codes })
     }
 }
 
@@ -54,6 +64,34 @@ struct Code {
     models: Vec<String>,
 }
 
+/// The number of an alarm, 1 to 9999 in decimal.
+fn alarm_number(text: &str) -> Option<u32> {
+    let is_number = (3..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
+    text.parse().ok().filter(|number| is_number && *number > 0)
+}
+
+impl Code {
+    /// An alarm number: what `alarms.toml` says of it, or where to look.
+    fn of_alarm(number: u32) -> Result<Self, Failure> {
+        let code = number.to_string();
+        let found = alarms::find(Origin::any(Family::Yerc), &code)?;
+        let known = found.is_some();
+        let (name, cause, remedy) = match found {
+            Some(Explanation { text, cause, remedy }) => (text, cause, remedy),
+            None => ("an alarm number".to_owned(), None, None),
+        };
+        let look = "the controller's maintenance manual has it, and the controller its text: `armctl yerc alarm list`";
+        Ok(Self {
+            code,
+            known,
+            name,
+            cause: cause.unwrap_or_default(),
+            remedy: remedy.unwrap_or_else(|| look.to_owned()),
+            models: Vec::new(),
+        })
+    }
+}
+
 impl From<status::Explanation> for Code {
     fn from(found: status::Explanation) -> Self {
         Self {
@@ -74,7 +112,7 @@ impl Report for Codes {
             Section::Fields(vec![
                 ("code", code.code.as_str().into()),
                 ("meaning", code.name.as_str().into()),
-                ("cause", code.cause.as_str().into()),
+                ("cause", Cell::maybe(Some(code.cause.as_str()).filter(|cause| !cause.is_empty()))),
                 ("what to do", code.remedy.as_str().into()),
                 ("listed for", models.into()),
             ])

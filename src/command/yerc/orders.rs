@@ -16,7 +16,7 @@ macro_rules! order {
     (
         $(#[$doc:meta])*
         $name:ident { $(#[$arg:meta])* $field:ident: $type:ty }, $id:literal,
-        |$this:ident| $query:expr, $intent:expr, $done:expr $(, stops if $is_stop:expr)?
+        |$this:ident| $query:expr, $intent:expr, $set:literal = $new:expr, $done:expr $(, stops if $is_stop:expr)?
     ) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
@@ -47,7 +47,7 @@ macro_rules! order {
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 let $this = self;
                 context.link.ask(&$query).await?;
-                Ok(Done::new($done))
+                Ok(Done::new($set, $new, $done))
             }
         }
     };
@@ -61,6 +61,7 @@ order! {
         switch: Switch
     }, "yerc.servo",
     |this| query::Servo(this.switch == Switch::On), "switch servo power on",
+    "servo_on" = this.switch == Switch::On,
     if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" }
 }
 order! {
@@ -71,6 +72,7 @@ order! {
         switch: Switch
     }, "yerc.hold",
     |this| query::Hold(this.switch == Switch::On), "release the hold",
+    "held" = this.switch == Switch::On,
     if this.switch == Switch::On { "hold is on" } else { "hold is off" },
     stops if this.switch == Switch::On
 }
@@ -82,6 +84,7 @@ order! {
         switch: Switch
     }, "yerc.hlock",
     |this| query::Hlock(this.switch == Switch::On), "",
+    "hlock_on" = this.switch == Switch::On,
     if this.switch == Switch::On { "pendant and operation signals are locked" } else { "pendant and operation signals are free" }
 }
 
@@ -113,6 +116,11 @@ order! {
         mode: CycleName
     }, "yerc.cycle",
     |this| query::SetCycle(this.mode.into()), "",
+    "cycle" = match this.mode {
+        CycleName::Step => "step",
+        CycleName::Once => "one_cycle",
+        CycleName::Continuous => "continuous",
+    },
     match this.mode {
         CycleName::Step => "the cycle is step",
         CycleName::Once => "the cycle is one cycle",
@@ -137,7 +145,8 @@ impl Command for Say {
         refuse_controls("the message", &self.text)?;
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
-        Ok(Done::new(if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" }))
+        let words = if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" };
+        Ok(Done::new("pendant_message", self.text.as_str(), words))
     }
 }
 

@@ -9,6 +9,7 @@ use super::info::AlarmReport;
 use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
 use crate::command::frame::dry_run::Reason;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
@@ -16,6 +17,7 @@ use crate::controller::yrcx::table::Command as Row;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::View;
+use crate::settings::alarms::{self, Origin};
 
 commands! {
     /// Alarms.
@@ -24,6 +26,8 @@ commands! {
         List(List),
         /// Alarm history, the latest first
         History(History),
+        /// Print alarms as they come and go
+        Watch(Watch<List>),
         /// Reset the alarm
         Reset(Reset),
     }
@@ -55,9 +59,19 @@ impl Command for List {
         if alarm || warning {
             alarms.push(AlarmReport::of(&link.ask(&latest).await?.values));
             alarms.retain(|alarm| alarm.code.is_some());
+            for alarm in &mut alarms {
+                let code = alarm.code.as_deref().unwrap_or_default();
+                alarm.explained = alarms::find(Origin::of(context.robot), code)?;
+            }
         }
         Ok(ActiveAlarms { alarm, warning, alarms })
     }
+}
+
+impl Watchable for List {
+    const WATCH: &'static str = "yrcx.alarm.watch";
+    const WATCHED: Watched =
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
 }
 
 /// The alarm that is present.

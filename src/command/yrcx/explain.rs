@@ -10,7 +10,8 @@ use crate::command::{OfflineCommand, Report, ValueKind};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::View;
+use crate::output::view::{Section, View};
+use crate::settings::alarms::{self, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Alarm number of a YRCX, or error of a PROFINET device
@@ -42,7 +43,10 @@ impl OfflineCommand for Explain {
 
     fn run(&self, _screen: &Screen) -> Result<YrcxAlarm, Failure> {
         Ok(match self.code.clone() {
-            Code::Alarm(alarm) => alarm.into(),
+            Code::Alarm(alarm) => {
+                let explained = alarms::find(Origin::any(Family::Yrcx), &alarm.to_string())?;
+                YrcxAlarm { explained, ..alarm.into() }
+            }
             Code::Bus(explained) => explained.into(),
         })
     }
@@ -63,6 +67,8 @@ pub struct YrcxAlarm {
     causes: &'static [&'static str],
     /// What to do.
     remedies: &'static [&'static str],
+    /// What `alarms.toml` says of it; null where it says nothing.
+    explained: Option<Explanation>,
 }
 
 impl From<Alarm> for YrcxAlarm {
@@ -78,6 +84,7 @@ impl From<Alarm> for YrcxAlarm {
                 &["look it up in the controller's manual: `yrcx info alarm` tells where it came up"],
                 |known| known.remedies,
             ),
+            explained: None,
         }
     }
 }
@@ -92,6 +99,7 @@ impl From<Explained> for YrcxAlarm {
             group: Some(refused),
             causes: &[],
             remedies,
+            explained: None,
         }
     }
 }
@@ -99,12 +107,14 @@ impl From<Explained> for YrcxAlarm {
 impl Report for YrcxAlarm {
     fn view(&self) -> View {
         let listed = |lines: &[&str]| if lines.is_empty() { "-".to_owned() } else { lines.join("; ") };
-        View::fields([
+        let mut fields = vec![
             (if self.code.starts_with("0x") { "error" } else { "alarm" }, self.code.as_str().into()),
             ("meaning", self.name.as_str().into()),
             ("group", self.group.unwrap_or("-").into()),
             ("cause", listed(self.causes).into()),
             ("what to do", listed(self.remedies).into()),
-        ])
+        ];
+        fields.extend(Explanation::field(self.explained.as_ref()));
+        View::default().and(Section::Fields(fields))
     }
 }

@@ -61,6 +61,8 @@ pub struct Link {
     unit: u8,
     /// What a watch told last.
     pub told: Option<Image>,
+    /// What a watch has seen and not told yet.
+    pub seen: Option<Image>,
 }
 
 impl Family for Yrcx {
@@ -215,6 +217,7 @@ impl Link {
             is_simulated,
             unit: access.own.get().map_or(0, Unit::number),
             told: None,
+            seen: None,
         })
     }
 

@@ -8,7 +8,7 @@ use super::overwrite::Stored;
 use super::position::Unit;
 use super::single::one_row;
 use crate::command::commands;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, number};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
 
@@ -57,7 +57,13 @@ one_row! {
             SpeedSetting::Auto => "automatic",
             SpeedSetting::Program => "program",
         };
-        format!("set the {setting} speed to {} %", self.percent.trim_end_matches('%'))
+        let percent = self.percent.trim_end_matches('%');
+        let name = match self.setting {
+            SpeedSetting::Manual => "manual_percent",
+            SpeedSetting::Auto => "auto_percent",
+            SpeedSetting::Program => "program_percent",
+        };
+        Done::new(name, number(percent), format!("set the {setting} speed to {percent} %"))
     };
 
     /// Limits the torque of an axis from the next motion on; the parameter stays as it is.
@@ -72,7 +78,8 @@ one_row! {
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
     done {
         let percent = self.percent.trim_end_matches('%');
-        format!("limited the torque of axis {} to {percent} % from the next motion on", self.axis)
+        let words = format!("limited the torque of axis {} to {percent} % from the next motion on", self.axis);
+        Done::new("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
     };
 
     /// Sets the inching distance.
@@ -82,10 +89,13 @@ one_row! {
     }
     gives Command::InchAmountSet,
     with draft => draft.with(Key::InchingAmount, self.distance.as_str()),
-    done format!(
-        "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
-        self.distance
-    );
+    done {
+        let words = format!(
+            "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
+            self.distance
+        );
+        Done::new("inch_distance", number(&self.distance), words)
+    };
 
     /// Stores where the robot is in a point, in place of what the point was.
     Teach(self) "yrcx.teach" -> Stored {
@@ -107,7 +117,7 @@ one_row! {
     }
     gives Command::ShiftSelect,
     with draft => draft.with(Key::Shift, self.shift.as_str()),
-    done format!("selected shift {}", self.shift);
+    done Done::new("shift", number(&self.shift), format!("selected shift {}", self.shift));
 
     /// Selects a hand.
     HandSelect(self) "yrcx.hand.select" -> Done {
@@ -116,7 +126,7 @@ one_row! {
     }
     gives Command::HandSelect,
     with draft => draft.with(Key::Hand, self.hand.as_str()),
-    done format!("selected hand {}", self.hand);
+    done Done::new("hand", number(&self.hand), format!("selected hand {}", self.hand));
 
     /// Selects a hand system.
     #[command(after_help = "`yrcx info arm` reads it.")]
@@ -128,7 +138,7 @@ one_row! {
     with draft => draft.with(Key::Arm, i32::from(self.side == HandSystem::Left)),
     done {
         let side = if self.side == HandSystem::Left { "left" } else { "right" };
-        format!("selected the {side}-handed system")
+        Done::new("arm", side, format!("selected the {side}-handed system"))
     };
 
     /// Switches servos.
@@ -161,7 +171,8 @@ one_row! {
             ServoState::Off => "off",
             ServoState::Free => "free",
         };
-        format!("switched {} {state}", self.told())
+        let done = Done::new("servo", state, format!("switched {} {state}", self.told()));
+        done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
     /// Switches motor power, of all robots.
@@ -180,9 +191,11 @@ one_row! {
         MotorState::Pwr => "switch motor power on",
     },
     done match self.state {
-        MotorState::On => "switched motor power and all servos on".to_owned(),
-        MotorState::Off => "switched motor power and all servos off".to_owned(),
-        MotorState::Pwr => "switched motor power on".to_owned(),
+        MotorState::On => Done::new("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
+        MotorState::Off => {
+            Done::new("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
+        }
+        MotorState::Pwr => Done::new("motor_power", true, "switched motor power on"),
     };
 
     /// Resets the status of remote commands to ready.
@@ -193,7 +206,7 @@ one_row! {
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
-    done "the controller is ready for a remote command".to_owned();
+    done Done::new("remote_command_status", "ready", "the controller is ready for a remote command");
 }
 
 /// Which speed.
@@ -317,7 +330,7 @@ mod tests {
         let mut scripted = Scripted::new([]);
         scripted.image.0[0] = 0x4000;
         let (outcome, peer) = run_on(scripted, &["status-reset"]);
-        assert_eq!(outcome.unwrap()["done"], "the controller is ready for a remote command");
+        assert_eq!(outcome.unwrap()["new"], "ready");
         assert_eq!((peer.image.0[0], peer.taken.len()), (0, 0));
     }
 }

@@ -4,15 +4,17 @@ use std::time::Duration;
 
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::{Value as Json, json};
 
 use super::link::Link;
-use super::position::Unit;
+use super::position::{Position, Unit};
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
 use crate::client::yrcx;
 use crate::command::Report;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
+use crate::command::frame::orders;
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
@@ -48,6 +50,9 @@ pub struct Replaced {
     old: Option<String>,
     /// What shall be there, as far as that is known before.
     new: String,
+    /// Both for programs, null where it is not known; and what it is: name and numbers.
+    data: [Json; 2],
+    which: (&'static str, Vec<(Key, Json)>),
     /// It is there already, so that there is nothing to write.
     is_there: bool,
 }
@@ -97,13 +102,17 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) 
     let old = there(link, &read.build()?, &format!("{what}, which is overwritten")).await?;
     let old = old.filter(|values| is_defined(order.command(), values));
     let (new, is_same) = wanted(link, order, old.as_ref()).await?;
+    let before = old.as_ref().map_or(Json::Null, |values| data(order.command(), values));
     let old = old.map(|values| told(order.command(), &values));
+    let (new, after) = new;
     let change = match &old {
         Some(old) if !is_same => Change::new(format!("overwrite {noun}")).replaces(&what, old, &new),
         _ => Change::nothing(),
     };
     authority.confirm(&change).await?;
-    Ok(Replaced { what, old, new, is_there: is_same && may_be_there(order.command()) })
+    let data = [before, after];
+    let which = which(order);
+    Ok(Replaced { what, old, new, data, which, is_there: is_same && may_be_there(order.command()) })
 }
 
 /// What an order overwrites: what kind of thing, which one, and what reads it.
@@ -149,6 +158,26 @@ fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
     })
 }
 
+/// What an order overwrites, for programs.
+fn which(order: &Order) -> (&'static str, Vec<(Key, Json)>) {
+    let values = order.values();
+    let number = |key| values.int(key).unwrap_or_default();
+    let (name, keys): (_, &[Key]) = match order.command() {
+        Command::CommentSet => ("comment", &[Key::Point]),
+        Command::PalletSet => ("pallet", &[Key::Pallet]),
+        Command::ShiftSet | Command::ShiftElement => ("shift", &[Key::Shift]),
+        Command::HandSet => ("hand", &[Key::Hand]),
+        Command::ParamSet => {
+            let name = Parameter::from_number(number(Key::Parameter)).map_or("parameter", |parameter| parameter.name);
+            let axis = number(Key::Axes);
+            let axis = if axis == 0 { Json::Null } else { (axis.trailing_zeros() + 1).into() };
+            return (name, vec![(Key::Robot, number(Key::Robot).max(1).into()), (Key::Axes, axis)]);
+        }
+        _ => ("point", &[Key::Point]),
+    };
+    (name, keys.iter().map(|key| (*key, number(*key).into())).collect())
+}
+
 /// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
 async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
@@ -172,8 +201,8 @@ fn is_defined(command: Command, values: &Values) -> bool {
     }
 }
 
-/// What shall be there in words, and whether it is there.
-async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<(String, bool), Failure> {
+/// What shall be there in words and for programs, and whether it is there.
+async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<((String, Json), bool), Failure> {
     let (command, values) = (order.command(), order.values());
     let number = |key| values.int(key).unwrap_or_default();
     let new = match command {
@@ -198,8 +227,11 @@ async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<
         _ => Ok(values.clone()),
     };
     Ok(match new {
-        Ok(new) => (told(command, &new), old.is_some_and(|old| is_same(command, old, &new))),
-        Err(words) => (words, false),
+        Ok(new) => {
+            let is_same = old.is_some_and(|old| is_same(command, old, &new));
+            ((told(command, &new), data(command, &new)), is_same)
+        }
+        Err(words) => ((words, Json::Null), false),
     })
 }
 
@@ -302,6 +334,36 @@ fn told(command: Command, values: &Values) -> String {
     }
 }
 
+/// What a command defines, in the fields of the command that reads it.
+fn data(command: Command, values: &Values) -> Json {
+    let number = |key| values.int(key).unwrap_or_default();
+    let mm = |key| f64::from(number(key)) / 1000.0;
+    match command {
+        Command::CommentSet => values.text(Key::Comment).unwrap_or_default().into(),
+        Command::PalletSet => json!({
+            "nx": number(Key::CountX),
+            "ny": number(Key::CountY),
+            "nz": number(Key::CountZ),
+            "first_point": number(Key::FirstPoint),
+        }),
+        Command::ShiftSet | Command::ShiftElement => json!({ "position_mm": Key::AXES.map(mm) }),
+        Command::HandSet => json!({
+            "robot": owner(values),
+            "data_1": number(Key::Data1),
+            "data_2_mm": mm(Key::Data2),
+            "data_3_mm": mm(Key::Data3),
+            "data_4": number(Key::Data4),
+        }),
+        Command::ParamSet => number(Key::Value).into(),
+        _ => {
+            let unit = if number(Key::Unit) == 1 { Unit::Mm } else { Unit::Pulse };
+            let hand = [None, Some("right"), Some("left")].get(usize::try_from(number(Key::HandSystem)).unwrap_or(0));
+            let Position { position_mm, position_pulses } = Position::of(values, Some(unit));
+            json!({ "position_mm": position_mm, "position_pulses": position_pulses, "hand": hand.copied().flatten() })
+        }
+    }
+}
+
 fn four(values: &Values, unit: Unit) -> String {
     let axis = |key| {
         let value = values.int(key).unwrap_or_default();
@@ -318,31 +380,35 @@ pub fn mm(steps: i32) -> String {
 /// Something that was stored by its number.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
-    /// In words.
-    done: String,
+    /// What it is, what it was (null if it was not defined), and what it is now, as far as that is known.
+    #[serde(flatten)]
+    done: orders::Done,
     /// Whether it was written; false where it was so already.
     written: bool,
-    /// What it was, with its unit; null if it was not defined.
-    old: Option<String>,
-    /// What it is, with its unit, as far as that is known.
-    new: String,
     #[serde(skip)]
-    what: String,
+    there: String,
 }
 
 impl Stored {
     /// What was done, in words, and what became of it.
     pub fn new(done: impl Into<String>, given: &Done) -> Self {
-        let Replaced { what, old, new, is_there } = given.replaced.clone().unwrap_or_default();
-        Self { done: done.into(), written: !is_there, old, new, what }
+        let Replaced { what, new, data, which: (name, numbers), is_there, .. } =
+            given.replaced.clone().unwrap_or_default();
+        let [before, after] = data;
+        let there = format!("{what}: {new} already; nothing was written");
+        let done = orders::Done::new(name, after, done).replaces(before);
+        let with = |done: orders::Done, (key, value): (Key, Json)| {
+            done.with(if key == Key::Axes { "axis" } else { key.name() }, value)
+        };
+        Self { done: numbers.into_iter().fold(done, with), written: !is_there, there }
     }
 }
 
 impl Report for Stored {
     fn view(&self) -> View {
         if self.written {
-            return View::text(self.done.clone());
+            return self.done.view();
         }
-        View::text(format!("{}: {} already; nothing was written", self.what, self.new))
+        View::text(self.there.clone())
     }
 }

@@ -176,7 +176,7 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["param", "set", "TOLE", "1000", "--axis", "3"];
         assert_eq!(written(&set).unwrap(), [example("4.4.2-assign")]);
-        assert_eq!(read_example("4.4.2-assign", &set)["done"], "TOLE of axis 3 = 1000 pulses");
+        assert_eq!(read_example("4.4.2-assign", &set)["new"], 1000);
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
             "parameter": "OUTPOS", "number": 260, "axis": 1, "ok": true, "value": 131_071, "unit": "pulses",

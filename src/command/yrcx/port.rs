@@ -9,6 +9,7 @@ use super::numbers::{Series, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
 use crate::command::frame::orders::Done;
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -24,6 +25,8 @@ commands! {
         Get(Get),
         /// Switch a port or a signal: DO12 7, DO2.1 on
         Set(Set),
+        /// Print each change of ports
+        Watch(Watch<Get>),
     }
 }
 
@@ -106,6 +109,12 @@ pub struct Get {
     /// Ports, or signals of them; DO2..DO5 is a range
     #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = Series::reader(place), add = complete::PORT)]
     places: Vec<Series<Place>>,
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yrcx.port.watch";
+    const WATCHED: Watched =
+        Watched { list: "ports", name: "port", prefix: "", label: "", value: Some("value"), empty: "no ports" };
 }
 
 impl Command for Get {
@@ -192,8 +201,14 @@ one_row! {
     done {
         let place = self.place.told();
         match self.place.bit {
-            Some(_) => format!("switched {place} {}", if self.value == 1 { "on" } else { "off" }),
-            None => format!("{place} = {} ({:08b})", self.value, self.value),
+            Some(_) => {
+                let words = format!("switched {place} {}", if self.value == 1 { "on" } else { "off" });
+                Done::new(place, self.value, words)
+            }
+            None => {
+                let words = format!("{place} = {} ({:08b})", self.value, self.value);
+                Done::new(place, self.value, words)
+            }
         }
     };
 }
@@ -227,11 +242,11 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         for (id, line, done) in [
-            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], "DO12 = 7 (00000111)"),
-            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], "switched DO2.1 on"),
+            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!({"set": "DO12", "old": null, "new": 7})),
+            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!({"set": "DO2.1", "old": null, "new": 1})),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            assert_eq!(read_example(id, &line)["done"], done);
+            assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
         assert_eq!(read["ports"], json!([{"port": "DO12", "ok": true, "value": 7, "bits": "00000111"}]));

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link;
 use super::single::{Single, one_row};
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, number};
 use crate::command::yrcx::complete;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
@@ -85,7 +85,17 @@ fn told(program: Option<&String>, name: Option<&String>, task: Option<&String>) 
     }
 }
 
+/// The report with what names the program.
+fn named(done: Done, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Done {
+    let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
+    done.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
+}
+
 impl Which {
+    fn named(&self, done: Done) -> Done {
+        named(done, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    }
+
     fn put(&self, draft: Draft) -> Draft {
         put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
@@ -96,6 +106,11 @@ impl Which {
 }
 
 impl WhichOrAll {
+    fn named(&self, done: Done) -> Done {
+        let done = named(done, self.program.as_ref(), self.name.as_ref(), self.task.as_ref());
+        if self.all_programs { done.with("all_programs", true) } else { done }
+    }
+
     fn put(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::Selection, self.all_programs.then_some(0));
         put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
@@ -138,13 +153,16 @@ one_row! {
     done {
         let program = told(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
-        format!("registered {program} in {task} with priority {}", self.priority)
+        let words = format!("registered {program} in {task} with priority {}", self.priority);
+        let done = Done::new("program_state", "registered", words);
+        let done = named(done, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        done.with("task", self.task).with("priority", number(&self.priority))
     };
 }
 
 /// Declares the commands that start programs.
 macro_rules! starts {
-    ($($(#[$meta:meta])* $name:ident $id:literal $row:ident $which:ident $intent:literal $done:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $id:literal $row:ident $which:ident $intent:literal $new:literal $done:literal;)*) => {
         $(
             #[derive(Debug, Args)]
             $(#[$meta])*
@@ -170,7 +188,8 @@ macro_rules! starts {
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    Ok(Done::new(format!($done, self.which.told())))
+                    let done = Done::new("program_state", $new, format!($done, self.which.told()));
+                    Ok(self.which.named(done))
                 }
             }
         )*
@@ -181,17 +200,17 @@ starts! {
     /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
     #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it, and so \
         does the end of the connection.")]
-    Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "started {}";
+    Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "running" "started {}";
     /// Runs one line of a program, also of a subroutine.
-    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "started one line of {}";
+    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
     /// Skips one line of a program.
-    Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "skipped one line of {}";
+    Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "step_skipped" "skipped one line of {}";
     /// Runs one line of a program, a subroutine as a whole.
-    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "started one line of {}";
+    Next "yrcx.program.next" ProgramNext Which "run one line of {}, a subroutine as a whole" "step_started" "started one line of {}";
     /// Puts a program back to its first line, or all that are registered.
     #[command(after_help = "`yrcx io get program-reset` tells whether all programs are reset, `yrcx info line` where each \
         stands.")]
-    Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset {}";
+    Reset "yrcx.program.reset" ProgramReset WhichOrAll "reset {}" "reset" "reset {}";
 }
 
 one_row! {
@@ -277,15 +296,17 @@ mod tests {
     fn the_examples_of_the_manual() {
         let select = ["program", "select", "--program", "1", "--task", "1", "--priority", "47"];
         assert_eq!(words(&select).unwrap(), [example("4.6.1-designate")]);
-        let done = "registered program 1 in task 1 with priority 47";
-        assert_eq!(read_example("4.6.1-designate", &select)["done"], done);
+        let done = json!({
+            "set": "program_state", "old": null, "new": "registered", "program": 1, "task": 1, "priority": 47,
+        });
+        assert_eq!(read_example("4.6.1-designate", &select), done);
         let run = ["program", "run", "--program", "1"];
         assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
-        assert_eq!(read_example("4.6.2-execute", &run)["done"], "started program 1");
+        assert_eq!(read_example("4.6.2-execute", &run)["new"], "running");
         // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
         let reset = ["program", "reset", "--name", "ABC_DE"];
         assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
-        assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["done"], "reset program ABC_DE");
+        assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");
         let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
         assert_eq!(
             show,

@@ -3,7 +3,6 @@
 use super::link::Done;
 use super::link::Yrcx;
 use super::overwrite::{self, Stored};
-use crate::command::frame::orders;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Draft;
@@ -69,12 +68,6 @@ pub trait Said<R> {
 impl<R: Report> Said<R> for R {
     fn report(self, _done: &Done) -> R {
         self
-    }
-}
-
-impl Said<orders::Done> for String {
-    fn report(self, _done: &Done) -> orders::Done {
-        orders::Done::new(self)
     }
 }
 

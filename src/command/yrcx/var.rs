@@ -10,7 +10,8 @@ use super::link::Yrcx;
 use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{self, Done};
+use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yrcx::order::{Draft, Order};
@@ -26,6 +27,8 @@ commands! {
         Get(Get),
         /// Set a variable: SGI1 10000, or SGI1 SGI2
         Set(Set),
+        /// Print each change of variables
+        Watch(Watch<Get>),
         /// Add a number or a variable to a variable
         Add(Add),
         /// Subtract a number or a variable from a variable
@@ -44,6 +47,18 @@ pub struct Get {
     #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
         value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = complete::VARIABLE)]
     variables: Vec<Numbers>,
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yrcx.var.watch";
+    const WATCHED: Watched = Watched {
+        list: "variables",
+        name: "variable",
+        prefix: "",
+        label: "",
+        value: Some("value"),
+        empty: "no variables",
+    };
 }
 
 impl Command for Get {
@@ -156,6 +171,19 @@ impl Operand {
         }
     }
 
+    /// What was assigned, or computed from what was there.
+    fn done(&self, variable: String, does: &str, words: String) -> Done {
+        let operand = match self {
+            Self::Number(text) => orders::number(text),
+            Self::Variable(number) => name(*number).into(),
+        };
+        let new = match (does, self) {
+            ("set", Self::Number(_)) => operand.clone(),
+            _ => Json::Null,
+        };
+        Done::new(variable, new, words).with("operation", does).with("operand", operand)
+    }
+
     fn told(&self) -> String {
         match self {
             Self::Number(text) => text.clone(),
@@ -166,7 +194,7 @@ impl Operand {
 
 /// Declares the commands that change a variable: by a number, or by a variable.
 macro_rules! changes {
-    ($($(#[$meta:meta])* $name:ident $id:literal $by_number:ident $by_variable:ident $operand:ident $told:literal;)*) => {
+    ($($(#[$meta:meta])* $name:ident $id:literal $by_number:ident $by_variable:ident $operand:ident $does:literal $told:literal;)*) => {
         $(
             $(#[$meta])*
             #[derive(Debug, Args)]
@@ -196,7 +224,8 @@ macro_rules! changes {
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
                     let (variable, operand) = (name(self.variable), self.operand.told());
-                    Ok(Done::new(format!($told, variable = variable, operand = operand)))
+                    let words = format!($told, variable = variable, operand = operand);
+                    Ok(self.operand.done(variable, $does, words))
                 }
             }
         )*
@@ -205,15 +234,15 @@ macro_rules! changes {
 
 changes! {
     /// Sets a variable to a number or to a variable.
-    Set "yrcx.var.set" VarSet VarSetVar operand "{variable} = {operand}";
+    Set "yrcx.var.set" VarSet VarSetVar operand "set" "{variable} = {operand}";
     /// Adds a number or a variable to a variable.
-    Add "yrcx.var.add" VarAdd VarAddVar operand "{variable} = {variable} + {operand}";
+    Add "yrcx.var.add" VarAdd VarAddVar operand "add" "{variable} = {variable} + {operand}";
     /// Subtracts a number or a variable from a variable.
-    Sub "yrcx.var.sub" VarSub VarSubVar operand "{variable} = {variable} - {operand}";
+    Sub "yrcx.var.sub" VarSub VarSubVar operand "sub" "{variable} = {variable} - {operand}";
     /// Multiplies a variable by a number or a variable.
-    Mul "yrcx.var.mul" VarMul VarMulVar operand "{variable} = {variable} * {operand}";
+    Mul "yrcx.var.mul" VarMul VarMulVar operand "mul" "{variable} = {variable} * {operand}";
     /// Divides a variable by a number or a variable.
-    Div "yrcx.var.div" VarDiv VarDivVar divisor "{variable} = {variable} / {operand}";
+    Div "yrcx.var.div" VarDiv VarDivVar divisor "div" "{variable} = {variable} / {operand}";
 }
 
 #[cfg(test)]
@@ -225,14 +254,15 @@ mod tests {
 
     #[test]
     fn the_examples_of_the_manual() {
-        for (id, line, done) in [
-            ("4.4.1-assign-value", ["var", "set", "SGI1", "10000"], "SGI1 = 10000"),
-            ("4.4.1-assign-variable", ["var", "set", "SGI1", "SGI2"], "SGI1 = SGI2"),
-            ("4.4.1-arith-value", ["var", "add", "SGI1", "10000"], "SGI1 = SGI1 + 10000"),
-            ("4.4.1-arith-variable", ["var", "mul", "SGI1", "SGI2"], "SGI1 = SGI1 * SGI2"),
+        for (id, line, (operand, new)) in [
+            ("4.4.1-assign-value", ["var", "set", "SGI1", "10000"], (json!(10_000), json!(10_000))),
+            ("4.4.1-assign-variable", ["var", "set", "SGI1", "SGI2"], (json!("SGI2"), json!(null))),
+            ("4.4.1-arith-value", ["var", "add", "SGI1", "10000"], (json!(10_000), json!(null))),
+            ("4.4.1-arith-variable", ["var", "mul", "SGI1", "SGI2"], (json!("SGI2"), json!(null))),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            assert_eq!(read_example(id, &line)["done"], done);
+            let done = json!({"set": "SGI1", "operation": line[1], "operand": operand, "old": null, "new": new});
+            assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.4.1-reference", &["var", "get", "SGI5"]);
         assert_eq!(read, json!({"variables": [{"variable": "SGI5", "ok": true, "value": 50}]}));

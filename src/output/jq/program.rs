@@ -1,10 +1,13 @@
 //! A filter as the library runs it, where it does what jq does.
 
+use std::cell::RefCell;
+
 use jaq_core::load::lex::StrPart;
 use jaq_core::load::parse::{BinaryOp, Def, Pattern, Term};
 use jaq_core::load::{Arena, File, Loader, parse};
+use jaq_core::native::v;
 use jaq_core::path::{Opt, Part, Path};
-use jaq_core::{Compiler, Ctx, Vars, data};
+use jaq_core::{Compiler, Ctx, Cv, Exn, Native, ValXs, Vars, data};
 use jaq_json::{Num, Val};
 use serde_json::{Map, Number, Value};
 
@@ -15,6 +18,8 @@ def row(f): if isarray then . else error("\(type) is no row: an array is expecte
         else tostring end);
 def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
 def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");
+def halt_error($exit_code): __told, halt($exit_code);
+def halt_error: halt_error(5);
 def __at($key): if isobject and ($key | isstring | not) then error("cannot index object with \($key | type)")
   else .[$key] end;
 "#;
@@ -26,6 +31,37 @@ const AT: &str = "__at";
 const DEEPEST: usize = 120;
 /// How much of an error is told: some hold the whole input.
 const LONGEST: usize = 400;
+
+thread_local! {
+    /// What `halt_error` has to say.
+    static TOLD: RefCell<Option<Val>> = const { RefCell::new(None) };
+}
+
+/// Keeps the input of `halt_error`, and makes nothing.
+fn tell<'a>(cv: Cv<'a, data::JustLut<Val>>) -> ValXs<'a, Val> {
+    TOLD.set(Some(cv.1));
+    Box::new(std::iter::empty())
+}
+
+/// Why a filter ends before its end.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// It has failed.
+    Failed(String),
+    /// It has ended itself, with this exit code.
+    Halted {
+        /// 5 unless it says another.
+        exit: u8,
+        /// What it has to say.
+        text: String,
+    },
+}
+
+impl From<String> for Stop {
+    fn from(why: String) -> Self {
+        Self::Failed(why)
+    }
+}
 
 /// A compiled filter.
 pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
@@ -39,6 +75,7 @@ impl Program {
         let known = jaq_core::defs().chain(jaq_std::defs()).chain(jaq_json::defs()).chain(ours);
         let defs = known.map(as_short_as).chain([filter]);
         let funs = jaq_core::funs().chain(jaq_std::funs()).chain(jaq_json::funs());
+        let funs = funs.chain([("__told", v(0), Native::<data::JustLut<Val>>::new(tell))]);
         let arena = Arena::default();
         let modules = Loader::new(defs).load(&arena, File { code: FILTER, path: () });
         let modules = modules.map_err(|_| "it does not parse")?;
@@ -50,19 +87,17 @@ impl Program {
     }
 
     /// Hands over every value that the filter makes of `input`, until `take` has enough or something is wrong.
-    pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), String> {
+    pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), Stop> {
+        TOLD.set(None);
         let context = Ctx::<data::JustLut<Val>>::new(&self.0.lut, Vars::new([]));
         for result in self.0.id.run((context, input)) {
             let value = match result {
                 Ok(value) => value,
                 Err(error) => {
                     return match error.get_err() {
-                        Ok(error) => Err(shortened(&said(error))),
+                        Ok(error) => Err(Stop::Failed(shortened(&said(error)))),
                         // Nothing else leaves a filter than `halt`.
-                        Err(halt) => match halt.get_halt() {
-                            Ok(0) => Ok(()),
-                            _ => Err("it was halted".to_owned()),
-                        },
+                        Err(halt) => halted(halt),
                     };
                 }
             };
@@ -74,17 +109,50 @@ impl Program {
     }
 }
 
+/// How a filter ended that ended itself: `halt` is the end, `halt_error` says something and has an exit code.
+fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
+    let code = halt.get_halt().unwrap_or(5);
+    let text = match TOLD.take() {
+        None if code == 0 => return Ok(()),
+        None | Some(Val::Null) => String::new(),
+        Some(Val::TStr(text)) => String::from_utf8_lossy(&text).into_owned(),
+        Some(other) => format!("{}\n", json(&other, 0).map_err(Stop::Failed)?),
+    };
+    // As the system takes it: the lowest eight bits.
+    Err(Stop::Halted { exit: code.to_le_bytes()[0], text })
+}
+
 /// A definition that lives no longer than others beside it.
 fn as_short_as<'s>(def: Def<&'static str>) -> Def<&'s str> {
     def
 }
 
-/// An error in words; one that the filter itself raises may be any value.
+/// An error in the words of jq; one that the filter itself raises may be any value.
 fn said(error: jaq_core::Error<Val>) -> String {
     match error.into_val() {
-        Val::TStr(text) => String::from_utf8_lossy(&text).into_owned(),
-        other => other.to_string(),
+        Val::TStr(text) => in_words_of_jq(&String::from_utf8_lossy(&text)),
+        other => format!("(not a string): {other}"),
     }
+}
+
+/// The commonest errors of the library as jq puts them.
+fn in_words_of_jq(text: &str) -> String {
+    let kind = |value: &str| match value.as_bytes().first() {
+        Some(b'{') => "object",
+        Some(b'[') => "array",
+        Some(b'"') => "string",
+        Some(b't' | b'f') => "boolean",
+        Some(b'n') => "null",
+        _ => "number",
+    };
+    if let Some((value, key)) = text.strip_prefix("cannot index ").and_then(|rest| rest.rsplit_once(" with ")) {
+        let value = if ["object", "array"].contains(&value) { value } else { kind(value) };
+        return format!("Cannot index {value} with {key}");
+    }
+    if let Some((value, _)) = text.strip_prefix("cannot use ").and_then(|rest| rest.rsplit_once(" as iterable")) {
+        return format!("Cannot iterate over {} ({value})", kind(value));
+    }
+    text.to_owned()
 }
 
 fn shortened(text: &str) -> String {
@@ -228,13 +296,21 @@ mod tests {
     use super::*;
 
     fn made(filter: &str, input: &Value) -> Result<Vec<Value>, String> {
+        match stopped(filter, input)? {
+            (values, None) => Ok(values),
+            (_, Some(Stop::Failed(why))) => Err(why),
+            (_, Some(Stop::Halted { text, .. })) => Err(text),
+        }
+    }
+
+    fn stopped(filter: &str, input: &Value) -> Result<(Vec<Value>, Option<Stop>), String> {
         let mut values = Vec::new();
         let input: Val = serde_json::from_value(input.clone()).unwrap();
-        Program::new(filter)?.run(input, |value| {
+        let end = Program::new(filter)?.run(input, |value| {
             values.push(value);
             true
-        })?;
-        Ok(values)
+        });
+        Ok((values, end.err()))
     }
 
     #[test]
@@ -243,8 +319,8 @@ mod tests {
         for filter in [".[0]", ".[.i]", ".a[2][0]", "[.[0]]", ".a | map(.[0]?) | .[2] | .x[0], {} | .[0]", ".[0] = 1"] {
             assert!(made(filter, &input).is_err(), "{filter}: {:?}", made(filter, &input));
         }
-        assert_eq!(made(".[0]", &input).unwrap_err(), "cannot index object with number");
-        assert_eq!(made(".[null]", &input).unwrap_err(), "cannot index object with null");
+        assert_eq!(made(".[0]", &input).unwrap_err(), "Cannot index object with number");
+        assert_eq!(made(".[null]", &input).unwrap_err(), "Cannot index object with null");
         for (filter, expected) in [
             (".a[0]", json!([1])),
             (".a[.i]", json!([2])),
@@ -298,6 +374,96 @@ mod tests {
             .unwrap();
         assert_eq!(count, 10);
         assert_eq!(made("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
+    }
+
+    /// What jq makes of the same filter, where it is installed: values, and how it ends.
+    #[test]
+    fn filters_do_what_jq_does() {
+        use std::io::Write as _;
+        use std::process::{Command, Stdio};
+
+        const FILTERS: [&str; 40] = [
+            ".",
+            ".a",
+            ".s",
+            ".l[]",
+            ".l[1:]",
+            ".o.x",
+            ".nothing",
+            ".a.b",
+            ".[0]",
+            ".a[]",
+            ".l.x",
+            ".s.x",
+            ".a | keys",
+            "error(\"x\")",
+            "error({a: 1})",
+            "1, error(\"x\"), 2",
+            "try error(\"x\") catch .",
+            "nan",
+            "[nan]",
+            "infinite",
+            "halt",
+            "1, halt, 2",
+            "halt_error",
+            "\"bye\\n\" | halt_error",
+            "\"bye\" | halt_error",
+            "{a: 1} | halt_error",
+            "\"x\" | halt_error(3)",
+            "null | halt_error",
+            "{} + 1",
+            "empty",
+            "null",
+            "false",
+            ".l | add",
+            ".l | @csv",
+            ".l | map(. * 2)",
+            "[.l[] | select(. > 1)]",
+            ".o | to_entries",
+            ".l | tojson",
+            "\"\\(.a)\"",
+            "[.[]?] | length",
+        ];
+        let input = json!({"a": 1, "s": "text", "l": [1, 2, 3], "o": {"x": true}});
+        for filter in FILTERS {
+            let jq = Command::new("jq")
+                .args(["-c", filter])
+                .stdin(Stdio::piped())
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .spawn();
+            let Ok(mut jq) = jq else {
+                eprintln!("not compared: there is no jq here");
+                return;
+            };
+            jq.stdin.take().unwrap().write_all(input.to_string().as_bytes()).unwrap();
+            let theirs = jq.wait_with_output().unwrap();
+            let lines = String::from_utf8(theirs.stdout).unwrap();
+            let lines: Vec<Value> = lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+            let (values, stop) = stopped(filter, &input).unwrap();
+            assert_eq!(values, lines, "{filter}");
+            let said = String::from_utf8(theirs.stderr).unwrap();
+            let (exit, text) = match stop {
+                None => (0, String::new()),
+                // Later versions of jq have other words for some of them.
+                Some(Stop::Failed(_)) => (5, said.clone()),
+                Some(Stop::Halted { exit, text }) => (i32::from(exit), text),
+            };
+            assert_eq!((Some(exit), text), (theirs.status.code(), said), "{filter}");
+        }
+    }
+
+    #[test]
+    fn commonest_errors_are_in_the_words_of_jq() {
+        let input = json!({"a": 1, "l": []});
+        for (filter, words) in [
+            (".a.b", "Cannot index number with \"b\""),
+            (".a[]", "Cannot iterate over number (1)"),
+            ("error({a: 1})", "(not a string): {\"a\":1}"),
+            ("error(\"x\")", "x"),
+        ] {
+            assert_eq!(made(filter, &input).unwrap_err(), words, "{filter}");
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ use std::thread;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::program::Program;
+use super::program::{Program, Stop};
 use crate::failure::{Kind, end};
 
 /// The only argument of such a process.
@@ -54,6 +54,8 @@ enum Answer {
     Mistake(String),
     /// The last answer: it has failed.
     Failed(String),
+    /// The last answer: it has ended itself.
+    Halted(u8, String),
 }
 
 /// Why there is no answer, or not all.
@@ -63,6 +65,22 @@ pub enum Trouble {
     Mistake(String),
     /// It has failed.
     Failed(String),
+    /// It has ended itself, with this exit code, and has this to say.
+    Halted {
+        /// 5 unless it says another.
+        exit: u8,
+        /// A text as it is; anything else as JSON, in a line.
+        text: String,
+    },
+}
+
+impl From<Stop> for Trouble {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Failed(why) => Self::Failed(why),
+            Stop::Halted { exit, text } => Self::Halted { exit, text },
+        }
+    }
 }
 
 /// The process of this one.
@@ -98,6 +116,7 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
                 return match last {
                     Answer::Mistake(why) => Err(Trouble::Mistake(why)),
                     Answer::Failed(why) => Err(Trouble::Failed(why)),
+                    Answer::Halted(exit, text) => Err(Trouble::Halted { exit, text }),
                     Answer::Done | Answer::Value(_) => Ok(()),
                 };
             }
@@ -224,7 +243,8 @@ fn compute(requests: &mpsc::Receiver<Vec<u8>>) {
             (Ok(_), None) => Answer::Done,
             (Ok(program), Some([input])) => match program.run(input, |value| say(&Answer::Value(value), false)) {
                 Ok(()) => Answer::Done,
-                Err(why) => Answer::Failed(why),
+                Err(Stop::Failed(why)) => Answer::Failed(why),
+                Err(Stop::Halted { exit, text }) => Answer::Halted(exit, text),
             },
         };
         if !say(&last, true) {

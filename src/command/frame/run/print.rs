@@ -8,7 +8,8 @@ use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
-use crate::output::view::{Table, View};
+use crate::output::flat::{Lists, Rows};
+use crate::output::view::{Section, Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 
@@ -21,6 +22,8 @@ pub enum Place<'a> {
     First,
     /// A later one of a watch.
     Next,
+    /// A later one of a watch whose reports are lines.
+    Line,
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
@@ -41,13 +44,13 @@ impl Run {
     pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
         let failure = report.failure();
         if self.is_for_people() {
-            self.show(&report.view(), Place::Alone)?;
+            self.show_one(report, Place::Alone)?;
         } else {
             let envelope = Envelope::local(id, report.data()?);
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
             self.emit(self.of_stream(envelope))?;
         }
-        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: !self.is_for_people() }))
+        failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: self.screen.is_json() }))
     }
 
     /// Writes what several robots reported, and says it as envelopes.
@@ -81,7 +84,13 @@ impl Run {
                 Err(failure) => reasons.push((robot, failure.clone())),
             }
         }
-        self.show_many(&views, place)?;
+        if self.screen.format == Format::Csv {
+            let reports = robots.iter().zip(outcomes);
+            let reports = reports.filter_map(|(robot, outcome)| Some((Some(robot), outcome.as_deref().ok()?)));
+            self.show_csv(&reports.collect::<Vec<_>>(), place)?;
+        } else {
+            self.show_many(&views, place)?;
+        }
         if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
             self.screen.note(&summary);
         }
@@ -126,7 +135,7 @@ impl Run {
         place: Place<'_>,
     ) -> Result<(), Failure> {
         if self.is_for_people() {
-            return self.show(&report.view(), place);
+            return self.show_one(report, place);
         }
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
@@ -144,7 +153,11 @@ impl Run {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
         }
-        if is_first { Place::First } else { Place::Next }
+        match (is_first, stays) {
+            (true, _) => Place::First,
+            (false, true) => Place::Line,
+            (false, false) => Place::Next,
+        }
     }
 
     /// Writes an envelope.
@@ -174,26 +187,42 @@ impl Run {
         })
     }
 
+    fn show_one(&self, report: &dyn AnyReport, place: Place<'_>) -> Result<(), Failure> {
+        match self.screen.format {
+            Format::Csv => self.show_csv(&[(None, report)], place),
+            _ => self.show(&report.view(), place),
+        }
+    }
+
+    /// Writes the fields of reports as CSV; later rounds of a watch below the columns of the first.
+    fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: Place<'_>) -> Result<(), Failure> {
+        let is_later = matches!(place, Place::Next | Place::Line);
+        let known = if is_later { self.redraw.columns.take() } else { Vec::new() };
+        let count = known.len();
+        let mut rows = Rows::under(known);
+        for (robot, report) in reports {
+            let lists = match report.rows() {
+                Some(list) => Lists::One(list),
+                None if report.view().sections.iter().any(|part| matches!(part, Section::Table(_))) => Lists::All,
+                None => Lists::None,
+            };
+            let before: Vec<(&str, &str)> = robot.iter().map(|robot| ("robot", robot.name.as_str())).collect();
+            rows.add(&before, &report.data()?, lists);
+        }
+        let has_header = !is_later || rows.columns().len() > count;
+        self.redraw.columns.replace(rows.columns().to_vec());
+        self.screen.data(&rows.csv(has_header))
+    }
+
     fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
         let screen = &self.screen;
-        let is_csv = screen.format == Format::Csv;
+        let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
-            _ if is_csv => {
-                let robot = if let Place::Among { robot, .. } = place { Some(robot.name.as_str()) } else { None };
-                let csv = render::csv(view, robot);
-                let has_header = matches!(place, Place::Alone | Place::First | Place::Among { first: true, .. });
-                if has_header { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
-            }
-            _ => {
-                let text = render::text(view, screen.width(), screen.stdout_color());
-                match place {
-                    Place::Alone | Place::First => text,
-                    Place::Next if self.redraw.is_on() => text,
-                    Place::Next => format!("\n{text}"),
-                    Place::Among { robot, first } => {
-                        format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
-                    }
-                }
+            Place::Alone | Place::First | Place::Line => text,
+            Place::Next if self.redraw.is_on() => text,
+            Place::Next => format!("\n{text}"),
+            Place::Among { robot, first } => {
+                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
             }
         };
         screen.data(&self.redraw.over(text))

@@ -12,7 +12,9 @@ use super::parts::{self, Part, PartResult};
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, MANIFEST, State};
 use crate::command::backup::options::RestoreOptions;
-use crate::command::backup::{self, Item, Items, Only, POWER_CYCLE, Restoring};
+use crate::command::backup::{
+    self, Item, Items, NOT_CHOSEN, NOT_MACHINE, Only, POWER_CYCLE, Restoring, would_leave, would_write,
+};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::own_folder;
@@ -123,6 +125,7 @@ impl Asked {
             }
         }
         if link.is_dry() {
+            self.plan_items(link, &manifest, &jobs)?;
             return self.dry_run(link, screen, &manifest.controller, &jobs).await;
         }
         let outcome = self.restore((link, screen, &authority), &manifest.controller, &jobs).await;
@@ -224,6 +227,26 @@ impl Asked {
     fn machine_stores(&self, jobs: &[Job]) -> Result<Vec<Store>, Failure> {
         let stores = jobs.iter().filter(|_| self.restoring.machine).map(|job| job.content.machine_stores());
         Ok(stores.collect::<Result<Vec<_>, _>>()?.concat())
+    }
+
+    /// What a dry run says of each part of the backup.
+    fn plan_items(&self, link: &mut Link, manifest: &Manifest, jobs: &[Job]) -> Result<(), Failure> {
+        const ON: &str = "the comparison: values that differ are written";
+        for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
+            let Some(job) = jobs.iter().find(|job| job.part.to_string() == entry.name) else {
+                link.plan_item(would_leave(&entry.name, NOT_CHOSEN));
+                continue;
+            };
+            let count = job.content.stores(job.content.steps())?.len() as u64;
+            link.plan_item(would_write(&entry.name, ("values", count), ON));
+            let machine = job.content.machine_stores()?.len() as u64;
+            if machine > 0 {
+                let name = format!("{}: machine and special", entry.name);
+                let written = || would_write(&name, ("values", machine), ON);
+                link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
+            }
+        }
+        Ok(())
     }
 
     async fn dry_run(

@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::commands;
+use crate::command::frame::watch::Watch;
 use crate::controller::toyo::field::Mask;
 
 commands! {
@@ -25,6 +26,8 @@ commands! {
         Internal(read::Internal),
         /// Set outputs: 1.3=on, or 1=.......1 for the bits of a whole port
         Set(set::Set),
+        /// Print each change of the inputs and outputs
+        Watch(Watch<read::Both>),
         /// Switch one of the direct outputs F1 to F4
         Direct(set::Direct),
     }

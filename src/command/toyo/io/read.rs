@@ -8,6 +8,7 @@ use super::super::items;
 use super::super::link::Link;
 use super::super::numbers::small;
 use super::{Port, listed, name};
+use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::field::Value;
@@ -181,6 +182,72 @@ impl Command for Internal {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
         INTERNAL.read(context.link, 0, self.port).await
+    }
+}
+
+/// Input and output ports of a station, for a watch.
+#[derive(Debug, Args)]
+pub struct Both {
+    #[command(flatten)]
+    which: Which,
+    /// Only inputs
+    #[arg(long, conflicts_with = "out")]
+    r#in: bool,
+    /// Only outputs
+    #[arg(long)]
+    out: bool,
+}
+
+impl Command for Both {
+    type Family = Toyo;
+    type Report = Named;
+    const ID: &'static str = "toyo.io.both";
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Named, Failure> {
+        let link = context.link;
+        let mut ports = Vec::new();
+        for (bank, is_wanted) in [(INPUTS, !self.out), (OUTPUTS, !self.r#in)] {
+            if is_wanted {
+                let read = bank.read(link, self.which.station, self.which.port).await?;
+                let named =
+                    |port: Port| NamedPort { bank: bank.word, watched: format!("{} {}", bank.word, port.name), port };
+                ports.extend(read.ports.into_iter().map(named));
+            }
+        }
+        Ok(Named { ports })
+    }
+}
+
+impl Watchable for Both {
+    const WATCH: &'static str = "toyo.io.watch";
+    const WATCHED: Watched =
+        Watched { list: "ports", name: "watched", prefix: "", label: "", value: Some("bits"), empty: "no ports" };
+}
+
+/// Ports of both kinds.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Named {
+    ports: Vec<NamedPort>,
+}
+
+/// A port of one of two kinds.
+#[derive(Debug, Serialize, JsonSchema)]
+struct NamedPort {
+    /// `input` or `output`.
+    bank: &'static str,
+    /// `input PN01`.
+    watched: String,
+    #[serde(flatten)]
+    port: Port,
+}
+
+impl Report for Named {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["port", "8 to 1"], "no ports");
+        for NamedPort { watched, port, .. } in &self.ports {
+            table.row([watched.as_str().into(), port.raw.as_str().into()]);
+        }
+        View::table(table)
     }
 }
 

@@ -196,7 +196,7 @@ impl Command for Direct {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
-        Ok(Done::new(format!("direct output F{}", self.number)))
+        Ok(Done::new("direct_output", self.number, format!("direct output F{}", self.number)))
     }
 }
 

@@ -14,7 +14,7 @@ use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{Entry, MANIFEST, State};
-use crate::command::backup::{Only, Restoring};
+use crate::command::backup::{NOT_CHOSEN, Only, Restoring, would_leave, would_write};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::local::own_folder;
@@ -125,6 +125,9 @@ impl Command for Restore {
         for Delivery { file, content } in &deliveries {
             results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
+        if link.is_dry() {
+            self.plan_items(link, &manifest, &deliveries);
+        }
         let manner = Manner { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
@@ -178,6 +181,28 @@ impl Restore {
             }
         }
         Ok(true)
+    }
+
+    /// What a dry run says of each file of the backup.
+    fn plan_items(&self, link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
+        let on = match (self.differing, self.replace) {
+            (true, _) => "whether the controller's file differs",
+            (false, true) => "what is there: a file of its name is replaced",
+            (false, false) => "what is there: a file of its name is overwritten",
+        };
+        for entry in &manifest.files {
+            let Some(copy) = &entry.copy else { continue };
+            let file = controller_file(entry).ok();
+            let is_sent = deliveries.iter().any(|delivery| Some(&delivery.file) == file.as_ref());
+            let is_usual = file.and_then(|file| file.file_type()).is_some_and(|kind| USUAL.contains(&kind));
+            link.plan_item(match (is_sent, is_usual) {
+                (true, _) => would_write(&entry.name, ("bytes", copy.bytes), on),
+                (false, true) => would_leave(&entry.name, NOT_CHOSEN),
+                (false, false) => {
+                    would_leave(&entry.name, "parameters or system data: written with --machine or --type")
+                }
+            });
+        }
     }
 
     /// What a dry run shows behind the lists.

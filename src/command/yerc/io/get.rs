@@ -12,6 +12,7 @@ use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::signal::Signal;
@@ -70,6 +71,12 @@ impl Command for Get {
         items::nothing(report.asked(), report.errors())?;
         Ok(report)
     }
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yerc.io.watch";
+    const WATCHED: Watched =
+        Watched { list: "signals", name: "name", prefix: "", label: "class", value: Some("on"), empty: "no signals" };
 }
 
 fn once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {

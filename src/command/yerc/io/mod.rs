@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::command::commands;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::watch::Watch;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
@@ -23,6 +24,8 @@ commands! {
         Get(get::Get),
         /// Switch network inputs: 27010=on, or --group 2701=0xA5
         Set(set::Set),
+        /// Print each change of signals
+        Watch(Watch<get::Get>),
     }
 }
 

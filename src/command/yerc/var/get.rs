@@ -8,6 +8,7 @@ use super::entry::Entry;
 use super::in_form;
 use super::read::{once, read_all};
 use crate::command::frame::items;
+use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -60,6 +61,12 @@ impl Command for Get {
         items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
         Ok(report)
     }
+}
+
+impl Watchable for Get {
+    const WATCH: &'static str = "yerc.var.watch";
+    const WATCHED: Watched =
+        Watched { list: "variables", name: "name", prefix: "", label: "", value: Some("value"), empty: "no variables" };
 }
 
 /// Variables in the order they were asked for.

@@ -12,6 +12,7 @@ mod restore;
 mod set;
 
 use crate::command::commands;
+use crate::command::frame::watch::Watch;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::variables::{Reference, VariableKind};
 
@@ -22,6 +23,8 @@ commands! {
         Get(get::Get),
         /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
         Set(set::Set),
+        /// Print each change of variables
+        Watch(Watch<get::Get>),
         /// Save variables to a JSON file
         Dump(dump::Dump),
         /// Write variables from a dump

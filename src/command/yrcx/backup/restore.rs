@@ -5,7 +5,7 @@ use super::parts::Part;
 use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, State};
-use crate::command::backup::{Item, Items, Restored, Restoring};
+use crate::command::backup::{Item, Items, NOT_CHOSEN, NOT_MACHINE, Restored, Restoring, would_leave, would_write};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::yrcx::link::Link;
@@ -44,6 +44,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
             .hint("parameters and settings are written with --machine only, and info never"));
     }
     if link.is_dry() {
+        plan_items(link, saved().map(|entry| entry.name.as_str()), &jobs, *machine);
         return dry_run(link, &jobs);
     }
     check_origin(link, &manifest.controller, *force).await?;
@@ -64,6 +65,23 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
         }
     }
     Ok(Restored::new(folder, Items::new(items)))
+}
+
+/// What a dry run says of each part of the backup.
+fn plan_items<'m>(link: &mut Link, saved: impl Iterator<Item = &'m str>, jobs: &[Job], machine: bool) {
+    let parts: Vec<Part> = Part::in_order_of_writing().collect();
+    for name in saved {
+        let part = parts.iter().find(|part| part.to_string() == name);
+        let why = match part {
+            None | Some(Part::Info) => "tells of the controller; nothing of it is written",
+            Some(part) if part.is_machine() && !machine => NOT_MACHINE,
+            Some(_) => NOT_CHOSEN,
+        };
+        link.plan_item(match jobs.iter().find(|job| Some(&job.part) == part) {
+            Some(job) => would_write(name, ("values", job.stores.len() as u64), IF_IT_DIFFERS),
+            None => would_leave(name, why),
+        });
+    }
 }
 
 /// Whether the backup may be written to this controller, and now.

@@ -71,7 +71,7 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["comment", "set", "100", "WAIT ORG"];
         assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
-        assert_eq!(read_example("4.3.2-define", &set)["done"], "comment of point 100: WAIT ORG");
+        assert_eq!(read_example("4.3.2-define", &set)["new"], "WAIT ORG");
         let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
         assert_eq!(read["comments"], json!([{"point": 50, "ok": true, "comment": "WAIT ORG"}]));
     }

@@ -122,7 +122,7 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         assert_eq!(written(&SET).unwrap(), [example("4.3.5-define")]);
-        assert_eq!(read_example("4.3.5-define", &SET)["done"], "defined hand 1: 10000, -2 mm, 5 mm");
+        assert_eq!(read_example("4.3.5-define", &SET)["new"]["data_2_mm"], -2.0);
         let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
         let hand = json!({"hand": 1, "ok": true, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
         assert_eq!(read["hands"], json!([hand]));

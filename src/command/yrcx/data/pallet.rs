@@ -103,7 +103,7 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["pallet-data", "set", "10", "--nx", "10", "--ny", "15", "--first-point", "100"];
         assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
-        assert_eq!(read_example("4.3.3-define", &set)["done"], "defined pallet 10: 10 x 15 x 1, first point 100");
+        assert_eq!(read_example("4.3.3-define", &set)["new"], json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100}));
         let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
         assert_eq!(
             read["pallets"],

@@ -125,7 +125,10 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
         assert_eq!(written(&set).unwrap(), [example("4.3.1-define")]);
-        assert_eq!(read_example("4.3.1-define", &set)["done"], "defined point 100: 10000, -20000, 5000, -18000 pulses");
+        assert_eq!(
+            read_example("4.3.1-define", &set)["new"]["position_pulses"],
+            json!([10_000, -20_000, 5000, -18_000])
+        );
         let read = read_example("4.3.1-reference", &["point", "get", "50"]);
         let mm = [10.0, -20.0, 5.0, -18.0];
         let row = json!({"point": 50, "ok": true, "position_mm": mm, "position_pulses": null, "hand": null});

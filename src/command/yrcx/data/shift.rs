@@ -70,7 +70,7 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["shift-data", "set", "5", "--mm", "10,-20,5,-18"];
         assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
-        assert_eq!(read_example("4.3.4-define", &set)["done"], "defined shift 5: 10, -20, 5, -18 mm");
+        assert_eq!(read_example("4.3.4-define", &set)["new"], json!({"position_mm": [10.0, -20.0, 5.0, -18.0]}));
         let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
         assert_eq!(read["shifts"], json!([{"shift": 5, "ok": true, "shift_mm": [10.0, -20.0, 5.0, -18.0]}]));
     }

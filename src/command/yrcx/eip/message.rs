@@ -102,7 +102,9 @@ impl Command for Set {
         context.link.authorize("yrcx.eip.set", self.risk())?;
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
-        Ok(Done::new(format!("set {object} to {}", shown(&self.data.0))))
+        let words = format!("set {object} to {}", shown(&self.data.0));
+        let done = Done::new("attribute", text::hex(&self.data.0), words);
+        Ok(done.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute))
     }
 }
 

@@ -8,7 +8,8 @@ use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::alarm;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::output::view::{Cell, View};
+use crate::output::view::{Cell, Section, View};
+use crate::settings::alarms::Explanation;
 
 one_row! {
     /// Reads an alarm.
@@ -35,6 +36,8 @@ pub struct AlarmReport {
     pub place: Option<String>,
     /// Axis, motor, option slot or program task.
     pub part: Option<String>,
+    /// What `alarms.toml` says of it; null where it says nothing, and where it was not asked.
+    pub explained: Option<Explanation>,
 }
 
 impl AlarmReport {
@@ -43,7 +46,7 @@ impl AlarmReport {
         let number = |key| values.int(key).and_then(|number| u16::try_from(number).ok()).unwrap_or_default();
         let found = alarm::Alarm::new(number(Key::AlarmGroup), number(Key::AlarmCategory));
         if found == alarm::Alarm::new(0, 0) {
-            return Self { code: None, meaning: None, remedies: &[], place: None, part: None };
+            return Self { code: None, meaning: None, remedies: &[], place: None, part: None, explained: None };
         }
         let place = |kind, count| {
             let kind = shown(Command::LatestAlarm, values, kind)?;
@@ -59,6 +62,7 @@ impl AlarmReport {
             remedies: found.known().map_or(&[], |known| known.remedies),
             place: place(Key::Place1, Key::Place1Number),
             part: place(Key::Place2, Key::Place2Number),
+            explained: None,
         }
     }
 }
@@ -66,13 +70,15 @@ impl AlarmReport {
 impl Report for AlarmReport {
     fn view(&self) -> View {
         let Some(code) = &self.code else { return View::text("no alarm") };
-        View::fields([
+        let mut fields = vec![
             ("alarm", code.as_str().into()),
             ("meaning", Cell::maybe(self.meaning)),
             ("place", Cell::maybe(self.place.as_deref())),
             ("part", Cell::maybe(self.part.as_deref())),
             ("what to do", if self.remedies.is_empty() { "-".into() } else { self.remedies.join("; ").into() }),
-        ])
+        ];
+        fields.extend(Explanation::field(self.explained.as_ref()));
+        View::default().and(Section::Fields(fields))
     }
 }
 

@@ -8,6 +8,7 @@ mod watch;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::frame::watch::Watch;
 use crate::command::{Offline, commands};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::register::Register;
@@ -24,7 +25,7 @@ commands! {
         /// Pulse an input of the controller
         Pulse(set::Pulse),
         /// Show signal changes until Ctrl-C
-        Watch(watch::Watch),
+        Watch(Watch<watch::Outputs>),
         /// The addresses of words and signals on a fieldbus, for the PLC engineer
         Map(Offline<map::Map>),
     }

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::input;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{AllDone, Done};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
@@ -49,6 +49,13 @@ fn change(text: &str) -> Result<Change, String> {
 }
 
 impl Change {
+    fn done(self) -> Done {
+        match self {
+            Self::Signal { signal, on } => Done::new(signal.to_string(), on, self.told()),
+            Self::Word { register, value } => Done::new(register.to_string(), value, self.told()),
+        }
+    }
+
     fn told(self) -> String {
         match self {
             Self::Signal { signal, on } => format!("{} {}", signal.named(), if on { "on" } else { "off" }),
@@ -82,7 +89,7 @@ impl Change {
 
 impl Command for Set {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = AllDone;
     const ID: &'static str = "yrcx.io.set";
 
     fn risk(&self) -> Risk {
@@ -93,7 +100,7 @@ impl Command for Set {
         format!("switch {}", told(&self.changes))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<AllDone, Failure> {
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
@@ -103,7 +110,8 @@ impl Command for Set {
             })?;
             done += together.len();
         }
-        Ok(Done::new(format!("switched {}", told(&self.changes))))
+        let items = self.changes.iter().map(|change| change.done()).collect();
+        Ok(AllDone::new(items, format!("switched {}", told(&self.changes))))
     }
 }
 
@@ -134,7 +142,8 @@ impl Command for Pulse {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
-        Ok(Done::new(format!("switched {} on and off again", self.signal.named())))
+        let words = format!("switched {} on and off again", self.signal.named());
+        Ok(Done::new(self.signal.to_string(), false, words).with("pulsed", true))
     }
 }
 

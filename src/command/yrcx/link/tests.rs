@@ -1,5 +1,7 @@
 use std::time::Duration;
 
+use serde_json::json;
+
 use crate::command::yrcx::testing::{Bench, Reply, Scripted, run_on};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::Words;
@@ -145,7 +147,7 @@ fn signals_are_switched_while_a_command_runs() {
     let begun = bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
     assert_eq!((&begun["ended"], &begun["elapsed_ms"]), (&false.into(), &serde_json::Value::Null));
     let switched = bench.run(&["io", "set", "20=on"]).unwrap();
-    assert_eq!(switched["done"], "switched SI(20) on");
+    assert_eq!(switched["items"], json!([{"set": "SI(20)", "old": null, "new": true}]));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
     assert!(busy.message.contains("move-ptp is still under way"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });

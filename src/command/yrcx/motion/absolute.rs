@@ -71,14 +71,16 @@ impl Command for AbsReset {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
-            let done = context.link.ask(&draft.build()?).await?;
-            return Ok(Moved::new(format!("reset the absolute position of {}", self.axis()), Some(&done), None));
+            let order = draft.build()?;
+            let done = context.link.ask(&order).await?;
+            let words = format!("reset the absolute position of {}", self.axis());
+            return Ok(Moved::new(words, &order, Some(&done), None));
         };
         let order = draft.with(Key::Direction, direction.value()).build()?;
         let way = format!("{} {} to a reset position", self.axis(), direction.told());
         let done = go(context.link, context.screen, &order, self.no_wait, &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };
-        Ok(Moved::new(format!("{verb} {way}"), done.as_ref(), None))
+        Ok(Moved::new(format!("{verb} {way}"), &order, done.as_ref(), None))
     }
 }
 

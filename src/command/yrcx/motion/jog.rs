@@ -84,7 +84,7 @@ impl Command for Jog {
         let live = Live::new(link, context.screen, &format!("jogging {object}"));
         let done = link.jog(&order, self.within).await;
         live.end();
-        Ok(Moved::new(format!("jogged {object}"), Some(&done?), Some(unit)))
+        Ok(Moved::new(format!("jogged {object}"), &order, Some(&done?), Some(unit)))
     }
 }
 

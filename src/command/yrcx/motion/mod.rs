@@ -138,7 +138,8 @@ impl<M: Motion> Command for Moving<M> {
         let doing = format!("{moving} {object}");
         let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
         let has_done = format!("{moved} {object}");
-        let report = Moved::new(if done.is_some() { has_done } else { doing }, done.as_ref(), self.unit());
+        let words = if done.is_some() { has_done } else { doing };
+        let report = Moved::new(words, &order, done.as_ref(), self.unit());
         let report = Moved { targets: self.motion.targets(), ..report };
         Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
     }
@@ -218,8 +219,19 @@ impl Live {
 /// What came of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Moved {
-    /// In words.
-    done: String,
+    /// What kind of motion: `move-ptp`.
+    motion: &'static str,
+    /// Which robot; null where it is all.
+    robot: Option<i32>,
+    /// The axes that were named; empty for all.
+    axes: Vec<u32>,
+    /// The point that it goes by; null where it goes by none.
+    point: Option<i32>,
+    /// The pallet, and the place on it.
+    pallet: Option<i32>,
+    work_position: Option<i32>,
+    /// Of a jog and the like: `plus` or `minus`.
+    direction: Option<&'static str>,
     /// Whether the motion has ended; false only with --no-wait.
     ended: bool,
     /// From sending the command to its end; null unless it has ended.
@@ -229,6 +241,8 @@ pub struct Moved {
     /// Where the robot is at the end, if that was asked for.
     #[serde(flatten)]
     position: Position,
+    #[serde(skip)]
+    words: String,
 }
 
 /// Where an axis is sent, or by how much.
@@ -267,9 +281,19 @@ impl Target {
 }
 
 impl Moved {
-    fn new(done: String, answer: Option<&Done>, unit: Option<Unit>) -> Self {
+    fn new(words: String, order: &Order, answer: Option<&Done>, unit: Option<Unit>) -> Self {
+        let values = order.values();
+        let field = |key| values.int(key);
+        let axes = values.int(Key::Axes).unwrap_or_default();
         Self {
-            done,
+            words,
+            motion: order.row().id,
+            robot: values.int(Key::Robot).filter(|robot| *robot > 0),
+            axes: (0..6).filter(|bit| axes >> bit & 1 == 1).map(|bit| bit + 1).collect(),
+            point: field(Key::Point),
+            pallet: field(Key::Pallet),
+            work_position: field(Key::WorkPosition),
+            direction: values.int(Key::Direction).map(|minus| if minus == 0 { "plus" } else { "minus" }),
             ended: answer.is_some(),
             targets: Vec::new(),
             elapsed_ms: answer.map(|answer| u64::try_from(answer.elapsed.as_millis()).unwrap_or(u64::MAX)),
@@ -280,7 +304,7 @@ impl Moved {
     /// The view, with more to say after the time it took.
     fn view_with(&self, more: &str) -> View {
         let elapsed = self.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000)).unwrap_or_default();
-        let view = View::text(format!("{}{elapsed}{more}", self.done));
+        let view = View::text(format!("{}{elapsed}{more}", self.words));
         match self.position.table() {
             Some(table) => view.and(Section::Table(table)),
             None => view,

@@ -93,7 +93,7 @@ impl Command for Origin {
         let doing = format!("returning {} to origin", self.told());
         let done = go(context.link, context.screen, &order, self.no_wait, &doing).await?;
         let has_done = format!("returned {} to origin", self.told());
-        Ok(Moved::new(if done.is_some() { has_done } else { doing }, done.as_ref(), None))
+        Ok(Moved::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }
 }
 

@@ -197,7 +197,6 @@ fn a_motion_may_go_on_by_itself_where_the_link_stays() {
         let mut bench = Bench::new(Scripted::new([Reply::Ends(200, words_of(&[0x0200]))]));
         let begun = bench.run(&[&split(line)[..], &["--no-wait"]].concat()).unwrap();
         assert_eq!((&begun["ended"], &begun["elapsed_ms"]), (&false.into(), &Value::Null), "{line}");
-        assert!(begun["done"].as_str().unwrap().split(' ').next().unwrap().ends_with("ing"), "{begun}");
     }
 }
 

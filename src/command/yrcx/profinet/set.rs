@@ -131,7 +131,8 @@ impl Command for Blink {
             is_so: Box::new(|_| true),
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
-        Ok(Done::new(format!("station {} blinks for about three seconds", found.mac)))
+        let words = format!("station {} blinks for about three seconds", found.mac);
+        Ok(Done::new("blinking", true, words).with("mac", found.mac.to_string()))
     }
 }
 
@@ -170,7 +171,9 @@ impl Command for SetName {
             None => Ok(()),
         });
         let found = found.await?;
-        Ok(Done::new(format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary))))
+        let words = format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary));
+        let done = Done::new("station_name", self.name.as_str(), words).replaces(found.station.name.as_str());
+        Ok(done.with("mac", found.mac.to_string()).with("temporary", self.temporary))
     }
 }
 
@@ -217,7 +220,10 @@ impl Command for SetIp {
             }
         });
         let found = found.await?;
-        Ok(Done::new(format!("station {} has the address {address}{}", found.mac, kept(self.temporary))))
+        let words = format!("station {} has the address {address}{}", found.mac, kept(self.temporary));
+        let old = found.station.address().map(|old| old.to_string());
+        let done = Done::new("address", address.to_string(), words).replaces(old);
+        Ok(done.with("mac", found.mac.to_string()).with("temporary", self.temporary))
     }
 }
 
@@ -260,6 +266,8 @@ impl Command for Reset {
             is_so: Box::new(|said| said.name.is_empty()),
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
-        Ok(Done::new(format!("station {} has no name and no address of its own", found.mac)))
+        let words = format!("station {} has no name and no address of its own", found.mac);
+        let done = Done::new("station_name", "", words).replaces(found.station.name.as_str());
+        Ok(done.with("mac", found.mac.to_string()))
     }
 }
