@@ -40,7 +40,7 @@ impl Document {
         let gone = list.remove(at);
         let above = gone.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         // What an empty line separates from the entry is about something else, such as the file.
-        let kept = above.rfind("\n\n").map_or("", |end| &above[..end + 1]);
+        let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
             self.put_before_table(gone.position(), kept);
         }
@@ -120,16 +120,14 @@ impl Document {
 
     /// Puts comments before the table that follows a place in the text, or at the end.
     fn put_before_table(&mut self, place: Option<isize>, text: &str) {
-        match self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position()) {
-            Some(next) => {
-                let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-                let whole = format!("{text}{own}");
-                next.decor_mut().set_prefix(whole);
-            }
-            None => {
-                let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
-                self.0.set_trailing(whole);
-            }
+        let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
+        if let Some(next) = next {
+            let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+            let whole = format!("{text}{own}");
+            next.decor_mut().set_prefix(whole);
+        } else {
+            let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
+            self.0.set_trailing(whole);
         }
     }
 }
@@ -146,16 +144,12 @@ fn is_called(entry: &Table, name: &str) -> bool {
 
 /// Writes a value where it stands, with the comment behind it, or at the end of the table; what was there comes back.
 fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
-    match table.get_mut(key) {
-        Some(Item::Value(old)) => {
-            *new.decor_mut() = old.decor().clone();
-            Some(std::mem::replace(old, new))
-        }
-        _ => {
-            table.insert(key, value(new));
-            None
-        }
+    if let Some(Item::Value(old)) = table.get_mut(key) {
+        *new.decor_mut() = old.decor().clone();
+        return Some(std::mem::replace(old, new));
     }
+    table.insert(key, value(new));
+    None
 }
 
 #[cfg(test)]
