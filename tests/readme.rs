@@ -238,12 +238,13 @@ fn promise(line: &str) -> Result<(), String> {
 }
 
 #[test]
-fn the_set_up_takes_exactly_the_two_commands() {
+fn four_commands_lead_from_nothing_to_a_robot() {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
-    let (_, after) = readme.split_once("## Try it").expect("a section that says how to start");
+    let (_, after) = readme.split_once("## From nothing to a robot").expect("a section that says how to start");
     let block = after.split("```").nth(1).expect("the section has a block");
-    let commands: Vec<&str> = block.lines().skip(1).filter(|line| !line.trim().is_empty()).collect();
-    assert_eq!(commands, ["cargo run -- --sim yerc status", "cargo test"]);
+    let typed = block.lines().skip(1).map(|line| line.split('#').next().unwrap_or_default().trim());
+    let commands: Vec<&str> = typed.filter(|line| !line.is_empty()).collect();
+    assert_eq!(commands, ["cargo install --locked --path .", "armctl setup", "armctl status", "armctl top"]);
 }
 
 fn root() -> PathBuf {

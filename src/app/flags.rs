@@ -46,10 +46,8 @@ impl Uses {
             | Common::Robots(Robots::Check(_)) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
-            // What settings would be in force.
-            Common::Robots(Robots::Show(_)) => Self { link: true, ..NONE },
-            // It reads while it checks.
-            Common::Setup(_) => Self { link: true, ..NONE },
+            // What settings would be in force; what a check needs.
+            Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
             Common::Robots(_)
             | Common::Sim(_)
             | Common::Decode(_)

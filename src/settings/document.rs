@@ -40,7 +40,7 @@ impl Document {
         let gone = list.remove(at);
         let above = gone.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         // What an empty line separates from the entry is about something else, such as the file.
-        let kept = above.rfind("\n\n").map_or("", |end| &above[..end + 1]);
+        let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
             self.put_before_table(gone.position(), kept);
         }
@@ -61,7 +61,23 @@ impl Document {
 
     /// The robot that is taken when none is named.
     pub fn set_default(&mut self, name: &str) {
+        let is_first = self.0.as_table().get_values().is_empty();
         put(self.0.as_table_mut(), "default", name.into());
+        if is_first {
+            self.keep_head();
+        }
+    }
+
+    /// What the file begins with stays above its first key.
+    fn keep_head(&mut self) {
+        let Some(first) = self.tables().min_by_key(|table| table.position()) else { return };
+        let above = first.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default().to_owned();
+        let Some(end) = above.rfind("\n\n").filter(|_| above.contains('#')) else { return };
+        let (head, own) = above.split_at(end + 1);
+        first.decor_mut().set_prefix(own);
+        if let Some(mut key) = self.0.as_table_mut().key_mut("default") {
+            key.leaf_decor_mut().set_prefix(format!("{head}\n"));
+        }
     }
 
     /// Writes a setting of an entry, or removes it; what was there comes back.
@@ -94,23 +110,24 @@ impl Document {
         self.list()?.iter_mut().find(|entry| is_called(entry, name)).ok_or(NO_ENTRY)
     }
 
-    /// Puts comments before the table that follows a place in the text, or at the end.
-    fn put_before_table(&mut self, place: Option<isize>, text: &str) {
-        let lists = self.0.iter_mut().flat_map(|(_, item)| match item {
+    fn tables(&mut self) -> impl Iterator<Item = &mut Table> {
+        self.0.iter_mut().flat_map(|(_, item)| match item {
             Item::Table(table) => vec![table],
             Item::ArrayOfTables(list) => list.iter_mut().collect(),
             _ => Vec::new(),
-        });
-        match lists.filter(|table| table.position() > place).min_by_key(|table| table.position()) {
-            Some(next) => {
-                let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-                let whole = format!("{text}{own}");
-                next.decor_mut().set_prefix(whole);
-            }
-            None => {
-                let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
-                self.0.set_trailing(whole);
-            }
+        })
+    }
+
+    /// Puts comments before the table that follows a place in the text, or at the end.
+    fn put_before_table(&mut self, place: Option<isize>, text: &str) {
+        let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
+        if let Some(next) = next {
+            let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+            let whole = format!("{text}{own}");
+            next.decor_mut().set_prefix(whole);
+        } else {
+            let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
+            self.0.set_trailing(whole);
         }
     }
 }
@@ -127,16 +144,12 @@ fn is_called(entry: &Table, name: &str) -> bool {
 
 /// Writes a value where it stands, with the comment behind it, or at the end of the table; what was there comes back.
 fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
-    match table.get_mut(key) {
-        Some(Item::Value(old)) => {
-            *new.decor_mut() = old.decor().clone();
-            Some(std::mem::replace(old, new))
-        }
-        _ => {
-            table.insert(key, value(new));
-            None
-        }
+    if let Some(Item::Value(old)) = table.get_mut(key) {
+        *new.decor_mut() = old.decor().clone();
+        return Some(std::mem::replace(old, new));
     }
+    table.insert(key, value(new));
+    None
 }
 
 #[cfg(test)]
@@ -223,6 +236,10 @@ name = \"b\"
         let added = changed(|document| document.add(entry.clone(), false).unwrap());
         assert_eq!(difference(&added), (vec![], vec!["name = \"c\"", "target = \"udp://j\""]));
         assert!(added.find("\"c\"") > added.find("\"b\""), "{added}");
+        let mut bare = Document::parse("# Hall 3\n\n# the old one\n[[robot]]\nname = \"a\"\n").unwrap();
+        bare.set_default("a");
+        let expected = "# Hall 3\n\ndefault = \"a\"\n\n# the old one\n[[robot]]\nname = \"a\"\n";
+        assert_eq!(bare.to_string(), expected);
         let mut none = Document::parse("").unwrap();
         none.add(entry, false).unwrap();
         assert!(none.to_string().starts_with("default = \"c\""), "{none}");

@@ -101,6 +101,7 @@ impl Robot {
 
 /// What flags and environment say about the choice of robots.
 #[derive(Debug, Clone, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag, or what a command makes of one")]
 pub struct Selection {
     /// `--sim`.
     pub sim: bool,

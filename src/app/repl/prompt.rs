@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
     let screen = screen.silenced();
     match timeout(PATIENCE, status::look(robot, line, &screen)).await {
-        Ok(Ok(state)) => Seen::State(state),
+        Ok(Ok(state)) => Seen::State(Box::new(state)),
         _ => Seen::Silent,
     }
 }
@@ -28,7 +28,7 @@ pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
 #[derive(Debug)]
 pub enum Seen {
     /// How it is.
-    State(OverviewReport),
+    State(Box<OverviewReport>),
     /// It could not tell at once.
     Silent,
     /// It is not talked to.
@@ -95,7 +95,7 @@ mod tests {
     fn it_tells_whom_a_line_is_for_and_how_that_one_is() {
         let yerc = ["yerc".to_owned()];
         let seen = OverviewReport { servo_on: Some(true), alarm: Some(true), ..OverviewReport::default() };
-        let prompt = Prompt::new(&yerc, Some(&simulated()), &Seen::State(seen), true);
+        let prompt = Prompt::new(&yerc, Some(&simulated()), &Seen::State(Box::new(seen)), true);
         assert_eq!(prompt.plain, "sim [simulated, servo on, ALARM] yerc> ");
         assert_eq!(prompt.styled, "sim [simulated, \u{1b}[32mservo on\u{1b}[0m, \u{1b}[31mALARM\u{1b}[0m] yerc> ");
         assert_eq!(

@@ -115,7 +115,7 @@ impl Report for OverviewReport {
             Cell::maybe(self.servo_on.map(Cell::switch)),
             state,
             alarm,
-            Cell::maybe(position.or(self.not_asked.map(|_| "not asked".to_owned()))),
+            Cell::maybe(position.or(self.not_asked.map(|_| "not asked".to_owned()))).whole(),
         ]);
         View::table(table)
     }

@@ -24,6 +24,9 @@ use crate::settings::target::{Family, Given, Target};
 )]
 pub struct Setup {}
 
+/// Names that are tried as a proposal.
+const MOST_NAMES: u32 = 999;
+
 /// Who is set up.
 struct Found {
     family: Family,
@@ -135,7 +138,7 @@ async fn typed(run: &Run) -> Result<Found, Failure> {
 
 /// One of those that can be found; `None` if it is not among them.
 async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
-    let found = interruptible(Discover::usual().find(run)).await??;
+    let found = interruptible(Discover::usual()?.find(run)).await??;
     let mut places = found.places();
     let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
     let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
@@ -199,7 +202,7 @@ async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
 /// What it is called, and what it may be told.
 async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
-    let free = (1_u32..).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
+    let free = (1..=MOST_NAMES).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
     screen.ask_note("");
     let name = loop {
         let name = line(run, "Name", free.as_deref()).await?;

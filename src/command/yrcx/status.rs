@@ -51,9 +51,10 @@ impl Command for Status {
         let mut orders = vec![servo, position];
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
-            let reason = Reason::about("which alarm").depending_on("whether there is one");
+            let noted = link.plan_all(&orders);
+            let reason = Reason::about("which alarm").depending_on("the signals: it is asked if there is one");
             link.plan_depending(&latest, &latest, reason);
-            link.plan_all(&orders)?;
+            noted?;
         }
         if link.is_dry() && link.is_held() {
             let reason = Reason::default().depending_on("the session: it is asked if no other command is under way");

@@ -1,9 +1,7 @@
 //! `armctl robots edit` and `path`: the file itself.
 
-use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 use anyhow::Context as _;
 use schemars::JsonSchema;
@@ -15,6 +13,7 @@ use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, plain};
 use crate::files;
+use crate::output::editor;
 use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
@@ -33,6 +32,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     let before = file::read(path)?;
     let folder = files::folder_of(path);
     std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let folder = folder.canonicalize().with_context(|| folder.display().to_string())?;
     let copy = tempfile::Builder::new().prefix("robots-").suffix(".toml").tempfile_in(&folder);
     let mut copy = copy.with_context(|| folder.display().to_string())?;
     copy.write_all(if before.is_empty() { NEW } else { &before }.as_bytes()).with_context(place)?;
@@ -47,7 +47,11 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     // Named like the copy, so that line and column are those of the file that is to be corrected.
     let checked = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
         file::replace(path, |now| {
-            if now == before { Ok(after) } else { Err(Failure::usage(format!("{} was changed meanwhile", place()))) }
+            if now == before {
+                Ok(after)
+            } else {
+                Err(Failure::usage(format!("{} was changed meanwhile", place())).hint("put both together by hand"))
+            }
         })
     });
     match checked {
@@ -73,8 +77,7 @@ fn open_editor(path: &Path) -> Result<(), Failure> {
     let words = words.ok_or_else(|| Failure::usage(format!("the editor '{line}' is not a command")).hint(hint()))?;
     // Ctrl-C in the editor is the editor's.
     catch_interrupts();
-    let arguments = words[1..].iter().map(OsString::from).chain([path.into()]);
-    let ended = Command::new(&words[0]).args(arguments).status();
+    let ended = editor::wait_for(&words, path);
     let ended = ended.map_err(|error| Failure::usage(format!("editor '{line}': {}", plain(&error))).hint(hint()))?;
     if ended.success() {
         return Ok(());

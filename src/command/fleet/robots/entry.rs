@@ -147,12 +147,13 @@ const SETTINGS: [(&str, &str, Parse); 9] = [
     ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
     ("timeout", "longest wait for an answer, such as 5s", |text, _| {
-        Ok(duration::display(duration::parse_some(text).map_err(Failure::usage)?).into())
+        let timeout = duration::parse_some(text).map_err(|why| wrong(why, "as in timeout=5s"))?;
+        Ok(duration::display(timeout).into())
     }),
     ("retries", "repetitions of a read after silence", |text, _| {
-        let retries =
-            text.parse::<u32>().map_err(|_| Failure::usage(format!("'{text}' is not a number of repetitions")));
-        Ok(i64::from(retries?).into())
+        let retries = text.parse::<u32>();
+        let why = format!("'{text}' is not a number of repetitions");
+        Ok(i64::from(retries.map_err(|_| wrong(why, "as in retries=3"))?).into())
     }),
     ("tags", "words to choose it by, such as line1,welding", |text, _| {
         Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))
@@ -164,14 +165,18 @@ fn candidates() -> Vec<Candidate> {
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
-    text.parse::<T>().map_err(|why| Failure::usage(why.to_string()))
+    text.parse::<T>().map_err(|why| wrong(why.to_string(), "`armctl help inventory` shows the form of the file"))
+}
+
+fn wrong(why: impl Into<String>, hint: &str) -> Failure {
+    Failure::usage(why).hint(hint)
 }
 
 fn switch(text: &str) -> Result<bool, Failure> {
     match text {
         "on" | "true" | "yes" => Ok(true),
         "off" | "false" | "no" => Ok(false),
-        _ => Err(Failure::usage(format!("'{text}' is not on or off"))),
+        _ => Err(wrong(format!("'{text}' is not on or off"), "as in read_only=off")),
     }
 }
 

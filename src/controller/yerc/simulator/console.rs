@@ -192,7 +192,7 @@ fn state(world: &World) -> Vec<(String, String)> {
     for group in &world.arm.groups {
         let pulses: Vec<String> =
             group.pulses[..group.axes].iter().map(|&pulse| super::motion::whole(pulse).to_string()).collect();
-        rows.push((group.name().clone(), format!("{} pulses", pulses.join(" "))));
+        rows.push((group.name(), format!("{} pulses", pulses.join(" "))));
     }
     rows
 }
