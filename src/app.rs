@@ -219,8 +219,6 @@ mod tests {
         let wants = |line: &str| wants_json(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
         for line in [
             "armctl --json x",
-            "armctl x --jq .a",
-            "armctl x --jq=.a",
             "armctl x -o json",
             "armctl x -ojsonl",
             "armctl x -o=json",
@@ -231,8 +229,15 @@ mod tests {
         ] {
             assert!(wants(line), "{line}");
         }
-        for line in ["armctl x", "armctl x -o csv", "armctl x --format=table", "armctl say -- --json", "armctl x json"]
-        {
+        for line in [
+            "armctl x",
+            "armctl x -o csv",
+            "armctl x --jq .a",
+            "armctl x --jq=.a",
+            "armctl x --format=table",
+            "armctl say -- --json",
+            "armctl x json",
+        ] {
             assert!(!wants(line), "{line}");
         }
     }
