@@ -1,5 +1,6 @@
 //! From the words of a command line to an exit code.
 
+mod assigned;
 mod batch;
 mod complete;
 mod flags;
@@ -48,15 +49,22 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut parser = Parser::default();
     let parsed = parser.parse(&args);
     parser.abandon();
-    let cli = match parsed {
+    let mut cli = match parsed {
         Ok(cli) => cli,
         Err(refusal) => {
             let pager = args.iter().all(|word| word != "--no-pager");
             return exit(refuse(&args, &refusal, false, pager));
         }
     };
+    let format = prepared::format_of_environment(&cli);
+    if let Ok(format) = &format {
+        cli.globals.format = cli.globals.format.or(*format);
+    }
     let screen = screen(&cli.globals);
     screen.tells_the_end();
+    if let Err(failure) = format {
+        return exit(Err(tell(&screen, failure.into())));
+    }
     exit(on_this_thread(run(cli)).map_err(|stopped| tell(&screen, stopped)))
 }
 
@@ -124,7 +132,7 @@ fn screen(globals: &Globals) -> Screen {
         None => Format::Table,
     };
     let is_filtered = globals.jq.is_some() && !globals.json && globals.format.is_none();
-    Screen::new(format, globals.color, globals.quiet, globals.verbose).with_plain_errors(is_filtered)
+    Screen::new(format, globals.color(), globals.quiet, globals.verbose).with_plain_errors(is_filtered)
 }
 
 /// Writes a failure once, in the form that was asked for, and says what kind it was.
@@ -143,7 +151,7 @@ fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind
 /// What the parser has to say: help, version and the verbs of a noun on stdout, mistakes on stderr, as JSON if the line asks
 /// for it.
 fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
-    let is_json = is_json || wants_json(args);
+    let is_json = is_json || wants_json(args).unwrap_or_else(prepared::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
     match refusal {
@@ -167,23 +175,27 @@ fn read(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
 /// What a command line that was not parsed, such as that of a help, says about colour.
 fn color(args: &[OsString]) -> ColorChoice {
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
-    let value = words.by_ref().find_map(|word| match word.strip_prefix("--color")? {
-        "" => Some(None),
-        value => value.strip_prefix('=').map(Some),
+    let value = words.by_ref().find_map(|word| match word {
+        "--no-color" => Some(Some("never")),
+        "--color" => Some(None),
+        _ => word.strip_prefix("--color=").map(Some),
     });
     let value = value.and_then(|value| value.or_else(|| words.next()));
     value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(ColorChoice::Auto)
 }
 
-/// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have.
-fn wants_json(args: &[OsString]) -> bool {
+/// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have; `None` where it
+/// asks for no format.
+fn wants_json(args: &[OsString]) -> Option<bool> {
     let is_json = |format: &str| matches!(format.trim_start_matches('='), "json" | "jsonl");
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
     while let Some(word) = words.next() {
         let format = match word {
-            "--json" => return true,
-            "--format" => words.next(),
-            _ if word.starts_with("--") => word.strip_prefix("--format"),
+            "--json" => return Some(true),
+            "--output" | "--format" => words.next(),
+            _ if word.starts_with("--") => {
+                ["--output=", "--format="].into_iter().find_map(|flag| word.strip_prefix(flag))
+            }
             // Short flags without a value may stand before the last one, whose value may be the next word.
             _ => match word
                 .strip_prefix('-')
@@ -193,11 +205,11 @@ fn wants_json(args: &[OsString]) -> bool {
                 value => value,
             },
         };
-        if format.is_some_and(is_json) {
-            return true;
+        if let Some(format) = format {
+            return Some(is_json(format));
         }
     }
-    false
+    None
 }
 
 #[cfg(test)]
@@ -209,6 +221,7 @@ mod tests {
         let color = |line: &str| color(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
         assert_eq!(color("armctl --color always -h"), ColorChoice::Always);
         assert_eq!(color("armctl x --color=never"), ColorChoice::Never);
+        assert_eq!(color("armctl --no-color -h"), ColorChoice::Never);
         for line in ["armctl -h", "armctl --color", "armctl --color blue", "armctl say -- --color always"] {
             assert_eq!(color(line), ColorChoice::Auto, "{line}");
         }
@@ -224,21 +237,17 @@ mod tests {
             "armctl x -o=json",
             "armctl x -qojson",
             "armctl x -vyo json",
+            "armctl --output jsonl x",
             "armctl --format jsonl x",
-            "armctl --format=json x",
+            "armctl --output=json x",
         ] {
-            assert!(wants(line), "{line}");
+            assert_eq!(wants(line), Some(true), "{line}");
         }
-        for line in [
-            "armctl x",
-            "armctl x -o csv",
-            "armctl x --jq .a",
-            "armctl x --jq=.a",
-            "armctl x --format=table",
-            "armctl say -- --json",
-            "armctl x json",
-        ] {
-            assert!(!wants(line), "{line}");
+        for line in ["armctl x -o csv", "armctl x --output=table"] {
+            assert_eq!(wants(line), Some(false), "{line}");
+        }
+        for line in ["armctl x", "armctl x --jq .a", "armctl x --jq=.a", "armctl say -- --json", "armctl x json"] {
+            assert_eq!(wants(line), None, "{line}");
         }
     }
 }

@@ -125,7 +125,7 @@ pub struct Globals {
     /// Talk to the controller at URL, such as udp://192.168.1.31, or at 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<Given>,
-    /// Talk to a robot of the inventory, by name or pattern (repeatable)
+    /// Talk to a robot of the inventory, by name or pattern (repeatable; ARMCTL_ROBOT)
     #[arg(short, long, global = true, value_name = "NAME", add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
     /// Talk to every robot of the inventory
@@ -138,10 +138,11 @@ pub struct Globals {
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
     pub config: Option<PathBuf>,
 
-    /// How to print data
+    /// How to print data (ARMCTL_OUTPUT)
     #[arg(
         short = 'o',
-        long = "format",
+        long = "output",
+        alias = "format",
         global = true,
         hide_short_help = true,
         value_name = "FORMAT",
@@ -177,6 +178,9 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub color: ColorChoice,
+    /// No colour (the same as --color never)
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "color")]
+    pub no_color: bool,
     /// Print long texts as they are, without the pager (PAGER)
     #[arg(long, global = true, hide_short_help = true, help_heading = "Output")]
     pub no_pager: bool,
@@ -235,11 +239,10 @@ impl Globals {
     pub fn within(self, all: &Self) -> Self {
         let names_robot =
             self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty();
-        let says_format = self.format.is_some() || self.json || self.jq.is_some();
         let says_how_much = self.quiet || self.verbose > 0;
         let (robot, format, how_much) = (
             if names_robot { self.clone() } else { all.clone() },
-            if says_format { self.clone() } else { all.clone() },
+            if self.says_format() { self.clone() } else { all.clone() },
             if says_how_much { &self } else { all },
         );
         let (quiet, verbose) = (how_much.quiet, how_much.verbose);
@@ -255,6 +258,7 @@ impl Globals {
             jq: format.jq,
             quiet,
             verbose,
+            no_color: self.no_color || (all.no_color && self.color == ColorChoice::Auto),
             color: if self.color == ColorChoice::Auto { all.color } else { self.color },
             no_pager: self.no_pager || all.no_pager,
             trace: self.trace.or_else(|| all.trace.clone()),
@@ -270,6 +274,16 @@ impl Globals {
             until: self.until,
             within: self.within,
         }
+    }
+
+    /// When to use colour.
+    pub fn color(&self) -> ColorChoice {
+        if self.no_color { ColorChoice::Never } else { self.color }
+    }
+
+    /// Whether they say how to print data.
+    pub fn says_format(&self) -> bool {
+        self.format.is_some() || self.json || self.jq.is_some()
     }
 
     /// The flags that say whom a line is for, as words.

@@ -63,7 +63,7 @@ fn no_time_at_all_is_no_timeout() {
 #[test]
 fn a_line_that_does_not_parse_fails_in_the_format_it_asks_for() {
     let home = tempfile::tempdir().unwrap();
-    for format in ["--json", "-ojsonl", "--format=json", "-qo json"] {
+    for format in ["--json", "-ojsonl", "--output=json", "-qo json"] {
         let output = armctl(home.path(), &format!("--sim yerc var set B0=256 {format}"));
         fails(&output, 2, &[]);
         let error: Value = serde_json::from_slice(&output.stderr).expect(format);

@@ -115,7 +115,7 @@ const LINES: &[(&str, &[Head])] = &[
     ("var get S0..S1", &[(0x30C, 0, 0, READ)]),
     ("var set S0=A S1=B", &[(0x30C, 0, 0, WRITE)]),
     ("file delete A.JBI", &[(0, 0, 0, 0x09)]),
-    ("file get A.JBI --output dry", &[(0, 0, 0, 0x16)]),
+    ("file get A.JBI --dir dry", &[(0, 0, 0, 0x16)]),
     ("file list --type all", &[(0, 0, 0, 0x32)]),
     ("file cmos --start-only", &[(0, 0, 0, 0x16)]),
 ];

@@ -436,7 +436,7 @@ fn datagrams_go_through_a_session() {
     );
     // Files come in many datagrams, over the other port.
     let file = desk.folder.path().join("COUNT.JBI");
-    let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --output {}", desk.folder.path().display()));
+    let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --dir {}", desk.folder.path().display()));
     assert!(saved.status.success() && file.exists(), "{}", stderr(&saved));
     let sent = desk.run(&format!("-r cell --yes yerc file put {} --replace", file.display()));
     assert!(sent.status.success(), "{}", stderr(&sent));

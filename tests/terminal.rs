@@ -19,6 +19,7 @@ mod readme;
 mod repl;
 mod safety;
 mod session;
+mod setup;
 mod top;
 mod toyo_safety;
 mod toyo_sim;

@@ -302,7 +302,7 @@ fn filters_and_names_are_those_of_the_protocol() {
     let (exit, _, error) = run(folder.path(), &target, "file get CELL.XYZ");
     assert_eq!(exit, 0, "{error}");
     let long = format!("{}.ABCDEF", "N".repeat(470));
-    let (exit, _, error) = run(folder.path(), &target, &format!("file get {long} --output -"));
+    let (exit, _, error) = run(folder.path(), &target, &format!("file get {long} --dir -"));
     assert_eq!(exit, 2, "stdout and --json do not go together: {error}");
     let (exit, frames, error) =
         run(folder.path(), &target, &format!("file get {} --dry-run", "N".repeat(200) + ".ABC"));

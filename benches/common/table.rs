@@ -25,7 +25,7 @@ impl fmt::Display for Goal {
         match self {
             Self::AtLeast(goal) => write!(f, ">= {goal:.1}"),
             Self::MoreThan(goal) => write!(f, "> {goal:.1}"),
-            Self::AtMost(goal, unit) => write!(f, "<= {goal:.0} {unit}"),
+            Self::AtMost(goal, unit) => write!(f, "<= {goal} {unit}"),
         }
     }
 }
@@ -53,6 +53,16 @@ impl Row {
         Self { ratio: format!("armctl {ratio:.2} x"), ..self }.goal(ratio, goal)
     }
 
+    /// How many times as much it is as something else, without a goal.
+    pub fn times(self, ratio: f64, what: &str) -> Self {
+        Self { ratio: format!("{ratio:.2} x {what}"), ..self }
+    }
+
+    /// How many times as much it is as what nothing can be less than.
+    pub fn beside(self, ratio: f64, what: &str, goal: Goal) -> Self {
+        Self { ratio: format!("{ratio:.3} of {what}"), ..self }.goal(ratio, goal)
+    }
+
     pub fn goal(self, figure: f64, goal: Goal) -> Self {
         Self { goal: Some((goal, goal.is_met(figure))), ..self }
     }
@@ -65,7 +75,7 @@ pub struct Table {
 }
 
 /// What the columns of every table are.
-pub const HEADER: &str = "                                                          median  ratio         goal";
+pub const HEADER: &str = "                                                          median  ratio             goal";
 
 impl Table {
     pub fn new(title: impl Into<String>) -> Self {
@@ -81,7 +91,7 @@ impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.title)?;
         for Row { name, figure, ratio, goal } in &self.rows {
-            write!(f, "  {name:<46}{figure:>16}  {ratio:<14}")?;
+            write!(f, "  {name:<46}{figure:>16}  {ratio:<18}")?;
             if let Some((goal, is_met)) = goal {
                 write!(f, "{goal} {}", if *is_met { "met" } else { "MISSED" })?;
             }

@@ -48,7 +48,9 @@ impl Uses {
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             // What settings would be in force.
             Common::Robots(Robots::Show(_)) => Self { link: true, ..NONE },
-            Common::Robots(Robots::List | Robots::Add(_) | Robots::Remove(_))
+            // It reads while it checks.
+            Common::Setup(_) => Self { link: true, ..NONE },
+            Common::Robots(_)
             | Common::Sim(_)
             | Common::Decode(_)
             | Common::Explain(_)

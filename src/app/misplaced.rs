@@ -30,6 +30,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
             place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
         }
         ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
+        ErrorKind::InvalidValue => folder(&error, &typed, whole),
         ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| number(&why.to_string())),
         _ => None,
     };
@@ -115,6 +116,14 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         let quote = if values.concat().contains('\'') { '"' } else { '\'' };
         format!("a value with blanks stands in quotes: {quote}{}{quote}", values.join(" "))
     })
+}
+
+/// The flag for a folder, where that of the format was taken for it.
+fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let has_folder = command.get_arguments().any(|argument| argument.get_long() == Some("dir"));
+    (has_folder && flag.starts_with("--output")).then(|| "--output is the format; the folder is --dir".to_owned())
 }
 
 /// Which number to type instead of one that is refused.
@@ -303,7 +312,7 @@ mod tests {
         for (line, expected) in [
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
-            ("armctl list alarm", "`armctl yerc alarm list`"),
+            ("armctl list alarm", "`armctl yerc alarm list` or `armctl yrcx alarm list` or `armctl toyo alarm list`"),
             ("armctl yerc job list", "`armctl yerc file list`"),
             ("armctl yerc file ls", "`armctl yerc file list`"),
             ("armctl yerc io read 1", "`armctl yerc io get`"),
@@ -314,8 +323,7 @@ mod tests {
             ("armctl yerc job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
-            ("armctl toyo alarm", "`armctl toyo alarm list`"),
-            ("armctl yrcx error", "`armctl yrcx info alarm`"),
+            ("armctl yrcx error", "`armctl yrcx alarm list`"),
             (
                 "armctl version",
                 "`armctl --version` or `armctl yerc info` or `armctl yrcx info version` or `armctl toyo info`",
@@ -325,6 +333,19 @@ mod tests {
         ] {
             assert_eq!(tip(line), Some(format!("the command is {expected}")), "{line}");
         }
+    }
+
+    #[test]
+    fn another_name_of_what_moves_is_no_more_proposed_than_its_own() {
+        for line in ["armctl toyo origi", "armctl toyo hom", "armctl yrcx hom", "armctl yrcx origi"] {
+            let tip = tip(line).unwrap_or_default();
+            assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
+        }
+        let absent = tip("armctl yerc home").unwrap();
+        assert!(
+            absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
+            "{absent}"
+        );
     }
 
     #[test]
@@ -360,6 +381,7 @@ mod tests {
             ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
             ("armctl --count 1,5 yerc status", "write a whole number"),
+            ("armctl yerc file get A.JBI --output saved", "--output is the format; the folder is --dir"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");

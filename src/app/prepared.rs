@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::CommandFactory as _;
+use clap::{CommandFactory as _, ValueEnum as _};
 
 use super::{flags, screen};
 use crate::cli::{Cli, FamilyWord, Globals, Top};
@@ -16,6 +16,7 @@ use crate::command::frame::script_line::Line;
 use crate::command::{AnyCommand, Own};
 use crate::failure::Failure;
 use crate::gate::Gate;
+use crate::output::Format;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
 use crate::settings::alarms;
@@ -84,7 +85,10 @@ impl PreparedCommand {
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
-            Task::Common(Common::Status(_) | Common::Top(_)) => run.sources.widen(),
+            Task::Common(Common::Status(_) | Common::Top(_)) => {
+                run.sources.widen();
+                run.sources.selection.every_simulator = true;
+            }
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
@@ -129,7 +133,9 @@ impl Task {
         match self {
             Self::Family(_, command) if command.driver().is_none() => Need::Nothing,
             Self::Common(Common::Robots(Robots::Discover(_))) => Need::Nothing,
+            Self::Common(Common::Robots(robots)) if robots.is_about_file() => Need::Names,
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
+            Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -165,10 +171,11 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
 
 /// Which robots, and their settings; `among` other lines of this process, simulators live on.
 pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Failure> {
-    let selection = Selection {
+    let mut selection = Selection {
         sim: globals.sim,
         target: globals.target,
         robots: globals.robot,
+        from_environment: false,
         tags: globals.tag,
         all: globals.all,
         environment: variable("ARMCTL_TARGET", |url| url.parse::<Given>().map_err(|failure| failure.message))?,
@@ -178,7 +185,12 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
             (false, false) => Sessions::Shared,
         },
         simulated: None,
+        every_simulator: false,
     };
+    let names = variable("ARMCTL_ROBOT", names)?;
+    if let (Some(names), false) = (names, selection.has_flags()) {
+        (selection.robots, selection.from_environment) = (names, true);
+    }
     // Also for a robot that is told by its address: the file says whether that may be changed.
     let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
@@ -204,6 +216,31 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         ..Options::default()
     };
     Ok(Sources { selection, flags, environment, inventory })
+}
+
+/// Names or patterns of robots with commas between them.
+fn names(text: &str) -> Result<Vec<String>, String> {
+    let names: Vec<String> = text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(Into::into).collect();
+    if names.is_empty() { Err(format!("'{text}' names no robot")) } else { Ok(names) }
+}
+
+/// `ARMCTL_OUTPUT`, where the line does not say how to print. What tells how to set it right, and what is for people alone,
+/// does not ask for it.
+pub fn format_of_environment(cli: &Cli) -> Result<Option<Format>, Failure> {
+    let asks = !cli.globals.says_format() && !matches!(cli.command, Top::Common(Common::Help(_) | Common::Top(_)));
+    if asks { variable(OUTPUT, format) } else { Ok(None) }
+}
+
+/// Whether `ARMCTL_OUTPUT` is a form of JSON.
+pub fn wants_json() -> bool {
+    matches!(variable(OUTPUT, format), Ok(Some(Format::Json | Format::Jsonl)))
+}
+
+/// How to print data.
+const OUTPUT: &str = "ARMCTL_OUTPUT";
+
+fn format(name: &str) -> Result<Format, String> {
+    Format::from_str(name, true).map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl and csv"))
 }
 
 /// Where the inventory is.

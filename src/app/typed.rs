@@ -13,6 +13,8 @@ pub struct Typed<'a> {
     pub said: Vec<&'a str>,
     /// What follows them.
     pub rest: Vec<&'a str>,
+    /// Where in the line that stands.
+    pub at: Vec<usize>,
 }
 
 impl<'a> Typed<'a> {
@@ -20,8 +22,8 @@ impl<'a> Typed<'a> {
     pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
         let mut commands = vec![whole];
-        let mut words = args.iter().skip(1).filter_map(|word| word.to_str());
-        while let Some(word) = words.next().filter(|word| *word != "--") {
+        let mut words = args.iter().enumerate().skip(1).filter_map(|(at, word)| Some((at, word.to_str()?)));
+        while let Some((at, word)) = words.next().filter(|(_, word)| *word != "--") {
             if word.starts_with('-') && word.len() > 1 {
                 if takes_next(word, &commands) {
                     words.next();
@@ -35,6 +37,7 @@ impl<'a> Typed<'a> {
                 typed.said.push(word);
             } else {
                 typed.rest.push(word);
+                typed.at.push(at);
             }
         }
         typed

@@ -4,18 +4,20 @@ use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
 use super::fleet::status::Overview;
-use super::fleet::{backup, robots, session, tools, top};
+use super::fleet::{backup, robots, session, setup, tools, top};
 use super::frame::run::{Run, RunError};
 use crate::command::Command as _;
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]
 pub enum Common {
+    /// Set up a robot step by step: address, check, name
+    Setup(setup::Setup),
     /// Show a one-line status per robot
     Status(Overview),
     /// Full-screen live monitor
     Top(top::Top),
-    /// The inventory: list, show, add, remove; check and discover
+    /// The inventory: list, add, set, edit, and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
     /// Keep a connection open for later commands: open, list, close
@@ -49,7 +51,9 @@ impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         match self {
-            Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => true,
+            Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
+                true
+            }
             Self::Backup(backup) => backup.takes_robot(),
             Self::Diff(diff) => diff.takes_robot(),
             _ => false,
@@ -60,8 +64,11 @@ impl Common {
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match self {
             Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
+            Self::Sim(sim) if sim.is_list() => None,
             Self::Sim(_) => Some("it serves until it is ended"),
             Self::Top(_) => Some("it is a view for a terminal"),
+            Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
+            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
             Self::Status(_)
             | Self::Robots(_)
@@ -77,6 +84,7 @@ impl Common {
     /// Does it; `root` makes the whole command line.
     pub async fn run(self, run: &Run, root: fn() -> clap::Command) -> Result<(), RunError> {
         match self {
+            Self::Setup(setup) => Box::pin(setup.run(run)).await,
             Self::Status(overview) => run.robots(&overview).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,

@@ -21,7 +21,9 @@ use crate::output::view::View;
 pub trait Serve: Sized {
     /// `sim.yerc`: its name in envelopes and schemas.
     const ID: &'static str;
-    /// Says how to reach the simulator.
+    /// The URL of one that is started without arguments.
+    const TARGET: &'static str;
+    /// Says where the simulator is.
     type Report: Report + 'static;
     /// The simulator.
     type Server: Server;
@@ -33,8 +35,10 @@ pub trait Serve: Sized {
 /// A simulator that listens.
 #[derive(Debug)]
 pub struct Started<S: Serve> {
-    /// How to reach it.
+    /// Where it is.
     pub report: S::Report,
+    /// A command line that reaches it.
+    pub reach: String,
     /// The simulator.
     pub server: S::Server,
     /// Where others may come from; none for a terminal.
@@ -74,8 +78,11 @@ impl Report for Serving {
 
 /// Starts a simulator, says where, and serves it until Ctrl-C.
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
-    let Started { report, mut server, address, with_console } = arguments.start().await?;
+    let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
+    let console = if with_console { "; `help` lists what this console takes" } else { "" };
+    run.screen
+        .note(&format!("reach it: {reach}\nend it:   Ctrl-C{}{console}", if with_console { " or `quit`" } else { "" }));
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: others on the network can reach this simulator");
     }
@@ -96,6 +103,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             None => {}
             Some(None) => console = None,
             Some(Some(line)) if line.trim().is_empty() => {}
+            Some(Some(line)) if line.trim() == "quit" => return Ok(()),
             Some(Some(line)) => match server.console(&line) {
                 Ok(text) => run.screen.note(&text),
                 Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists what the console takes")),
@@ -110,6 +118,11 @@ async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<Stri
         Some(lines) => lines.next_line().await.unwrap_or(None),
         None => std::future::pending().await,
     }
+}
+
+/// A command line that reaches a simulator of a family at a URL.
+pub fn reach(family: &str, target: &str) -> String {
+    format!("armctl -t '{target}' {family} status")
 }
 
 /// An address with a port, or without one.

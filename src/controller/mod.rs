@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 pub mod nearest;
-mod simulator;
+pub mod simulator;
 #[cfg(test)]
 mod testing;
 pub mod text;

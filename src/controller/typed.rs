@@ -57,7 +57,7 @@ fn after_0x(text: &str) -> Option<&str> {
     text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"))
 }
 
-/// One of a kind, or a range with both its ends: `5`, `1..5`, `1-5`.
+/// One of a kind, or a range with both its ends: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
 ///
 /// # Errors
 /// What `read` says of an end, or that the last one comes first.
@@ -68,11 +68,38 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
     let separators = ["..", "-"];
     let ends = separators.into_iter().find_map(|separator| Some((separator, text.split_once(separator)?)));
     let Some((separator, (first_text, last_text))) = ends else { return Ok(read(text)?..=read(text)?) };
-    let (first, last) = (read(first_text)?, read(last_text)?);
+    // The last end may leave out what both begin with.
+    let begins = if last_text.starts_with(|first: char| first.is_ascii_digit()) { letters(first_text) } else { "" };
+    let last_text = format!("{begins}{last_text}");
+    let (first, last) = (read(first_text)?, read(&last_text)?);
     if first > last {
         return Err(RangeError { meant: format!("{last_text}{separator}{first_text}") }.into());
     }
     Ok(first..=last)
+}
+
+/// The same of names that end in a number, `DO2` or `DO2..DO5`: all that `read` knows between two of them.
+///
+/// # Errors
+/// What `read` says of the whole, or that the last one comes first.
+pub fn series<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
+    let wrong = match read(text) {
+        Ok(one) => return Ok(vec![one]),
+        Err(wrong) => wrong,
+    };
+    let begins = letters(text);
+    let number = |name: &str| {
+        let (before, digits) = name.split_at(letters(name).len());
+        let is_one = before.eq_ignore_ascii_case(begins) && read(name).is_ok();
+        unsigned::<u32>(digits).filter(|_| is_one).ok_or_else(|| wrong.clone())
+    };
+    let numbers = range(text, number)?;
+    Ok(numbers.filter_map(|number| read(&format!("{begins}{number}")).ok()).collect())
+}
+
+/// What a name begins with, before its number.
+fn letters(name: &str) -> &str {
+    &name[..name.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(name.len())]
 }
 
 /// What was given, each once and in that order.
@@ -154,6 +181,30 @@ mod tests {
         let wrong = |text| range(text, read).unwrap_err();
         assert_eq!(wrong("5-2"), "the range ends before it begins; did you mean 2-5?");
         assert_eq!([wrong("1..x"), wrong("-3"), wrong("")], ["not x", "not ", "not "]);
+        let named = |text: &str| {
+            unsigned::<u16>(&text[1..]).filter(|_| text.starts_with('B')).ok_or_else(|| format!("not {text}"))
+        };
+        assert_eq!(
+            [range("B0-B9", named), range("B0..9", named), range("B0-9", named)],
+            [Ok(0..=9), Ok(0..=9), Ok(0..=9)]
+        );
+        assert_eq!(range("B5-2", named).unwrap_err(), "the range ends before it begins; did you mean B2-B5?");
+        assert_eq!(range("B0-C9", named).unwrap_err(), "not C9");
+    }
+
+    #[test]
+    fn names_are_counted_as_far_as_they_are_known() {
+        let known = |name: &str| {
+            let is_known = ["DO7", "DO10", "DO11", "servo-on"].contains(&name);
+            is_known.then(|| name.to_owned()).ok_or_else(|| format!("no {name}"))
+        };
+        assert_eq!(series("servo-on", known), Ok(vec!["servo-on".to_owned()]));
+        for range in ["DO7..DO11", "DO7-11", "DO7-DO11"] {
+            assert_eq!(series(range, known).unwrap(), ["DO7", "DO10", "DO11"], "{range}");
+        }
+        assert_eq!(series("servo-onn", known).unwrap_err(), "no servo-onn");
+        assert_eq!(series("DO7-12", known).unwrap_err(), "no DO7-12");
+        assert!(series("DO11-7", known).unwrap_err().ends_with("did you mean DO7-DO11?"));
     }
 
     #[test]

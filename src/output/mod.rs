@@ -12,6 +12,7 @@ pub mod leave;
 mod pager;
 pub mod progress;
 pub mod prompt;
+mod question;
 pub mod redraw;
 pub mod render;
 pub mod view;
@@ -40,7 +41,7 @@ pub enum Format {
 /// When to use colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ColorChoice {
-    /// On a terminal that can, unless `NO_COLOR` is set.
+    /// On a terminal that can, or where `CLICOLOR_FORCE` is set, unless `NO_COLOR` is.
     Auto,
     /// Even into a file.
     Always,
@@ -143,7 +144,11 @@ impl Screen {
         match self.color {
             ColorChoice::Always => true,
             ColorChoice::Never => false,
-            ColorChoice::Auto => is_terminal && !is_dumb() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()),
+            ColorChoice::Auto => {
+                let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+                let is_forced = set("CLICOLOR_FORCE").is_some_and(|value| value != "0");
+                set("NO_COLOR").is_none() && (is_forced || (is_terminal && !is_dumb()))
+            }
         }
     }
 
@@ -204,16 +209,23 @@ impl Screen {
         if failure.kind == Kind::PipeClosed {
             return;
         }
-        let color = self.wants_color(io::stderr().is_terminal());
-        let paint = |code: &str, word: &str| if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() };
         if let Kind::Halted(_) = failure.kind {
             return Self::stderr(&escape::lines(&failure.message));
         }
         let label = if failure.kind == Kind::Interrupted { "interrupted:" } else { "error:" };
         let code = failure.code.as_ref().map(|code| format!(" [{code}]")).unwrap_or_default();
-        let hint = failure.hint.as_ref().map(|hint| format!("\n{} {}\n", paint("1;36", "hint:"), escape::lines(hint)));
+        let hint = failure
+            .hint
+            .as_ref()
+            .map(|hint| format!("\n{} {}\n", self.paint_stderr("1;36", "hint:"), escape::lines(hint)));
         let message = escape::lines(&failure.message);
-        Self::prose(&format!("{} {message}{code}\n{}", paint("1;31", label), hint.unwrap_or_default()));
+        Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
+    }
+
+    /// A word for stderr, in colour where that has any.
+    fn paint_stderr(&self, code: &str, word: &str) -> String {
+        let color = self.wants_color(io::stderr().is_terminal());
+        if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() }
     }
 
     /// What the parser of the command line has to say about a mistake.

@@ -8,6 +8,11 @@ use super::Screen;
 use crate::failure::{Failure, Kind};
 
 impl Screen {
+    /// Says whom a question is about, with a word that nobody overlooks.
+    pub fn ask_title(&self, word: &str, whom: &str) {
+        Self::prose(&format!("{} {}\n", self.paint_stderr("1;31", word), super::escape::lines(whom)));
+    }
+
     /// Says what a question is about, even under `--quiet`.
     pub fn ask_note(&self, text: &str) {
         Self::prose(&format!("{}\n", super::escape::lines(text)));
@@ -24,7 +29,7 @@ impl Screen {
         Self::ask(&format!("{what} Type '{word}' to go on:")).map(|answer| answer.trim_ascii() == word.as_bytes())
     }
 
-    fn ask(question: &str) -> Result<Vec<u8>, Failure> {
+    pub(super) fn ask(question: &str) -> Result<Vec<u8>, Failure> {
         Self::prose(&format!("{} ", super::escape::line(question)));
         let mut answer = Vec::new();
         // A terminal that cannot be read any more, as it was closed, gives no answer either.

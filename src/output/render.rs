@@ -53,72 +53,69 @@ pub fn csv(view: &View, robot: Option<&str>) -> String {
 }
 
 fn section_text(section: &Section, width: u16, color: bool) -> String {
-    let mut grid = grid(width, color);
     match section {
         Section::Text(text) => {
             let mut text = escape::lines(text).into_owned();
             if !text.is_empty() && !text.ends_with('\n') {
                 text.push('\n');
             }
-            return text;
+            text
         }
-        Section::Lines(lines) => return lines.iter().map(|line| painted(line, color) + "\n").collect(),
-        Section::Fields(fields) => {
-            let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
-            let room = room(width, 2, names);
-            for (name, cell) in fields {
-                // Values of fields stand on the left: they are of different kinds.
-                let value = styled(&Cell { is_number: false, ..cell.clone() }, room);
-                grid.add_row([comfy_table::Cell::new(*name).add_attribute(Attribute::Dim), value]);
-            }
-        }
-        Section::Table(Table { rows, empty, .. }) if rows.is_empty() => return format!("{empty}\n"),
-        Section::Table(table) if least_width(table) > usize::from(width) => return records(table, width, color),
-        Section::Table(table) if table.rows.len() > LONG => return piecewise(table, width, color),
+        Section::Lines(lines) => lines.iter().map(|line| painted(line, color) + "\n").collect(),
+        Section::Fields(fields) => fields_text(fields, width, color),
+        Section::Table(Table { rows, empty, .. }) if rows.is_empty() => format!("{empty}\n"),
         Section::Table(table) => {
-            let header = table.columns.iter().enumerate().map(|(index, name)| {
-                let is_number = table.rows.iter().all(|row| row[index].is_number || row[index].text == "-");
-                let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
-                if is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
-            });
-            grid.set_header(header.collect::<Vec<_>>());
-            let room = room(width, table.columns.len(), 0);
-            for row in &table.rows {
-                grid.add_row(row.iter().map(|cell| styled(cell, room)).collect::<Vec<_>>());
+            let mut layout = Layout::new(&table.columns);
+            table.rows.iter().for_each(|row| layout.measure(row));
+            if layout.least() > usize::from(width) {
+                return records(table, width, color);
             }
+            let mut layout = layout.fit(width);
+            table.rows.chunks(LONG).map(|rows| layout.piece(rows, color)).collect()
         }
     }
-    for (index, column) in grid.column_iter_mut().enumerate() {
-        column.set_padding((0, PADDING));
-        let is_whole = match section {
-            Section::Table(table) => table.rows.iter().any(|row| row[index].is_whole),
-            _ => index == 0,
+}
+
+/// Fields, each on lines of its own; a word that is too long beside their names has one to itself.
+fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> String {
+    const INDENT: usize = 2;
+    let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
+    let padding = usize::from(PADDING);
+    let width = usize::from(width);
+    let room = width.saturating_sub(names + 2 * padding).max(WORD);
+    let mut out = String::new();
+    for (name, cell) in fields {
+        let text = escape::line(&cell.text);
+        let is_beside = least(&text) <= room;
+        let (indent, room) = if is_beside { (names + padding, room) } else { (INDENT, width.saturating_sub(INDENT)) };
+        let name = if color {
+            format!("\x1b[2m{name}\x1b[0m{:1$}", "", names - measure_text_width(name))
+        } else {
+            format!("{name:names$}")
         };
-        if is_whole {
-            column.set_constraint(ColumnConstraint::ContentWidth);
-        } else if let Section::Table(table) = section
-            && table.rows.iter().any(|row| row[index].text.contains("://"))
-        {
-            let least = u16::try_from(least_column(table, index)).unwrap_or(u16::MAX).saturating_add(PADDING);
-            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(least)));
+        let mut line =
+            if is_beside { format!("{name}{:padding$}", "") } else { format!("{}\n{:INDENT$}", name.trim_end(), "") };
+        for (at, part) in folded(&text, room).lines().enumerate() {
+            if at > 0 {
+                line = format!("{:indent$}", "");
+            }
+            line.push_str(&dyed(part, cell.tone, color));
+            out.push_str(line.trim_end());
+            out.push('\n');
+        }
+        if text.is_empty() {
+            out.push_str(line.trim_end());
+            out.push('\n');
         }
     }
-    grid.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n")
+    out
 }
 
 /// Blanks behind a column.
 const PADDING: u16 = 2;
 
-/// Rows from which on a table is laid out piece by piece, because the layout takes much memory for each.
+/// Rows that are laid out at a time, because the layout takes much memory for each.
 const LONG: usize = 1000;
-
-/// A long table, all of whose columns are as wide from its first row to its last.
-fn piecewise(table: &Table, width: u16, color: bool) -> String {
-    let mut layout = Layout::new(&table.columns);
-    table.rows.iter().for_each(|row| layout.measure(row));
-    let mut layout = layout.fit(width);
-    table.rows.chunks(LONG).map(|rows| layout.piece(rows, color)).collect()
-}
 
 /// How a table is laid out whose rows come one after the other: after all of them were measured, and fitted to a width,
 /// each piece looks like a part of the whole.
@@ -134,6 +131,8 @@ pub struct Layout {
 struct Column {
     /// Of its widest cell; fitted, what it gets.
     width: usize,
+    /// Below it words would be broken.
+    least: usize,
     is_number: bool,
     is_whole: bool,
 }
@@ -141,38 +140,57 @@ struct Column {
 impl Layout {
     /// For columns of these names.
     pub fn new(names: &[&'static str]) -> Self {
-        let column = |name: &&str| Column { width: measure_text_width(name), is_number: true, is_whole: false };
+        let column = |name: &&str| {
+            let (width, least) = (measure_text_width(name), least(name));
+            Column { width, least, is_number: true, is_whole: false }
+        };
         Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
     }
 
     /// Takes note of a row.
     pub fn measure(&mut self, row: &[Cell]) {
         for (column, cell) in self.columns.iter_mut().zip(row) {
-            column.width = column.width.max(measure_text_width(&escape::line(&cell.text)));
+            let text = escape::line(&cell.text);
+            let width = measure_text_width(&text);
+            column.width = column.width.max(width);
+            column.least = column.least.max(if cell.is_whole { width } else { least(&text) });
             column.is_number = column.is_number && (cell.is_number || cell.text == "-");
             column.is_whole = column.is_whole || cell.is_whole;
         }
     }
 
-    /// Gives columns that need less than their share what they need; the others share the rest.
+    /// Blanks between columns.
+    fn gaps(&self) -> usize {
+        usize::from(PADDING) * self.columns.len().saturating_sub(1)
+    }
+
+    /// The width below which it would break words.
+    fn least(&self) -> usize {
+        let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.least });
+        words.sum::<usize>() + self.gaps()
+    }
+
+    /// Gives columns that need less than their share what they need; the others share the rest, but none gets less than its
+    /// longest word.
     #[must_use]
     pub fn fit(mut self, width: u16) -> Self {
         self.width = width;
-        let mut left = usize::from(width).saturating_sub(usize::from(PADDING) * self.columns.len());
-        let (whole, mut undecided): (Vec<_>, Vec<_>) = self.columns.iter_mut().partition(|column| column.is_whole);
-        for column in whole {
-            left = left.saturating_sub(column.width);
+        // The last column has blanks behind it, too, where there is room for them.
+        let room =
+            usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
+        let at = |column: &Column, share: usize| match column.is_whole {
+            true => column.width,
+            false => column.width.min(share.max(column.least)),
+        };
+        let total = |columns: &[Column], share| columns.iter().map(|column| at(column, share)).sum::<usize>();
+        let share = (1..=room).rev().find(|share| total(&self.columns, *share) <= room).unwrap_or(1);
+        let mut left = room.saturating_sub(total(&self.columns, share));
+        for column in &mut self.columns {
+            let more = usize::from(left > 0 && at(column, share + 1) > at(column, share));
+            left -= more;
+            column.width = at(column, share + more);
         }
-        loop {
-            let share = left / undecided.len().max(1);
-            let Some(next) = undecided.iter().position(|column| column.width <= share) else {
-                for column in undecided {
-                    column.width = share.max(1);
-                }
-                return self;
-            };
-            left -= undecided.remove(next).width;
-        }
+        self
     }
 
     /// The next rows; those of the first piece come below a header.
@@ -208,28 +226,28 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
-/// Longest run of characters that keeps together; what is longer, such as a frame in hex, is broken like nothing else.
+/// Longest run of characters that keeps together where it may be broken at all.
 const WORD: usize = 16;
 
-/// Longest address that stays whole.
-const LONGEST: usize = 60;
-
-/// The width of a column below which it would break words.
-fn least_column(table: &Table, index: usize) -> usize {
-    let of_word = |word: &str| {
-        let wide = measure_text_width(word);
-        if word.contains("://") && wide <= LONGEST { wide } else { wide.min(WORD) }
-    };
-    let of_text = |text: &str| escape::line(text).split(' ').map(of_word).max().unwrap_or_default();
-    let of_cell = |cell: &Cell| if cell.is_whole { measure_text_width(&cell.text) } else { of_text(&cell.text) };
-    let cells = table.rows.iter().map(|row| of_cell(&row[index]));
-    cells.chain([of_text(table.columns[index])]).max().unwrap_or_default()
+/// Whether a word may be broken anywhere: one without end, bytes and bits, a text in a language without blanks.
+fn may_break(word: &str) -> bool {
+    let is_digit = |byte: u8| byte.is_ascii_hexdigit() || b"?_[]".contains(&byte);
+    word.len() >= GIANT || !word.is_ascii() || word.bytes().all(is_digit)
 }
 
-/// The width below which a table would break words.
-fn least_width(table: &Table) -> usize {
-    let columns: usize = (0..table.columns.len()).map(|index| least_column(table, index)).sum();
-    columns + usize::from(PADDING) * table.columns.len()
+/// What of a word stays on a line: a list has its commas, an address is whole.
+fn pieces(word: &str) -> impl Iterator<Item = &str> {
+    let is_address = word.contains("://");
+    word.split_inclusive(move |c: char| c == ',' && !is_address)
+}
+
+/// The width of a text below which it would break words.
+fn least(text: &str) -> usize {
+    let of_piece = |piece: &str| {
+        let wide = measure_text_width(piece);
+        if may_break(piece) { wide.min(WORD) } else { wide }
+    };
+    text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
 }
 
 /// The rows one below the other, each as a list of fields: for a terminal that is too narrow for columns.
@@ -241,49 +259,49 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-/// A word from which on it is broken here, because the layout takes a time for one that grows with its square.
+/// A word without end: to break it like others takes a time that grows with its square.
 const GIANT: usize = 4096;
 
-/// Columns that a giant word may fill beside so many columns of a table, of which one is known to have this width.
-fn room(width: u16, columns: usize, known: usize) -> usize {
-    let others = if known > 0 { known } else { columns.saturating_sub(1) * WORD };
-    usize::from(width).saturating_sub(others + usize::from(PADDING) * columns).max(WORD)
-}
-
-/// The text with its giant words in lines of `room` columns.
-fn without_giants(text: Cow<'_, str>, room: usize) -> Cow<'_, str> {
-    if text.len() < GIANT || text.split(' ').all(|word| word.len() < GIANT) {
-        return text;
-    }
-    let mut broken = String::with_capacity(text.len() + text.len() / room + 1);
-    for (index, word) in text.split(' ').enumerate() {
-        if word.len() < GIANT {
-            if index > 0 && !broken.ends_with('\n') {
-                broken.push(' ');
-            }
-            broken.push_str(word);
-            continue;
-        }
-        let mut column = room;
-        for character in word.chars() {
-            let wide = if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
-            if column + wide > room {
-                if !broken.is_empty() {
-                    broken.push('\n');
-                }
+/// The text in lines of `room` columns, as far as its words allow.
+fn folded(text: &str, room: usize) -> String {
+    let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
+    let mut column = 0;
+    for (at, word) in text.split(' ').enumerate() {
+        let is_short = word.len() < GIANT && measure_text_width(word) <= room;
+        let whole = is_short.then_some(word);
+        let parts = pieces(word).filter(|_| !is_short);
+        for (part_at, part) in whole.into_iter().chain(parts).enumerate() {
+            let gap = usize::from(at > 0 && part_at == 0);
+            let wide = if part.len() < GIANT { measure_text_width(part) } else { usize::MAX / 2 };
+            if column > 0 && column + gap + wide > room {
+                out.push('\n');
                 column = 0;
+            } else if gap > 0 && (column > 0 || out.is_empty()) {
+                out.push(' ');
+                column += 1;
             }
-            column += wide;
-            broken.push(character);
+            if wide <= room || !may_break(part) {
+                out.push_str(part);
+                column += wide;
+                continue;
+            }
+            for character in part.chars() {
+                let wide =
+                    if character.is_ascii() { 1 } else { measure_text_width(character.encode_utf8(&mut [0; 4])) };
+                if column + wide > room {
+                    out.push('\n');
+                    column = 0;
+                }
+                out.push(character);
+                column += wide;
+            }
         }
-        broken.push('\n');
     }
-    broken.truncate(broken.trim_end_matches('\n').len());
-    broken.into()
+    out
 }
 
 fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
-    let shown = comfy_table::Cell::new(without_giants(escape::line(&cell.text), room));
+    let shown = comfy_table::Cell::new(folded(&escape::line(&cell.text), room));
     let shown = match cell.tone {
         Tone::Plain => shown,
         Tone::Good => shown.fg(Color::Green),
@@ -295,15 +313,18 @@ fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
 
 /// A line as wide as it is.
 pub fn painted(line: &Cell, color: bool) -> String {
-    let text = escape::line(&line.text);
-    let code = match line.tone {
-        Tone::Plain => return text.into_owned(),
-        _ if !color => return text.into_owned(),
-        Tone::Good => 32,
-        Tone::Warning => 33,
-        Tone::Bad => 31,
+    dyed(&escape::line(&line.text), line.tone, color).into_owned()
+}
+
+/// A text in the colour of its tone.
+fn dyed(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
+    let code = match tone {
+        Tone::Good if color => 32,
+        Tone::Warning if color => 33,
+        Tone::Bad if color => 31,
+        _ => return text.into(),
     };
-    format!("\x1b[{code}m{text}\x1b[0m")
+    format!("\x1b[{code}m{text}\x1b[0m").into()
 }
 
 /// `x (mm)` becomes `x_mm`, and `#` `number`.
@@ -444,6 +465,30 @@ mod tests {
     }
 
     #[test]
+    fn no_word_is_broken_at_any_width() {
+        let url = "profinet://cell-3@enp4s0?ip=192.168.1.5&cycle=16ms&watchdog=320ms&words=le&startup=advanced";
+        let list = "base:x=1000.000,y=0.000,z=1200.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=0,user=0,form=front";
+        let rows = [
+            ["TESTJOB-OF-THE-THIRD-CELL.JBI", "which synchronizes", "02:00:00:00:00:01 is up"],
+            ["short", "SYNCHRONIZING", url],
+            ["P2", list, "-"],
+        ];
+        let mut table = Table::new(&["name", "text", "where"], "");
+        rows.iter().for_each(|row| table.row(row.map(Cell::from)));
+        let fields = || rows.iter().flatten().map(|text| ("field", Cell::from(*text)));
+        for width in 40..200 {
+            for view in [View::table(table.clone()), View { sections: vec![Section::Fields(fields().collect())] }] {
+                let shown = text(&view, width, false);
+                for piece in rows.iter().flatten().flat_map(|cell| cell.split(' ')).flat_map(pieces) {
+                    assert!(shown.contains(piece), "{width}: {piece}\n{shown}");
+                }
+                let is_long = |line: &&str| line.len() > usize::from(width).max(url.len() + 2);
+                assert_eq!(shown.lines().find(is_long), None, "{width}:\n{shown}");
+            }
+        }
+    }
+
+    #[test]
     fn an_address_stays_on_a_line() {
         let mut table = Table::new(&["robot", "target", "what it says"], "");
         let url = "profinet://cell-3@enp4s0?ip=192.168.1.5";
@@ -459,9 +504,9 @@ mod tests {
         table.row(["weld1".into(), "play".into(), "stopped".into()]);
         table.row(["weld2".into(), "auto".into(), "running".into()]);
         let text = |width| text(&View::table(table.clone()), width, false);
-        assert_eq!(text(22), "ROBOT  MODE  STATE\nweld1  play  stopped\nweld2  auto  running\n");
+        assert_eq!(text(20), "ROBOT  MODE  STATE\nweld1  play  stopped\nweld2  auto  running\n");
         let list = "robot  weld1\nmode   play\nstate  stopped\n\nrobot  weld2\nmode   auto\nstate  running\n";
-        assert_eq!(text(21), list);
+        assert_eq!(text(19), list);
     }
 
     #[test]

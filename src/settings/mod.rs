@@ -3,6 +3,7 @@
 //! Flag > environment > robot > the file's `[defaults]` > built-in.
 
 pub mod alarms;
+pub mod document;
 pub mod duration;
 pub mod inventory;
 pub mod target;
@@ -105,8 +106,10 @@ pub struct Selection {
     pub sim: bool,
     /// `--target`.
     pub target: Option<Given>,
-    /// `--robot`, names or globs.
+    /// `--robot`, names or globs; without flags those of `ARMCTL_ROBOT`.
     pub robots: Vec<String>,
+    /// Whether they are those of `ARMCTL_ROBOT`.
+    pub from_environment: bool,
     /// `--tag`.
     pub tags: Vec<String>,
     /// `--all`.
@@ -117,6 +120,8 @@ pub struct Selection {
     pub sessions: Sessions,
     /// The family of a simulator where the command line does not tell it; `None` for the first one.
     pub simulated: Option<Family>,
+    /// Whether `--sim` means the simulators of all families where the command line does not tell one.
+    pub every_simulator: bool,
 }
 
 /// Which sessions commands go through.
@@ -136,13 +141,24 @@ pub enum Sessions {
 impl Selection {
     /// Whether nothing was said about robots.
     pub fn names_nobody(&self) -> bool {
-        let Self { sim, target, robots, tags, all, environment, sessions: _, simulated: _ } = self;
-        !(*sim || *all || target.is_some() || environment.is_some() || !robots.is_empty() || !tags.is_empty())
+        !self.has_flags() && self.environment.is_none() && self.robots.is_empty()
+    }
+
+    /// Whether flags say something about robots.
+    pub fn has_flags(&self) -> bool {
+        let by_name = !self.from_environment && !self.robots.is_empty();
+        self.sim || self.all || self.target.is_some() || by_name || !self.tags.is_empty()
+    }
+
+    /// Whether a flag gives this very name: what is only set somewhere may be meant for another command.
+    pub fn is_typed(&self, name: &str) -> bool {
+        !self.from_environment && self.robots.iter().any(|robot| robot == name)
     }
 
     /// Whether the command line can mean several robots, so that the answer is a list.
     pub fn is_plural(&self) -> bool {
         self.all
+            || self.sim && self.every_simulator
             || self.robots.len() > 1
             || !self.tags.is_empty()
             || self.robots.iter().any(|name| name.contains(['*', '?']))
@@ -169,8 +185,16 @@ impl Sources {
     /// The robots a command of `family` is for (of any family when `None`), at least one.
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
+        if selection.from_environment && selection.environment.is_some() {
+            return Err(Failure::usage("ARMCTL_TARGET and ARMCTL_ROBOT are both set, and each names a robot")
+                .hint("unset one of them, or name the robot with -r or -t"));
+        }
         if selection.sim {
-            return Ok(vec![self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family)?]);
+            let simulator = |family| self.unnamed(&Given::Url(Target::simulator()), Origin::Flag, family);
+            if family.is_none() && selection.every_simulator {
+                return Family::ALL.into_iter().map(|family| simulator(Some(family))).collect();
+            }
+            return Ok(vec![simulator(family)?]);
         }
         if let Some(target) = &selection.target {
             return Ok(vec![self.unnamed(target, Origin::Flag, family)?]);
@@ -188,7 +212,7 @@ impl Sources {
         let address = family.map_or("udp://HOST", Family::address);
         Err(Failure::usage("no robot selected").hint(format!(
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
-             set ARMCTL_TARGET"
+             set ARMCTL_TARGET or ARMCTL_ROBOT"
         )))
     }
 
@@ -199,9 +223,12 @@ impl Sources {
 
     /// Takes a robot by its name, or by its URL.
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
-        let Selection { sim, target, robots, tags, all, .. } = &mut self.selection;
-        if *sim || *all || target.is_some() || !robots.is_empty() || !tags.is_empty() {
+        if self.selection.has_flags() {
             return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
+        }
+        let Selection { target, robots, from_environment, .. } = &mut self.selection;
+        if std::mem::take(from_environment) {
+            robots.clear();
         }
         if robot.contains(':') || Given::is_bare(robot) {
             *target = Some(robot.parse()?);
@@ -221,6 +248,11 @@ impl Sources {
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+    }
+
+    /// The robot at an address, with every setting in force.
+    pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
+        self.unnamed(&Given::Url(target.clone()), Origin::Flag, Some(family))
     }
 
     fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
@@ -250,7 +282,8 @@ impl Sources {
                 }
             }
             if chosen.len() == before && self.inventory.matching(pattern).next().is_none() {
-                let failure = Failure::usage(format!("there is no robot '{pattern}' in the inventory"));
+                let set = if selection.from_environment { "ARMCTL_ROBOT: " } else { "" };
+                let failure = Failure::usage(format!("{set}there is no robot '{pattern}' in the inventory"));
                 if pattern.contains("://") || pattern.starts_with("sim:") {
                     return Err(failure.hint("a URL is given by -t (--target)"));
                 }

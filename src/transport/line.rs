@@ -97,7 +97,7 @@ impl<P: Peer> InProcessLine<P> {
 
 /// Both directions of a line between a host and a peer, without a clock: it is told the time.
 #[derive(Debug)]
-pub(super) struct Wire {
+pub struct Wire {
     there: Way,
     back: Way,
     has_echo: bool,
@@ -107,14 +107,14 @@ pub(super) struct Wire {
 
 impl Wire {
     /// A line that nothing is on.
-    pub(super) fn new(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
+    pub fn new(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
         let has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
         let (there, back) = faults.map(LineFaults::pair).unzip();
         Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
     }
 
     /// The host writes bytes at `now`.
-    pub(super) fn send(&mut self, now: Duration, bytes: &[u8]) {
+    pub fn send(&mut self, now: Duration, bytes: &[u8]) {
         self.there.put(now, bytes);
         if self.has_echo {
             self.back.put(now, bytes);
@@ -123,7 +123,7 @@ impl Wire {
 
     /// Has everything happen between line and peer that is due up to `now`, at the moment it is due and not when
     /// somebody looks.
-    pub(super) fn run(&mut self, now: Duration, peer: &mut impl Peer) {
+    pub fn run(&mut self, now: Duration, peer: &mut impl Peer) {
         loop {
             let due = earliest(self.there.due(), peer.wake());
             let at = due.filter(|due| *due > self.time && *due < now).unwrap_or(now);
@@ -144,7 +144,7 @@ impl Wire {
     }
 
     /// What the host has got by `now`. A character with the wrong parity reads as NUL, as from a driver.
-    pub(super) fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
+    pub fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
         let mut taken = 0;
         while let Some(piece) = self.back.next(now, buffer.len() - taken) {
             let bytes = match piece {
@@ -158,12 +158,12 @@ impl Wire {
     }
 
     /// When something may happen.
-    pub(super) fn due(&self, peer: &impl Peer) -> Option<Duration> {
+    pub fn due(&self, peer: &impl Peer) -> Option<Duration> {
         earliest(earliest(self.there.due(), self.back.due()), peer.wake())
     }
 
     /// Loses what is on its way to the host.
-    pub(super) fn lose(&mut self, now: Duration) {
+    pub fn lose(&mut self, now: Duration) {
         self.back.runs.clear();
         self.back.free = now;
     }

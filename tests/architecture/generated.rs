@@ -87,15 +87,30 @@ fn every_robot_command_has_a_schema_and_help() {
 fn no_flag_of_a_command_is_that_of_every_command() {
     // `--all` of a command would choose all robots as well. `--for` is how long, whatever it is that lasts.
     fn look(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
-        let own = || command.get_arguments().filter_map(|argument| Some((argument.get_long()?, argument)));
-        let shadowed = own().filter(|(long, _)| known.contains(*long) && *long != "for");
-        found.extend(shadowed.map(|(long, _)| format!("{path} --{long}")));
-        let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(long, _)| long.to_owned());
+        let own = || command.get_arguments().flat_map(|argument| flags(argument).map(move |flag| (flag, argument)));
+        let shadowed = own().filter(|(flag, _)| known.contains(flag) && flag != "--for");
+        found.extend(shadowed.map(|(flag, _)| format!("{path} {flag}")));
+        // One word for one thing.
+        let into_folder = own().filter(|(flag, argument)| is_folder(argument) && flag != "--dir");
+        found.extend(into_folder.map(|(flag, _)| format!("{path} {flag}: a folder is --dir")));
+        let global = own().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);
         let known: BTreeSet<String> = known.iter().cloned().chain(global).collect();
         for verb in command.get_subcommands() {
             look(verb, &known, &format!("{path} {}", verb.get_name()), found);
         }
     }
+    /// All that can be typed for it, hidden words too.
+    fn flags(argument: &clap::Arg) -> impl Iterator<Item = String> {
+        let longs = argument.get_long().into_iter().chain(argument.get_all_aliases().unwrap_or_default());
+        let shorts = argument.get_short().into_iter().chain(argument.get_all_short_aliases().unwrap_or_default());
+        longs.map(|long| format!("--{long}")).chain(shorts.map(|short| format!("-{short}")))
+    }
+
+    fn is_folder(argument: &clap::Arg) -> bool {
+        let names = argument.get_value_names().unwrap_or_default();
+        names.iter().any(|name| ["DIR", "FOLDER"].contains(&name.as_str()))
+    }
+
     let mut found = Vec::new();
     look(&armctl::cli::Cli::command(), &BTreeSet::new(), "armctl", &mut found);
     assert_eq!(found, Vec::<String>::new());

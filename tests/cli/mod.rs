@@ -38,6 +38,7 @@ transcripts! {
     fleets
     help
     information
+    inventory
     jobs
     mistakes
     moves
@@ -63,6 +64,7 @@ transcripts! {
     toyo_system
     usage
     variables
+    words
     yrcx
     yrcx_data
     yrcx_devicenet

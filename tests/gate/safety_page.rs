@@ -117,8 +117,8 @@ fn the_question_says_where_and_what_and_a_no_sends_nothing() {
         let mut asked = at_terminal(&desk, "-r cell3 yerc move relative --z -5 --speed 100mm/s");
         asked.says("REAL CONTROLLER: cell3");
         asked.says(controller.url.as_str());
-        asked.says("z=-5.000 mm");
         asked.says("100.0 mm/s");
+        asked.says("Z: 1200.000 -> 1195.000 mm");
         asked.says("Continue? [y/N]");
         asked.press(answer);
         assert_eq!(asked.end().code(), Some(exit), "{answer:?}");

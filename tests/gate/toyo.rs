@@ -2,6 +2,7 @@
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 fn desk(controller: &Simulator, more: &str) -> Desk {
     Desk::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
@@ -41,6 +42,26 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
+}
+
+#[test]
+fn a_move_to_a_point_is_asked_about_in_numbers() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "");
+    assert_eq!(desk.run("-r cell toyo point set 7=90,20,5,0 --yes").exit, Some(0));
+    desk.fails("-r cell toyo run point 7", 7, "would move the axes to point 7 of the coordinate table");
+    for (key, exit) in [("n\n", 7), ("y\n", 3)] {
+        let mut terminal = Terminal::start(desk.command("-r cell toyo run point 7"), 80, 24).unwrap();
+        for said in
+            ["REAL CONTROLLER: cell", "X: 0.00 -> 90.00 mm", "Z: 0.00 -> 5.00 mm", "The speed override is 100 %."]
+        {
+            terminal.says(said);
+        }
+        terminal.says("Continue?");
+        terminal.press(key);
+        // It has not been at its origin, and refuses.
+        assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
+    }
 }
 
 #[test]

@@ -133,6 +133,40 @@ fn a_job_that_was_not_asked_about_is_not_started() {
     }
 }
 
+/// Each axis from where it is to where it goes; whoever moves the robot meanwhile makes the answer worth nothing.
+#[test]
+fn a_motion_is_asked_about_in_numbers() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    assert_eq!(desk.run("-r cell yerc servo on --yes").exit, Some(0));
+    let line = "-r cell yerc move linear --to 1030,40,1200,180,0,0 --speed 200mm/s";
+    desk.fails(line, 7, "would move R1 in a straight line to x=1030.000 y=40.000 ");
+    for (key, meanwhile, exit) in [
+        ("n\n", None, 7),
+        ("y\n", Some("-r cell yerc move relative --z 10 --speed 200mm/s --yes"), 7),
+        ("y\n", Some("-r cell yerc move relative --z -10 --speed 200mm/s --yes --no-wait --dry-run"), 0),
+    ] {
+        let mut terminal = Terminal::start(desk.command(line), 80, 30).unwrap();
+        terminal.says("REAL CONTROLLER: cell (yerc, udp://127.0.0.1:");
+        terminal.says("This will move R1 in a straight line at 200.0 mm/s:");
+        terminal.says("X: 1000.000 -> 1030.000 mm");
+        terminal.says("Y: 0.000 -> 40.000 mm");
+        terminal.says("s at least.");
+        terminal.says("In base coordinates, tool 0, form ");
+        terminal.says("Continue?");
+        if let Some(meanwhile) = meanwhile {
+            assert_eq!(desk.run(meanwhile).exit, Some(0));
+        }
+        terminal.press(key);
+        let exit_code = terminal.end().code();
+        let written = String::from_utf8_lossy(&terminal.written).into_owned();
+        assert_eq!(exit_code, Some(exit), "{written}");
+        assert!(written.contains("\u{1b}[1;31mREAL CONTROLLER:\u{1b}[0m"), "{written}");
+        assert_eq!(written.contains("has moved since the question"), exit == 7 && meanwhile.is_some(), "{written}");
+    }
+    assert_eq!(desk.data("-r cell yerc position --coordinates base")["base"]["y_mm"], 40.0);
+}
+
 #[test]
 fn a_dry_run_goes_to_its_end() {
     let controller = Simulator::start("yerc");

@@ -2,6 +2,7 @@
 
 use super::desk::Desk;
 use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
 
 fn entry(url: &str, more: &str) -> String {
     format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\n{more}\n")
@@ -12,6 +13,36 @@ fn held(controller: &Simulator) -> Desk {
     let desk = Desk::new(&entry(&controller.url, ""));
     assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
     desk
+}
+
+#[test]
+fn a_motion_through_a_session_is_asked_about_in_numbers() {
+    let controller = Simulator::start("yrcx");
+    let desk = held(&controller);
+    assert_eq!(desk.run("-r cell yrcx point set 19 mm=30,40,0,90 --yes").exit, Some(0));
+    assert_eq!(desk.run("-r cell yrcx origin --yes").exit, Some(0));
+    for (line, said) in [
+        ("move --point 19 --speed 20", &["axis 1: 0.000 -> 30.000 mm", "The target is 50.000 mm away."][..]),
+        ("drive --axis 3 --to 10.5", &["axis 3: 0.000 -> 10.500 mm"]),
+        ("move --point 77", &["Where the point is could not be read."]),
+        ("movei --by 1,2,3,4", &["This will move robot 1 by axis 1: 1 mm, axis 2: 2 mm"]),
+    ] {
+        desk.fails(&format!("-r cell yrcx {line}"), 7, "would move ");
+        let mut terminal = Terminal::start(desk.command(&format!("-r cell yrcx {line}")), 100, 24).unwrap();
+        terminal.says("REAL CONTROLLER: cell (yrcx, ");
+        said.iter().for_each(|said| terminal.says(said));
+        terminal.says("Continue?");
+        terminal.press("n\n");
+        assert_eq!(terminal.end().code(), Some(7), "{line}");
+    }
+    // A point that was taught anew meanwhile is another one.
+    for (x, exit) in [("30", 0), ("31", 7)] {
+        let mut terminal = Terminal::start(desk.command("-r cell yrcx move --point 19"), 100, 24).unwrap();
+        terminal.says("Continue?");
+        assert_eq!(desk.run(&format!("-r cell yrcx point set 19 mm={x},40,0,90 --yes")).exit, Some(0));
+        terminal.press("y\n");
+        assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The master of the package pyprofibus (1.13, with pyserial) drives a slave on a terminal until images came back.
 
-usage: master.py TERMINAL  - ends with exit code 0 once the slave has exchanged 20 images of 48 bytes each way.
+usage: master.py TERMINAL [COUNT]  - ends with exit code 0 once the slave has exchanged so many images of 48 bytes each way, 20
+if not told.
 """
 
 import sys
@@ -35,8 +36,9 @@ def main():
     master.initialize()
     image = bytearray(48)
     image[32] = 0x41
+    wanted = int(sys.argv[2]) if len(sys.argv) > 2 else 20
     exchanged, end = 0, time.monotonic() + DEADLINE
-    while exchanged < 20 and time.monotonic() < end:
+    while exchanged < wanted and time.monotonic() < end:
         slave.setMasterOutData(bytes(image))
         master.run()
         shown = slave.getMasterInData()
@@ -46,7 +48,7 @@ def main():
             exchanged += 1
     master.destroy()
     print("exchanged:", exchanged)
-    sys.exit(0 if exchanged >= 20 else 1)
+    sys.exit(0 if exchanged >= wanted else 1)
 
 
 main()

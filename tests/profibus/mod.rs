@@ -1,9 +1,15 @@
 //! PROFIBUS against ends that share nothing with ours: a strict slave in Python, and the master of PyPI's `pyprofibus`. Both
 //! run beside the binary, on pseudo-terminals; where Python or the package is missing, the tests say that they are skipped.
 
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::PathBuf;
 use std::process::{Child, ChildStdout, Command, Output, Stdio};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use serialport::{SerialPort, TTYPort};
 
 /// A program that says on its first line where it is, and is ended with this.
 struct Running {
@@ -89,4 +95,97 @@ fn the_master_of_pyprofibus_exchanges_images_with_our_simulator() {
     let python = folder.join("profibus/bin/python");
     let driven = Command::new(python).arg(script("master.py")).arg(port).output().expect("it runs");
     assert!(driven.status.success(), "{}", text(&driven));
+}
+
+/// A line with three ends: a slave, a master, and one that hears all of it. Pseudo-terminals have two.
+struct Line {
+    is_over: Arc<AtomicBool>,
+    threads: Vec<JoinHandle<()>>,
+    /// How many bytes came from the one that hears.
+    said: Arc<AtomicUsize>,
+}
+
+impl Line {
+    /// To the slave at this port; gives the ports of the master and of the other one.
+    fn to(slave: &str) -> (Self, String, String) {
+        let slave = serialport::new(slave, 115_200).open_native().expect("the simulator's port opens");
+        let [(master, of_master), (other, of_other)] = [(), ()].map(|()| {
+            let (near, far) = TTYPort::pair().expect("a pseudo-terminal");
+            let name = far.name().expect("it has a name");
+            // It has a lock as long as it is open.
+            drop(far);
+            (near, name)
+        });
+        let shared = |port: &TTYPort| Arc::new(Mutex::new(port.try_clone_native().expect("it can be cloned")));
+        let (to_slave, to_master, to_other) = (shared(&slave), shared(&master), shared(&other));
+        let (is_over, said) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicUsize::new(0)));
+        let counted = Arc::clone(&said);
+        let copy = |mut from: TTYPort, to: Vec<Arc<Mutex<TTYPort>>>, count: Option<Arc<AtomicUsize>>| {
+            let over = Arc::clone(&is_over);
+            from.set_timeout(Duration::from_millis(10)).expect("a time-out");
+            std::thread::spawn(move || {
+                let mut buffer = [0; 512];
+                while !over.load(Ordering::SeqCst) {
+                    // An error while nobody has the other end open.
+                    let len = from.read(&mut buffer).unwrap_or(0);
+                    if len == 0 {
+                        std::thread::yield_now();
+                    }
+                    if let Some(count) = &count {
+                        count.fetch_add(len, Ordering::SeqCst);
+                    }
+                    for port in &to {
+                        let _ = port.lock().expect("nobody panics with it").write_all(&buffer[..len]);
+                    }
+                }
+            })
+        };
+        let threads = vec![
+            copy(slave, vec![to_master, Arc::clone(&to_other)], None),
+            copy(master, vec![to_slave, to_other], None),
+            copy(other, Vec::new(), Some(counted)),
+        ];
+        (Self { is_over, threads, said }, of_master, of_other)
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::SeqCst);
+        for thread in self.threads.drain(..) {
+            // One that panicked has said so already.
+            let _ = thread.join();
+        }
+    }
+}
+
+#[test]
+fn a_listener_sees_the_images_of_a_live_exchange_and_sends_nothing() {
+    let mut simulator = Running::start(armctl().args(["sim", "yrcx", "--bus", "profibus"]));
+    let said = simulator.line();
+    let port = said.split("profibus://").nth(1).and_then(|rest| rest.split('?').next()).expect("a port");
+    let (line, master, listener) = Line::to(port);
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |url: &str, arguments: &[&str]| {
+        let mut command = armctl();
+        command.env("XDG_RUNTIME_DIR", folder.path()).args(["-t", url]).args(arguments);
+        let output = command.output().expect("it runs");
+        (text(&output), output.status.code())
+    };
+    let owner = format!("profibus://{master}?station=5&baud=500k&slot=500ms&watchdog=60s");
+    let listens = format!("profibus://{listener}?station=5&baud=500k&role=listen");
+    let opened = run(&owner, &["--yes", "session", "open", "--background"]);
+    assert_eq!(opened.1, Some(0), "{opened:?}");
+    for (shown, expected) in [("on", "emergency-stop    off"), ("off", "cpu-ok            on")] {
+        let set = run(&owner, &["yrcx", "io", "set", &format!("20={shown}")]);
+        assert_eq!(set.1, Some(0), "{set:?}");
+        let seen = run(&listens, &["yrcx", "io", "get"]);
+        assert!(seen.0.contains(expected) && seen.1 == Some(0), "{seen:?}");
+    }
+    let checked = run(&listens, &["robots", "check"]);
+    assert!(checked.0.contains("nothing is sent") && checked.0.contains("heard in the answers"), "{checked:?}");
+    let refused = run(&listens, &["--yes", "yrcx", "info", "servo"]);
+    assert!(refused.0.contains("needs a connection that commands") && refused.1 == Some(2), "{refused:?}");
+    let closed = run(&owner, &["session", "close"]);
+    assert_eq!((closed.1, line.said.load(Ordering::SeqCst)), (Some(0), 0), "{closed:?}");
 }

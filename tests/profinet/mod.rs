@@ -81,6 +81,36 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
     well_recorded(&format!("{place}/trace.pcapng"));
 }
 
+/// A controller and a client of DCP that others wrote, and a simulator on the other card.
+const DRIVEN: &str = r#"
+$THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
+until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
+for words in yrcx 'yrcx class2'; do "$PEERS/bin/python" "$SCRIPTS/controller.py" pc0 yrcx-sim $words 2>&1; done
+"$PEERS/bin/python" "$SCRIPTS/dcp.py" 192.168.79.1 yrcx-sim 2>&1
+kill $D
+wait $D
+"#;
+
+#[test]
+fn controllers_that_others_wrote_command_the_simulated_device() {
+    let Some(peers) = std::env::var_os("ARMCTL_PROFINET_PEERS") else {
+        println!("skipped: ARMCTL_PROFINET_PEERS does not name a folder of tests/profinet/install");
+        return;
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().to_str().expect("its path is UTF-8");
+    let peers = peers.to_str().expect("its path is UTF-8");
+    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/profinet");
+    let variables =
+        [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place), ("PEERS", peers), ("SCRIPTS", scripts)];
+    let Some(text) = namespaces::run(DRIVEN, &variables) else {
+        println!("{}", namespaces::SKIPPED);
+        return;
+    };
+    assert_eq!(text.matches("profinet-py has run a remote command").count(), 2, "{text}");
+    assert!(text.contains("pnio-dcp has seen all"), "{text}");
+}
+
 /// A record that tshark reads whole, with cyclic data taken apart as Connect said, where it is installed.
 fn well_recorded(path: &str) {
     let tshark = |arguments: &[&str]| {

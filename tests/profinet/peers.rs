@@ -49,14 +49,18 @@ exit $R
 
 #[test]
 fn our_controller_runs_a_device_that_others_wrote() {
-    if !run("others") {
-        println!("{}", namespaces::SKIPPED);
+    match run("others") {
+        Some(text) => assert!(text.contains(TRIPPED), "{text}"),
+        None => println!("{}", namespaces::SKIPPED),
     }
 }
 
+/// What the device that others wrote says when its controller falls silent.
+const TRIPPED: &str = "the device's watchdog has expired";
+
 #[test]
 fn our_controller_finds_asks_and_runs_our_device() {
-    if !run("our") {
+    if run("our").is_none() {
         println!("{}", namespaces::SKIPPED);
     }
 }
@@ -75,22 +79,23 @@ fn a_client_of_dcp_that_others_wrote_finds_and_names_our_device() {
 fn run_theirs(name: &str) {
     if std::env::var_os(PEERS).is_none() {
         println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
-    } else if !run(name) {
+    } else if run(name).is_none() {
         println!("{}", namespaces::SKIPPED);
     }
 }
 
 const PEERS: &str = "ARMCTL_PROFINET_PEERS";
 
-/// Runs the two ends of this name, and wants the controller's to come to its end; false where that cannot be.
-fn run(name: &str) -> bool {
+/// Runs the two ends of this name, and wants the controller's to come to its end; gives what was said, or `None` where
+/// that cannot be.
+fn run(name: &str) -> Option<String> {
     let program = std::env::current_exe().expect("this program has a path");
     let program = program.to_str().expect("the path is UTF-8");
     let folder = tempfile::tempdir().expect("a folder can be made");
     let capture = folder.path().join("all.pcapng");
     let capture = capture.to_str().expect("the path is UTF-8");
     let variables = [("PROGRAM", program), ("NAME", name), ("CAPTURE", capture)];
-    let Some(text) = namespaces::run(ENDS, &variables) else { return false };
+    let text = namespaces::run(ENDS, &variables)?;
     assert!(text.contains("the controller has seen all"), "{text}");
     // Not what others sent; and ICMP is what systems say of ports that are closed.
     let ours = if ["others", "our"].contains(&name) { "02:00:00:00:00:01" } else { "02:00:00:00:00:02" };
@@ -107,14 +112,15 @@ fn run(name: &str) -> bool {
         }
         None => println!("no tshark here to read what passed"),
     }
-    true
+    Some(text)
 }
 
 fn is_an_end() -> bool {
     std::env::var_os("ROLE").is_some()
 }
 
-/// Shows back what it is shown, and raises a diagnosis while the first word says so.
+/// Shows back what it is shown, raises a diagnosis while the first word says so, and tells of a controller that fell
+/// silent.
 #[test]
 #[ignore = "one end of a test above"]
 fn others_device() {
@@ -134,9 +140,13 @@ fn others_device() {
     let options =
         StartOptions { iface: "pd0".to_owned(), ip: [192, 168, 79, 2], rt: Some(rt), app_cpus: None, im_store: None };
     let device = IoDevice::start(config, options).unwrap();
-    let mut is_raised = false;
+    let (mut is_raised, mut is_told) = (false, false);
     loop {
         std::thread::park_timeout(Duration::from_millis(2));
+        if !is_told && device.rt_stats().snapshot().watchdog_expirations > 0 {
+            is_told = true;
+            println!("{TRIPPED}");
+        }
         if !device.ready() {
             continue;
         }
@@ -208,6 +218,14 @@ fn others_controller() {
         let counted = connection.view().statistics;
         println!("{counted:?}");
         assert_eq!((connection.view().generation, counted.losses, counted.stale), (1, 0, 0));
+
+        // A program that stands still sends nothing: both ends give up, and begin anew.
+        let pause = format!("kill -STOP {0}; sleep 4; kill -CONT {0}", std::process::id());
+        let mut pause = Command::new("sh").args(["-c", &pause]).spawn().unwrap();
+        let lost = connection.until(|view| view.statistics.losses == 1).await;
+        println!("after a pause: {:?}", lost.trouble);
+        connection.until(|view| view.state == State::Open && view.generation == 2).await;
+        pause.wait().unwrap();
         connection.close().await.unwrap();
 
         // Once more at once: the release has freed it.
@@ -270,7 +288,10 @@ fn our_device() {
         let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
         if wants_stop {
             server.with(|device, _| device.set_fault(Some(Fault::Stop)));
-            std::thread::park_timeout(Duration::from_millis(200));
+            // Until the controller has seen it and let go, however long that takes.
+            while server.with(|device, _| device.application().0.first() == Some(&0x55)) {
+                std::thread::park_timeout(Duration::from_millis(5));
+            }
             server.with(|device, _| device.set_fault(None));
         }
         std::thread::park_timeout(Duration::from_millis(5));

@@ -162,7 +162,7 @@ mod tests {
     fn bash_gets_what_it_puts_in_the_place_of_its_piece() {
         assert_eq!(bash("armctl yerc job se", "se", None), "+select\n");
         assert_eq!(bash("yerc job se", "se", None), "+select\n");
-        assert_eq!(bash("armctl --format=js", "js", None), "+json\n+jsonl\n");
+        assert_eq!(bash("armctl --output=js", "js", None), "+json\n+jsonl\n");
         assert_eq!(bash("armctl -t si", "si", None), "-sim:\n");
         assert_eq!(bash("armctl -t sim: yerc st", "st", None), "+status\n");
         assert_eq!(bash("armctl explain y", "y", Some(80)).lines().count(), 2);

@@ -18,7 +18,7 @@ fn words_and_flags_are_those_of_the_command() {
         ("armctl yerc job select --li", &["--line"]),
         ("armctl -o j", &["json", "jsonl"]),
         ("armctl -oj", &["-ojson", "-ojsonl"]),
-        ("armctl --format=c", &["--format=csv"]),
+        ("armctl --output=c", &["--output=csv"]),
         ("armctl explain y", &["yerc", "yrcx"]),
         ("armctl nonsense x", &[]),
         ("armctl yerc --help job ", &[]),

@@ -3,13 +3,15 @@
 /// What is typed, without the family, and the commands that do it.
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
-    ("add", &["robots add"]),
+    ("add", &["setup", "robots add"]),
     ("alarm", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
-    ("config", &["robots list"]),
+    ("config", &["robots list", "robots edit"]),
+    ("configure", &["setup"]),
     ("connect", &["repl", "session open"]),
     ("delete", &["yerc file delete", "toyo program delete"]),
     ("dir", &["yerc file list", "toyo program list"]),
     ("download", &["yerc file get", "toyo program get", "yrcx backup"]),
+    ("edit", &["robots edit"]),
     ("error", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
     ("errors", &["yerc alarm history", "yrcx alarm history", "toyo alarm history"]),
     ("estop", &["yerc hold on", "yrcx emergency-stop", "toyo stop"]),
@@ -36,6 +38,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("power", &["yerc servo", "yrcx power-on", "toyo servo"]),
     ("programs", &["yerc file list", "toyo program list"]),
     ("remove", &["yerc file delete", "toyo program delete"]),
+    ("rename", &["robots rename"]),
     ("reset", &["yerc alarm reset", "yrcx alarm reset", "toyo alarm reset"]),
     ("rm", &["yerc file delete", "toyo program delete"]),
     ("run", &["yerc job start", "yrcx run", "toyo run"]),

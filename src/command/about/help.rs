@@ -3,7 +3,7 @@
 use clap::builder::StyledStr;
 use clap::{Args, Command};
 
-use super::page;
+use super::{environment, page};
 use crate::command::ValueKind;
 use crate::command::face::Face;
 use crate::command::families::FAMILIES;
@@ -14,7 +14,7 @@ use crate::failure::{Failure, Kind};
 /// Explains a topic, or a command.
 #[derive(Debug, Args)]
 pub struct Help {
-    /// A topic (options, exit-codes, targets, inventory, output, safety, scripting, sessions, repl, batch,
+    /// A topic (options, exit-codes, environment, targets, inventory, output, safety, scripting, sessions, repl, batch,
     /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
@@ -43,6 +43,9 @@ const SIMULATOR: &str = "simulator";
 /// The topic that is made from the table of failures.
 const EXIT_CODES: &str = "exit-codes";
 
+/// The topic that is made from the table of variables.
+const ENVIRONMENT: &str = "environment";
+
 /// The topic that is made from the flags of every command.
 const OPTIONS: &str = "options";
 
@@ -55,7 +58,11 @@ impl Help {
 
 /// Every topic with a line about it.
 pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
-    let made = [(OPTIONS, "those of every command"), (EXIT_CODES, "what the exit codes mean")];
+    let made = [
+        (OPTIONS, "those of every command"),
+        (EXIT_CODES, "what the exit codes mean"),
+        (ENVIRONMENT, "variables that count"),
+    ];
     let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
     made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
@@ -76,6 +83,9 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
     if let [word] = words {
         if word == EXIT_CODES {
             return Ok(exit_codes());
+        }
+        if word == ENVIRONMENT {
+            return Ok(environment::text());
         }
         if let Some((.., text)) = TOPICS.iter().find(|(name, ..)| name == word) {
             let examples = if word == SIMULATOR { start_states() } else { String::new() };

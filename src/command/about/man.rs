@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use clap::{Args, Command};
 
-use super::page;
+use super::{environment, page};
 use crate::command::frame::run::Run;
 use crate::command::leaves;
 use crate::failure::{Failure, Kind};
@@ -113,6 +113,13 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
         }
     } else {
         writeln!(text, "0 when done, 2 for a wrong command line; the others stand in \\fBarmctl\\fR(1).")?;
+    }
+    if path.is_empty() {
+        writeln!(text, ".SH ENVIRONMENT")?;
+        for (name, what) in environment::VARIABLES {
+            writeln!(text, ".TP\n{name}\n{}", escaped(what))?;
+        }
+        writeln!(text, ".PP\n{}", escaped(environment::ORDER))?;
     }
     let see =
         see_also(root, command, path).iter().map(|name| format!("\\fB{}\\fR(1)", escaped(name))).collect::<Vec<_>>();

@@ -7,6 +7,7 @@ use clap::builder::StyledStr;
 use clap::{Arg, Command};
 
 use crate::command::face::words::Headings;
+use crate::command::frame::setting::Pair;
 use crate::command::leaves;
 
 /// The line that stands for the options of every command.
@@ -69,6 +70,9 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
     let notes = command.get_after_help().map(|notes| notes.ansi().to_string());
     if let (Some(notes), true) = (&notes, is_long || command.has_subcommands()) {
         let _ = writeln!(after, "{notes}\n");
+    }
+    if Pair::of(&command).is_some() {
+        let _ = writeln!(after, "A name and its value may be one word: NAME=VALUE.\n");
     }
     let examples: Vec<&str> =
         if command.has_subcommands() { Vec::new() } else { leaves::examples(path).take(3).collect() };

@@ -19,6 +19,7 @@ use serde_json::{Value, json};
 
 use super::Report;
 use super::backup::manifest::{LeftOut, MANIFEST, Saved, State};
+use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::inventory::fits;
@@ -50,11 +51,13 @@ impl Only {
 
     /// Refuses patterns that fit nothing, as mistyped ones do.
     pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
-        match self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref()))) {
-            Some(pattern) => Err(Failure::usage(format!("nothing is called '{pattern}'"))
-                .hint("--only takes names as the backup lists them, with * and ?, such as 'points*' or '*.JBI'")),
-            None => Ok(()),
-        }
+        let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| fits(pattern, name.as_ref())));
+        let Some(pattern) = unknown else { return Ok(()) };
+        let near = nearest(pattern, names.iter().map(AsRef::as_ref));
+        let near = near.map_or(String::new(), |near| format!("did you mean {near}? "));
+        Err(Failure::usage(format!("nothing is called '{pattern}'")).hint(format!(
+            "{near}--only takes names as the backup lists them, with * and ?, such as 'points*' or '*.JBI'"
+        )))
     }
 }
 

@@ -3,13 +3,11 @@
 
 pub mod capture;
 
-use std::path::Path;
-
 use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use self::capture::{CaptureDecoder, Selection};
+use self::capture::{CaptureDecoder, Input, Selection};
 use super::frame::run::{Run, RunError};
 use super::{Report, SchemaEntry};
 use crate::failure::{Failure, Kind};
@@ -27,8 +25,8 @@ pub trait Decode {
     /// What finds messages in a capture file.
     type Capture: CaptureDecoder;
 
-    /// The capture file, where one is given, and what decodes it.
-    fn capture(&self) -> Option<(&Path, Self::Capture)>;
+    /// The capture, where one is given, and what decodes it.
+    fn capture(&self) -> Result<Option<(Input<'_>, Self::Capture)>, Failure>;
 
     /// What of the file is shown.
     fn selection(&self) -> &Selection;
@@ -44,8 +42,8 @@ pub trait Decode {
 
 /// Decodes what is given, and prints it.
 pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
-    if let Some((path, decoder)) = arguments.capture() {
-        return capture::print(run, D::CAPTURE_ID, path, arguments.selection(), decoder);
+    if let Some((input, decoder)) = arguments.capture()? {
+        return capture::print(run, D::CAPTURE_ID, &input, arguments.selection(), decoder);
     }
     if arguments.needs_capture() {
         let failure = Failure::usage("--frame and the other flags for capture files need one");
@@ -62,11 +60,15 @@ pub fn schemas<D: Decode>() -> [SchemaEntry; 2] {
 
 /// What stands on stdin; bytes that are no text are replaced, and then told as such.
 pub fn stdin() -> Result<String, Failure> {
+    Ok(String::from_utf8_lossy(&stdin_bytes()?).into_owned())
+}
+
+/// The same as it is.
+pub fn stdin_bytes() -> Result<Vec<u8>, Failure> {
     /// Room for thousands of frames.
     const MOST: u64 = 16 << 20;
 
-    let bytes = files::stdin(MOST).context("stdin")?;
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    Ok(files::stdin(MOST).context("stdin")?)
 }
 
 /// A field of a message: an object in JSON, a row of a table.

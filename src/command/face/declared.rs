@@ -119,6 +119,10 @@ impl<F: Declaration> Face for Declared<F> {
         F::SETUP
     }
 
+    fn simulator(&self) -> &'static str {
+        F::Serve::TARGET
+    }
+
     fn start_state(&self) -> &'static str {
         F::START_STATE
     }

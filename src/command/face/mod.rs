@@ -36,6 +36,8 @@ pub trait Face: Sync {
     fn codes(&self) -> Vec<(String, String)>;
     /// The topic `NAME-setup` of `help`: a line about it, and its text.
     fn setup(&self) -> (&'static str, &'static str);
+    /// The URL of the simulator that `sim` serves without arguments.
+    fn simulator(&self) -> &'static str;
     /// The start state of a simulator, as an example.
     fn start_state(&self) -> &'static str;
 

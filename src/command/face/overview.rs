@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::sample::Alarm;
 use crate::command::Report;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
@@ -24,13 +25,49 @@ pub struct OverviewReport {
     pub alarm: Option<bool>,
     /// An error is present.
     pub error: Option<bool>,
+    /// Which alarm or error it is.
+    #[serde(flatten)]
+    pub fault: Fault,
     /// The first robot in base coordinates.
     pub position: Option<PositionMm>,
     /// Why the position was not asked (yrcx without a session); null where it was.
     pub not_asked: Option<&'static str>,
+    /// The family, for the table; envelopes have it.
+    #[serde(skip)]
+    pub family: &'static str,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
+}
+
+/// What is wrong with a controller, under the same names in every family.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
+pub struct Fault {
+    /// Whether an alarm or error is present; null if that is not known.
+    pub faulted: Option<bool>,
+    /// Its code as the controller writes it, such as `4315`, `12.600` or `28`; null without one, or where it was not told.
+    pub fault_code: Option<String>,
+    /// What it says; null like the code.
+    pub fault_text: Option<String>,
+}
+
+impl Fault {
+    /// Whether there is one, and the first of those that are present, where it was told.
+    pub fn new(is_present: bool, first: Option<&Alarm>) -> Self {
+        let first = first.filter(|_| is_present);
+        Self {
+            faulted: Some(is_present),
+            fault_code: first.map(|alarm| alarm.code.clone()).filter(|code| code != Alarm::UNREADABLE),
+            fault_text: first.map(|alarm| alarm.text.clone()).filter(|text| !text.is_empty()),
+        }
+    }
+
+    /// Code and text, as far as they are known.
+    pub fn told(&self) -> Option<String> {
+        let parts = [&self.fault_code, &self.fault_text];
+        let told = parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ");
+        Some(told).filter(|told| !told.is_empty())
+    }
 }
 
 /// A place in base coordinates.
@@ -44,12 +81,24 @@ pub struct PositionMm {
     pub z_mm: f64,
 }
 
+impl OverviewReport {
+    /// What is wrong with it, in a few words; `None` if nothing is.
+    pub fn trouble(&self) -> Option<String> {
+        if self.fault.faulted != Some(true) {
+            return None;
+        }
+        let kind = if self.alarm == Some(true) { "alarm" } else { "error" };
+        Some(self.fault.told().unwrap_or_else(|| kind.to_owned()))
+    }
+}
+
 impl Report for OverviewReport {
     fn view(&self) -> View {
-        let mut table = Table::new(&["reachable", "mode", "servo", "state", "alarm", "x y z (mm)"], "");
+        let mut table = Table::new(&["family", "mode", "servo", "state", "alarm", "x y z (mm)"], "");
         if !self.reachable {
             let dash = || Cell::from("-");
-            table.row([Cell::from("no").tone(Tone::Bad), dash(), dash(), dash(), dash(), dash()]);
+            let silent = Cell::from("no answer").tone(Tone::Bad);
+            table.row([self.family.into(), dash(), dash(), silent, dash(), dash()]);
             return View::table(table);
         }
         let state = match (self.held, self.running) {
@@ -57,14 +106,11 @@ impl Report for OverviewReport {
             (_, Some(true)) => Cell::from("running").tone(Tone::Good),
             _ => "stopped".into(),
         };
-        let alarm = match (self.alarm, self.error) {
-            (Some(true), _) => Cell::from("alarm").tone(Tone::Bad),
-            (_, Some(true)) => Cell::from("error").tone(Tone::Bad),
-            _ => "none".into(),
-        };
-        let position = self.position.as_ref().map(|at| format!("{:.3} {:.3} {:.3}", at.x_mm, at.y_mm, at.z_mm));
+        let alarm = self.trouble().map_or_else(|| "none".into(), |told| Cell::from(told).tone(Tone::Bad));
+        // To a tenth, as a screen of 80 columns has room for the alarm as well; JSON has it whole.
+        let position = self.position.as_ref().map(|at| format!("{:.1} {:.1} {:.1}", at.x_mm, at.y_mm, at.z_mm));
         table.row([
-            Cell::from("yes").tone(Tone::Good),
+            self.family.into(),
             Cell::maybe(self.mode),
             Cell::maybe(self.servo_on.map(Cell::switch)),
             state,

@@ -40,6 +40,11 @@ pub struct Alarm {
     pub remedy: String,
 }
 
+impl Alarm {
+    /// The code of one that the controller has and does not tell.
+    pub const UNREADABLE: &str = "?";
+}
+
 /// All that a screen has room for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Whole {

@@ -3,6 +3,7 @@
 pub mod backup;
 pub mod robots;
 pub mod session;
+pub mod setup;
 pub mod status;
 pub mod tools;
 pub mod top;

@@ -2,24 +2,20 @@
 
 pub mod check;
 pub mod discover;
+pub mod edit;
+pub mod entry;
+pub mod file;
 
-use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
-use toml_edit::{ArrayOfTables, DocumentMut, Item, value};
 
+use self::entry::known;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::frame::run::{Run, RunError};
-use crate::controller::nearest::nearest;
-use crate::failure::{Failure, Kind};
-use crate::files;
-use crate::output::busy::busy;
-use crate::output::jq::after_a_change;
 use crate::output::view::{Table, View};
-use crate::settings::inventory::{Inventory, is_name};
-use crate::settings::target::{Family, Given};
+use crate::settings::inventory::Inventory;
 use crate::settings::{Setting, duration};
 
 /// What can be done with the inventory.
@@ -29,10 +25,20 @@ pub enum Robots {
     List,
     /// Show the effective settings of a robot
     Show(Show),
-    /// Add a robot
-    Add(Add),
+    /// Add a robot; `armctl setup` asks for all of it
+    Add(entry::Add),
+    /// Change settings of a robot
+    Set(entry::Set),
+    /// Give a robot another name
+    Rename(entry::Rename),
+    /// Choose the robot that is taken when none is named
+    Default(entry::Default),
     /// Remove a robot
-    Remove(Remove),
+    Remove(entry::Remove),
+    /// Open the inventory in an editor, and check it before it counts
+    Edit,
+    /// Print where the inventory is
+    Path,
     /// Diagnose a connection step by step
     Check(check::Check),
     /// Which controllers answer on the network, and which serial ports are there
@@ -50,43 +56,15 @@ pub struct Show {
     origin: bool,
 }
 
-/// Arguments of `robots add`.
-#[derive(Debug, Args)]
-pub struct Add {
-    /// Its name
-    name: String,
-    /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
-    #[arg(add = ValueKind::Url)]
-    url: Given,
-    /// Its family, where the URL does not tell
-    #[arg(long, add = ValueKind::Family)]
-    family: Option<Family>,
-    /// Take read commands only
-    #[arg(long)]
-    read_only: bool,
-    /// Have the first command that needs a command connection open a session for it (yrcx)
-    #[arg(long)]
-    hold: bool,
-    /// A word to choose it by (repeatable)
-    #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
-    tags: Vec<String>,
-    /// Make it the robot that is taken when none is named
-    #[arg(long)]
-    default: bool,
-}
-
-/// Arguments of `robots remove`.
-#[derive(Debug, Args)]
-pub struct Remove {
-    /// Its name
-    #[arg(add = ValueKind::Robot)]
-    name: String,
-}
-
 impl Robots {
     /// Whether it makes the file where there is none.
     pub fn makes_inventory(&self) -> bool {
         matches!(self, Self::Add(_))
+    }
+
+    /// Whether it is about the file, whatever is in it.
+    pub fn is_about_file(&self) -> bool {
+        matches!(self, Self::Edit | Self::Path)
     }
 
     /// Does it.
@@ -96,7 +74,12 @@ impl Robots {
             Self::List => run.local("robots.list", &List::of(inventory)),
             Self::Show(show) => show.run(run),
             Self::Add(add) => add.run(run),
+            Self::Set(set) => set.run(run),
+            Self::Rename(rename) => rename.run(run),
+            Self::Default(default) => default.run(run),
             Self::Remove(remove) => remove.run(run),
+            Self::Edit => edit::edit(run),
+            Self::Path => edit::path(run),
             Self::Check(check) => run.robots(&check).await,
             Self::Discover(discover) => discover.run(run).await,
         }
@@ -129,127 +112,6 @@ impl Show {
 /// A setting as a row.
 fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String) -> Value {
     Value { name, value: show(&setting.value), origin: setting.origin.to_string() }
-}
-
-impl Add {
-    fn run(self, run: &Run) -> Result<(), RunError> {
-        if !is_name(&self.name) {
-            return Err(Failure::usage(format!("'{}' is not a valid robot name", self.name))
-                .hint("use letters, digits, '-', '_' and '.'")
-                .into());
-        }
-        if run.sources.inventory.robots.iter().any(|robot| robot.name == self.name) {
-            return Err(Failure::usage(format!("there is a robot '{}' already", self.name))
-                .hint(format!("`armctl robots remove {}` removes it", self.name))
-                .into());
-        }
-        let url = self.url.of(self.family)?;
-        let Some(family) = self.family.or(url.family()) else {
-            let failure = Failure::usage(format!("'{url}' does not tell the family"));
-            return Err(failure.hint("add --family yerc or --family toyo").into());
-        };
-        url.check(family)
-            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
-        let file = edit(run, |document| {
-            let mut robot = toml_edit::Table::new();
-            robot["name"] = value(&self.name);
-            robot["target"] = value(url.url());
-            if url.family().is_none() {
-                robot["family"] = value(family.name());
-            }
-            if self.read_only {
-                robot["read_only"] = value(true);
-            }
-            if self.hold {
-                robot["hold"] = value(true);
-            }
-            if !self.tags.is_empty() {
-                robot["tags"] = value(self.tags.iter().collect::<toml_edit::Array>());
-            }
-            let list = document.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
-            let list = list.as_array_of_tables_mut().ok_or("`robot` is no list of [[robot]] tables")?;
-            list.push(robot);
-            if self.default || list.len() == 1 {
-                document["default"] = value(&self.name);
-            }
-            Ok(())
-        })?;
-        let target = url.url().to_owned();
-        told(run.local("robots.add", &Changed { done: "added", name: self.name, target, file }))
-    }
-}
-
-impl Remove {
-    fn run(self, run: &Run) -> Result<(), RunError> {
-        let target = known(&run.sources.inventory, &self.name)?.target.url().to_owned();
-        let file = edit(run, |document| {
-            let list = document.get_mut("robot").and_then(Item::as_array_of_tables_mut);
-            let list = list.ok_or("`robot` is no list of [[robot]] tables")?;
-            list.retain(|robot| robot.get("name").and_then(Item::as_str) != Some(&self.name));
-            if document.get("default").and_then(Item::as_str) == Some(&self.name) {
-                document.remove("default");
-            }
-            Ok(())
-        })?;
-        told(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
-    }
-}
-
-/// What was changed is changed, also where that could not be reported.
-fn told(reported: Result<(), RunError>) -> Result<(), RunError> {
-    reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
-}
-
-/// Changes the file and keeps its comments; it is written beside and renamed. What comes back is where it is.
-fn edit(run: &Run, change: impl FnOnce(&mut DocumentMut) -> Result<(), &'static str>) -> Result<String, Failure> {
-    let path = run.sources.inventory.path.as_deref().ok_or_else(|| {
-        Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
-    })?;
-    let _busy = busy();
-    // Others may be changing it: what is read is what is replaced.
-    let _turn = files::turn(path).with_context(|| path.display().to_string())?;
-    let text = match files::text(path, files::SETTINGS) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-        text => text.with_context(|| path.display().to_string())?,
-    };
-    let wrong = |why: &dyn std::fmt::Display| {
-        Failure::usage(format!("{}: {why}", path.display()))
-            .hint("correct the file: `armctl help inventory` shows its form")
-    };
-    let mut document: DocumentMut = text.parse().map_err(|error| wrong(&error))?;
-    change(&mut document).map_err(|why| wrong(&why))?;
-    let text = document.to_string();
-    // What would not be read again is not written.
-    Inventory::parse(&text, &path.display().to_string())?;
-    files::replace(path, text.as_bytes()).with_context(|| path.display().to_string())?;
-    Ok(path.display().to_string())
-}
-
-fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a crate::settings::inventory::Entry, Failure> {
-    inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
-        let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
-        match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {
-            Some(near) => failure.hint(format!("did you mean '{near}'?")),
-            None => failure.hint("`armctl robots list` shows them, `armctl robots add` adds one"),
-        }
-    })
-}
-
-/// A robot that came into the inventory or left it.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Changed {
-    /// `added` or `removed`.
-    done: &'static str,
-    name: String,
-    target: String,
-    /// The file that was changed.
-    file: String,
-}
-
-impl Report for Changed {
-    fn view(&self) -> View {
-        View::text(format!("{} {} ({})", self.done, self.name, self.target))
-    }
 }
 
 /// The inventory.
@@ -289,7 +151,7 @@ impl Report for List {
     fn view(&self) -> View {
         let mut table = Table::new(
             &["name", "family", "target", "default", "read-only", "tags"],
-            "no robots yet; `armctl robots add cell1 udp://192.168.1.31` adds one",
+            "no robots yet; `armctl setup` adds one step by step, `armctl robots add cell1 udp://192.168.1.31` at once",
         );
         let mark = |on: bool| if on { "yes" } else { "" };
         for robot in &self.robots {

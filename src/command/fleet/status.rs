@@ -11,6 +11,7 @@ use crate::command::frame::script_line::Line;
 use crate::command::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
+use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
 /// Robots of any family, for what all of them can be asked.
@@ -80,13 +81,26 @@ impl Command for Overview {
             Link::Open(face, connection) => face.overview(&mut **connection).await,
             Link::Absent(failure) => Err(failure.clone()),
         };
-        match found {
-            Ok(report) => Ok(report),
+        let report = match found {
             Err(failure) if failure.kind == Kind::NoAnswer => {
-                Ok(OverviewReport { failure: Some(failure), ..OverviewReport::default() })
+                OverviewReport { failure: Some(failure), ..OverviewReport::default() }
             }
-            Err(failure) => Err(failure),
-        }
+            found => found?,
+        };
+        Ok(OverviewReport { family: context.robot.family.name(), ..report })
+    }
+
+    /// `32 robots, 30 answer, 1 alarm`.
+    fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
+        let count = |field: &str| {
+            let is_so = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
+            envelopes.iter().filter(is_so).count()
+        };
+        let (robots, answer, alarms) = (envelopes.len(), count("reachable"), count("faulted"));
+        let plural = |number: usize| if number == 1 { "" } else { "s" };
+        let verb = if answer == 1 { "answers" } else { "answer" };
+        let number = if alarms == 0 { "no".to_owned() } else { alarms.to_string() };
+        Some(format!("{robots} robot{}, {answer} {verb}, {number} alarm{}", plural(robots), plural(alarms.max(1))))
     }
 }
 

@@ -4,12 +4,14 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use crate::command::SchemaEntry;
 use crate::command::face::tool::{Tool, ToolKind, ToolTask};
 use crate::command::families::{self, FAMILIES};
 use crate::command::frame::run::{Run, RunError};
-use crate::failure::Failure;
+use crate::command::{Report, SchemaEntry};
+use crate::output::view::{Cell, Table, View};
 use crate::settings::target::Family;
 
 /// `armctl decode FAMILY`.
@@ -25,14 +27,56 @@ pub struct Sim {
 }
 
 impl Sim {
-    /// Does it; without a family, that of the first one.
+    /// Does it; without a family, says which there are.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
-        let simulator = match self.family {
-            Some(simulator) => simulator,
-            None => OfFamily::first()
-                .map_err(|error| Failure::usage(error.to_string()).hint("name a family: `armctl sim -h` lists them"))?,
-        };
-        simulator.run(run).await
+        match self.family {
+            Some(simulator) => simulator.run(run).await,
+            None => run.local("sim", &Simulators::all()),
+        }
+    }
+
+    /// Whether it only lists them.
+    pub fn is_list(&self) -> bool {
+        self.family.is_none()
+    }
+}
+
+/// The simulators that there are.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Simulators {
+    simulators: Vec<Simulator>,
+}
+
+/// One of them.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Simulator {
+    family: &'static str,
+    /// The controllers that it is like.
+    controller: &'static str,
+    /// What starts it.
+    start: String,
+    /// Where it is reached then.
+    target: &'static str,
+}
+
+impl Simulators {
+    fn all() -> Self {
+        let simulators = FAMILIES.map(|face| {
+            let family = face.family().name();
+            let start = format!("armctl sim {family}");
+            Simulator { family, controller: face.title(), start, target: face.simulator() }
+        });
+        Self { simulators: simulators.into() }
+    }
+}
+
+impl Report for Simulators {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["simulator of", "start it with", "it is at"], "");
+        for Simulator { controller, start, target, .. } in &self.simulators {
+            table.row([(*controller).into(), start.as_str().into(), Cell::from(*target).whole()]);
+        }
+        View::table(table)
     }
 }
 
@@ -80,14 +124,6 @@ pub struct OfFamily<W> {
 impl<W: Word> OfFamily<W> {
     fn tool(family: Family) -> Tool {
         families::of(family).tool(W::KIND)
-    }
-
-    /// The first family, without arguments.
-    fn first() -> Result<Self, clap::Error> {
-        let family = FAMILIES[0].family();
-        let tool = Self::tool(family);
-        let mut matches = (tool.augment)(Command::new(family.name())).try_get_matches_from([family.name()])?;
-        Ok(Self { family, task: (tool.read)(&mut matches)?, word: PhantomData })
     }
 
     /// Does it.

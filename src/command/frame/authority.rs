@@ -93,11 +93,11 @@ async fn ask(
     // From here on Ctrl-C, at the question too, ends in a message and an exit code instead of a killed process.
     catch_interrupts();
     let screen = *screen;
-    let who = format!("REAL CONTROLLER: {} ({}, {})", robot.name, robot.family, robot.target.value.url());
+    let who = format!("{} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
         // Several robots may have something to ask: one after the other.
         let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        screen.ask_note(&who);
+        screen.ask_title("REAL CONTROLLER:", &who);
         for line in &lines {
             screen.ask_note(line);
         }

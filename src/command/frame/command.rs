@@ -10,6 +10,7 @@ use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::{Confirmation, Intent};
 use crate::output::Screen;
+use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
 /// What a command line needs beside its own arguments.
@@ -117,6 +118,11 @@ pub trait Command {
         Self::CONNECT_MODE
     }
 
+    /// What is said below the table of several robots, of their envelopes.
+    fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
+        None
+    }
+
     /// Does it. In a dry run orders are noted and count as done; what reads ends in a failure that says its answer is not
     /// known ([`unknown`](super::dry_run::unknown)), behind which nothing can be foreseen unless the command does.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
@@ -147,6 +153,10 @@ pub trait AnyCommand {
     /// See [`Command::connect_mode`].
     fn connect_mode(&self) -> ConnectMode {
         ConnectMode::default()
+    }
+    /// See [`Command::summary`].
+    fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
+        None
     }
     /// See [`Command::run`].
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
@@ -208,6 +218,10 @@ impl<C: Command> AnyCommand for C {
 
     fn connect_mode(&self) -> ConnectMode {
         Command::connect_mode(self)
+    }
+
+    fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
+        Command::summary(self, envelopes)
     }
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {

@@ -91,7 +91,7 @@ impl LocalNames {
         for local in [local_name(self.encoding, name), caseless_name(self.encoding, name)] {
             if local.is_empty() || local.len() > MAX_LOCAL_NAME {
                 return Err(Failure::local(format!("the name '{}' makes no local file name", name.escape_ascii()))
-                    .hint("`yerc file get NAME --output -` writes the file to stdout"));
+                    .hint("`yerc file get NAME --dir -` writes the file to stdout"));
             }
             let owner = self.taken.entry(local.to_lowercase()).or_insert_with(|| name.to_vec());
             if owner == name {

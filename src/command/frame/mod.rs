@@ -22,6 +22,7 @@ pub mod report;
 pub mod run;
 pub mod script_line;
 pub mod session_manager;
+pub mod setting;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod trace;

@@ -149,7 +149,7 @@ impl Run {
             return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
-        Gate::pass_many(&intents, |robot| self.sources.selection.robots.contains(&robot.name))?;
+        Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
     }
 
@@ -281,7 +281,7 @@ impl Run {
     async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
-            let printed = self.print_many(command.id(), robots, &outcomes, Place::First);
+            let printed = self.print_many(command, robots, &outcomes, Place::First);
             printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
             return self.verdict(&outcomes);
         }
@@ -311,7 +311,7 @@ impl Run {
             });
             let outcomes = at_a_time(attempts).await;
             let place = self.round(rounds.is_first(), false);
-            let envelopes = self.print_many(command.id(), robots, &outcomes, place)?;
+            let envelopes = self.print_many(command, robots, &outcomes, place)?;
             if rounds.is_met(&envelopes)? {
                 return Ok(());
             }

@@ -23,7 +23,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yerc file list --type jbi,dat", Read),
     ("yerc file list --filter '*.*'", Read),
     ("yerc file get WELD.JBI", Read),
-    ("yerc file get WELD.JBI PICK.JBI --force", Read),
+    ("yerc file get WELD.JBI PICK.JBI --dir saved --force", Read),
     ("yerc file put WELD.JBI", Destroy),
     ("yerc file put new.jbi --as WELD.JBI --verify", Destroy),
     ("yerc file delete OLD.JBI", Destroy),

@@ -170,6 +170,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx port set DO2.1 on", Write),
     ("yrcx position", Read),
     ("yrcx position --report pulse", Read),
+    ("yrcx position --continuous --for 10s", Read),
     ("yrcx power-on", Motion),
     ("yrcx power-on --dry-run", Motion),
     ("yrcx program select --program 1 --priority 32", Write),

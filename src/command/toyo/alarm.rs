@@ -22,19 +22,19 @@ use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::alarms::{self, Explanation, Origin};
 
 commands! {
-    /// Errors.
+    /// Alarms.
     pub enum Alarm {
-        /// Show the present error with cause and remedy
+        /// Show the present alarm with cause and remedy
         #[command(alias = "show")]
         List(List),
-        /// Error history, the latest first
+        /// Alarm history, the latest first
         History(History),
-        /// Print errors as they come and go
+        /// Print alarms as they come and go
         Watch(Watch<List>),
-        /// Cancel the error
+        /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
-        /// The point at which the error occurred
+        /// The point at which the alarm occurred
         Point(Point),
     }
 }

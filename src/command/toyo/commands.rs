@@ -17,7 +17,7 @@ commands! {
         Status(status::Status),
         /// Current position of the axes
         Position(position::Position),
-        /// Errors: list, history, reset, point
+        /// Alarms: list, history, reset, point
         #[command(alias = "error")]
         Alarm(Subcommands<alarm::Alarm>),
         /// Robot type, versions, axes, task, override

@@ -33,7 +33,7 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {
     /// Such as 5 or 1-10
-    #[arg(value_name = "N", value_parser = |text: &str| Numbers::parse(&fields()[0], text))]
+    #[arg(value_name = "N", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(&fields()[0], text))]
     counters: Vec<Numbers>,
 }
 

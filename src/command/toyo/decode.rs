@@ -2,15 +2,13 @@
 
 mod capture;
 
-use std::path::Path;
-
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::LineDecoder;
 use crate::command::Report;
-use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::capture::{Input, Selection, file_among};
 use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
 use crate::controller::toyo::describe::{Description, FieldNote, Sender, describe};
 use crate::controller::toyo::request::Request;
@@ -44,8 +42,8 @@ impl decode::Decode for Decode {
     type Report = DecodedLines;
     type Capture = LineDecoder;
 
-    fn capture(&self) -> Option<(&Path, LineDecoder)> {
-        Some((file_among(&self.lines)?, LineDecoder::default()))
+    fn capture(&self) -> Result<Option<(Input<'_>, LineDecoder)>, Failure> {
+        Ok(file_among(&self.lines).map(|path| (Input::File(path), LineDecoder::default())))
     }
 
     fn selection(&self) -> &Selection {

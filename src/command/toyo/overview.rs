@@ -2,7 +2,8 @@
 
 use super::link::Link;
 use super::position::Place;
-use crate::command::face::overview::{OverviewReport, PositionMm};
+use super::top::alarms;
+use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::Command;
@@ -10,23 +11,27 @@ use crate::failure::Failure;
 
 /// Asks for status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
-    let status = link.status_of(&[0, 2, 3]).await?;
+    let status = link.status_of(&[0, 1, 2, 3]).await?;
     let place = Place::of(&link.ask(&Request::bare(Command::Mpst)).await?);
-    Ok(report(status, Some(place)))
+    Ok(report(status, fault(status), Some(place)))
 }
 
 /// What the answers say.
-pub(super) fn report(status: Status, place: Option<Place>) -> OverviewReport {
+pub(super) fn report(status: Status, fault: Fault, place: Option<Place>) -> OverviewReport {
     OverviewReport {
         reachable: true,
         mode: status.run_mode().map(RunMode::name),
         servo_on: Some(status.servo_on()),
         running: Some(status.executing() || status.homing()),
         held: Some(status.paused()),
-        alarm: None,
         error: Some(status.has_error()),
+        fault,
         position: place.map(|place| PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
-        not_asked: None,
-        failure: None,
+        ..OverviewReport::default()
     }
+}
+
+/// What is wrong: the error that is present.
+pub(super) fn fault(status: Status) -> Fault {
+    Fault::new(status.has_error(), alarms(status).first())
 }

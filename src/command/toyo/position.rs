@@ -96,6 +96,11 @@ impl Place {
         Self { x_mm, y_mm, z_mm, r_mm }
     }
 
+    /// Coordinates of the four axes in mm.
+    pub fn mm(&self) -> [f64; 4] {
+        [self.x_mm, self.y_mm, self.z_mm, self.r_mm]
+    }
+
     /// With names, in a line.
     pub fn in_a_line(&self) -> String {
         let Self { x_mm, y_mm, z_mm, r_mm } = self;

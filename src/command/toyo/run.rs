@@ -4,19 +4,21 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link::Link;
-use super::link::Toyo;
-use super::position::Place;
+use super::link::{self, Link, Toyo};
+use super::numbers::small;
+use super::position::{Place, titled};
 use super::program::steps;
 use super::waiting::{Accepted, End, Work, step};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
+use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::RunMode;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::{Cell, Tone, View};
 
@@ -139,13 +141,58 @@ impl Command for Point {
     type Report = Ran;
     const ID: &'static str = "toyo.run.point";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         format!("move the axes to point {} of the coordinate table", self.point)
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+        let Context { link, authority, .. } = context;
+        if authority.asks() {
+            let there = self.place(link).await?;
+            let change = self.change(link, there).await?;
+            authority.confirm(&change).await?;
+            if self.place(link).await? != there {
+                let message = format!("point {} was changed since the question; nothing was moved", self.point);
+                return Err(Failure::new(Kind::Rejected, message)
+                    .hint("somebody else is at work there: look, then repeat the command"));
+            }
+        } else {
+            authority.confirm(&Change::new(Command::intent(self))).await?;
+        }
+        let context = Context { link, authority, ..context };
         go(context, &Request::of(table::Command::Extp, [Value::Number(self.point)]), self.no_wait).await
+    }
+}
+
+impl Point {
+    /// Where the point is; nothing where the controller refuses to tell.
+    async fn place(&self, link: &mut Link) -> Result<Option<Place>, Failure> {
+        let request =
+            Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+        Ok(link.try_ask(&request).await?.ok().map(|record| Place::of(&record)))
+    }
+
+    /// What the question says: each axis with where it is and where it goes.
+    async fn change(&self, link: &mut Link, there: Option<Place>) -> Result<Change, Failure> {
+        let letters = link.letters().await?;
+        let here = Place::of(&link.ask(&Request::bare(table::Command::Mpst)).await?);
+        let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
+        let mut change = Change::new(Command::intent(self));
+        let mut way = 0.0;
+        for (at, (old, new)) in here.mm().into_iter().zip(there.iter().flat_map(Place::mm)).enumerate() {
+            let letter = letters.of(at);
+            if ["X", "Y", "Z"].contains(&letter) {
+                way = f64::hypot(way, new - old);
+            }
+            change = change.replaces(&titled(at, letter), &format!("{old:.2}"), &format!("{new:.2} mm"));
+        }
+        change = match there {
+            Some(_) => change.note(format!("The point is {way:.2} mm away.")),
+            None => change.note(format!("Where point {} is could not be read.", self.point)),
+        };
+        Ok(change.note(format!("The speed override is {percent} %.")))
     }
 }
 

@@ -58,6 +58,7 @@ const BITS: u32 = 11;
 
 impl serve::Serve for Serve {
     const ID: &'static str = "sim.toyo";
+    const TARGET: &'static str = "tcp://127.0.0.1:4001";
     type Report = Serving;
     type Server = Toyo;
 
@@ -78,8 +79,10 @@ impl serve::Serve for Serve {
             let (server, local) = made.map_err(|error| cannot_listen(&format!("TCP {}", self.bind), &error))?;
             (server, format!("tcp://{local}"), Some(local), None)
         };
+        let target = format!("{endpoint}{settings}");
         Ok(Started {
-            report: Serving { family: "toyo", target: format!("{endpoint}{settings}") },
+            reach: serve::reach("toyo", &target),
+            report: Serving { family: "toyo", target },
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
             with_console: self.console,

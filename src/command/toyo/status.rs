@@ -5,6 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
+use super::overview::fault;
+use crate::command::face::overview::Fault;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::status::{self, ProgramKind, RunMode};
@@ -45,6 +47,8 @@ pub struct StatusReport {
     waits_for_input: bool,
     /// The error, if there is one.
     error: Option<ErrorCode>,
+    #[serde(flatten)]
+    fault: Fault,
     /// Parameter 2 was changed: nothing is executed until the power was off.
     needs_power_cycle: bool,
     slave_not_ready: bool,
@@ -100,6 +104,7 @@ impl StatusReport {
             single_movement: status.single_movement(),
             waits_for_input: status.waits_for_input(),
             error: (status.has_error() || status.error != errors::NONE).then(|| ErrorCode::of(status.error)),
+            fault: fault(status),
             needs_power_cycle: status.needs_power_cycle(),
             slave_not_ready: status.slave_not_ready(),
             escape_input: status.escape_input(),

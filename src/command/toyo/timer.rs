@@ -27,7 +27,7 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {
     /// Such as 5 or 1-3
-    #[arg(value_name = "N", value_parser = |text: &str| Numbers::parse(field(), text))]
+    #[arg(value_name = "N", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(field(), text))]
     timers: Vec<Numbers>,
 }
 

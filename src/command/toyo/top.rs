@@ -3,7 +3,7 @@
 
 use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
-use super::overview::report;
+use super::overview::{fault, report};
 use super::position::Place;
 use crate::command::face::declared;
 use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
@@ -48,7 +48,7 @@ impl declared::Poller for Poller {
             Detail::Summary => None,
             Detail::Full => Some(self.whole(status, place).await?),
         };
-        Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
+        Ok(Sample { line: report(status, fault(status), place), answered_in, alarms: alarms(status), whole })
     }
 
     async fn close(self, screen: &Screen) -> Result<(), Failure> {
@@ -95,7 +95,8 @@ async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure>
     Ok(link.try_ask(&request).await?.ok())
 }
 
-fn alarms(status: Status) -> Vec<Alarm> {
+/// The error that is present, as one of a list.
+pub(super) fn alarms(status: Status) -> Vec<Alarm> {
     if !status.has_error() {
         return Vec::new();
     }

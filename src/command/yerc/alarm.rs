@@ -188,11 +188,18 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
                     return Err(failure);
                 }
                 let text = format!("slot {slot}: {}", items::brief(&failure));
-                alarms.push(sample::Alarm { code: "?".to_owned(), text, remedy: String::new() });
+                alarms.push(sample::Alarm { code: sample::Alarm::UNREADABLE.to_owned(), text, remedy: String::new() });
             }
         }
     }
     Ok(alarms)
+}
+
+/// Notes in a dry run what is asked where there is an alarm.
+pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
+    let request = ReadAlarm::new(1, true).map_err(usage)?.request();
+    link.plan_if(&request, Reason::about("the latest alarm").depending_on("whether there is one"));
+    Ok(())
 }
 
 /// Notes in a dry run all questions, and the first one of those that an older controller is asked instead.

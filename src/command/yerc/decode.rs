@@ -2,15 +2,13 @@
 
 mod capture;
 
-use std::path::Path;
-
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use self::capture::FrameDecoder;
 use crate::command::Report;
-use crate::command::decode::capture::{Selection, file_among};
+use crate::command::decode::capture::{Input, Selection, file_among};
 use crate::command::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
 use crate::controller::typed;
 use crate::controller::yerc::describe::{Description, FieldNote, Sender, describe};
@@ -19,6 +17,7 @@ use crate::controller::yerc::table::service;
 use crate::controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Section, View};
+use crate::transport::capture::parse_hex;
 
 /// Frames of the high-speed Ethernet server, as from a packet capture
 #[derive(Debug, Args)]
@@ -56,8 +55,8 @@ impl decode::Decode for Decode {
     type Report = DecodedFrames;
     type Capture = FrameDecoder;
 
-    fn capture(&self) -> Option<(&Path, FrameDecoder)> {
-        Some((file_among(&self.hex)?, FrameDecoder::default()))
+    fn capture(&self) -> Result<Option<(Input<'_>, FrameDecoder)>, Failure> {
+        Ok(file_among(&self.hex).map(|path| (Input::File(path), FrameDecoder::default())))
     }
 
     fn selection(&self) -> &Selection {
@@ -131,24 +130,6 @@ pub const ID_AT: usize = 11;
 const SERVICE_AT: usize = 24;
 /// How every frame begins.
 pub const IDENTIFIER: &[u8] = b"YERC";
-
-/// Bytes from hexadecimal digits, as tools print them: together or apart, with `0x`, colons, commas or dashes.
-pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::with_capacity(text.len() / 2);
-    for token in text.split(|c: char| c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')) {
-        let digits = token.strip_prefix("0x").or_else(|| token.strip_prefix("0X")).unwrap_or(token);
-        if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
-            return Err(format!("'{}' is not a valid hexadecimal digit", wrong.escape_debug()));
-        }
-        if digits.len() > 1 && digits.len() % 2 == 1 {
-            return Err(format!("'{}' has an odd number of digits", shortened(digits, 24)));
-        }
-        // Only digits are left, so every pair is a byte.
-        let pairs = digits.as_bytes().chunks(2).filter_map(|pair| std::str::from_utf8(pair).ok());
-        bytes.extend(pairs.filter_map(|pair| u8::from_str_radix(pair, 16).ok()));
-    }
-    Ok(bytes)
-}
 
 /// Arguments that a shell took apart at blanks, put together: one that begins as a frame, or is as long as one, begins
 /// a new frame.

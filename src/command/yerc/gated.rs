@@ -28,7 +28,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("job start", Motion, Motion),
     ("job start --wait", Motion, Motion),
     ("file list", Read, Read),
-    ("file get A.JBI --output DIR/new", Read, Read),
+    ("file get A.JBI --dir DIR/new", Read, Read),
     ("file put DIR/A.JBI", Destroy, Destroy),
     ("file put DIR/A.JBI --replace --verify", Destroy, Destroy),
     ("file delete A.JBI", Destroy, Destroy),

@@ -2,14 +2,15 @@
 
 mod arguments;
 mod going;
+mod question;
 
 use clap::Args;
 
 use self::arguments::{
-    By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, base_told, robot_pulses, split,
-    station_pulses, told,
+    By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, robot_pulses, split, station_pulses,
 };
 use self::going::{Goal, Going, Moved};
+use self::question::Question;
 use super::link::Link;
 use super::link::Yerc;
 use super::orders::usage;
@@ -22,6 +23,7 @@ use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
 use crate::controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 commands! {
     /// Motions.
@@ -67,13 +69,19 @@ struct Target {
 }
 
 impl Target {
-    fn intent(&self, way: &str, speed: Speed) -> String {
+    fn question(&self, way: &str, speed: Speed) -> Question<'_> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let robot = to.coordinates();
-        let base = base_told(base_axes.as_ref(), units::MILLIMETRE);
-        let place = told(frame.coordinate.into(), robot.as_ref().map(|axes| &axes[..]), base, station_axes.as_ref());
-        let how = if robot.is_some() { format!(" in {}, {}", frame.told(), forms.told()) } else { String::new() };
-        format!("move {} {way} to {place}{how} at {speed}", mover.group)
+        Question {
+            what: format!("move {} {way}", mover.group),
+            preposition: "to",
+            kind: frame.coordinate.into(),
+            how: robot.map(|_| format!("in {}, {}", frame.told(), forms.told())).unwrap_or_default(),
+            robot: robot.map(Vec::from),
+            base: (base_axes.as_ref(), units::MILLIMETRE),
+            station: station_axes.as_ref(),
+            speed,
+        }
     }
 
     fn going(&self, link: &Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
@@ -135,7 +143,7 @@ fn unnamed_base(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'sta
 macro_rules! motion {
     (
         $(#[$doc:meta])* $name:ident { $(#[$speed_doc:meta])* speed: $parser:expr, $target:ident: $type:ty }, $id:literal,
-        |$this:ident, $link:ident| $intent:expr, $going:expr
+        |$this:ident, $link:ident| $question:expr, $going:expr
     ) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
@@ -151,6 +159,7 @@ macro_rules! motion {
             type Family = Yerc;
             type Report = Moved;
             const ID: &'static str = $id;
+            const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
             fn risk(&self) -> Risk {
                 Risk::Motion
@@ -158,14 +167,14 @@ macro_rules! motion {
 
             fn intent(&self) -> String {
                 let $this = self;
-                $intent
+                $question.in_a_line()
             }
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Moved, Failure> {
                 let $this = self;
                 let $link = &*context.link;
                 let going = $going?;
-                going.run(context.link, context.screen).await
+                going.run(context, &$question).await
             }
         }
     };
@@ -177,7 +186,7 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: Target
     }, "yerc.move.joint",
-    |this, link| this.target.intent("by its joints", this.speed), this.target.going(link, MoveKind::Link, this.speed)
+    |this, link| this.target.question("by its joints", this.speed), this.target.going(link, MoveKind::Link, this.speed)
 }
 motion! {
     /// Moves to a position in a straight line (0x8A, instance 2).
@@ -185,7 +194,7 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: Target
     }, "yerc.move.linear",
-    |this, link| this.target.intent("in a straight line", this.speed),
+    |this, link| this.target.question("in a straight line", this.speed),
     this.target.going(link, MoveKind::Straight, this.speed)
 }
 motion! {
@@ -194,7 +203,7 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, distance: Distance
     }, "yerc.move.relative",
-    |this, link| this.distance.intent(this.speed), this.distance.going(link, this.speed)
+    |this, link| this.distance.question(this.speed), this.distance.going(link, this.speed)
 }
 motion! {
     /// Moves to pulses, axes interpolated (0x8B, instance 1).
@@ -202,7 +211,7 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
     }, "yerc.move.pulse.joint",
-    |this, link| this.target.intent("by its joints", this.speed),
+    |this, link| this.target.question("by its joints", this.speed),
     this.target.going(link.model, MoveKind::Link, this.speed)
 }
 motion! {
@@ -211,7 +220,7 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: PulseTarget
     }, "yerc.move.pulse.linear",
-    |this, link| this.target.intent("in a straight line", this.speed),
+    |this, link| this.target.question("in a straight line", this.speed),
     this.target.going(link.model, MoveKind::Straight, this.speed)
 }
 
@@ -239,13 +248,19 @@ impl Distance {
         (self.station_axes.is_none() || by != [0; 6]).then_some(by)
     }
 
-    fn intent(&self, speed: Speed) -> String {
+    fn question(&self, speed: Speed) -> Question<'_> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let robot = self.robot();
-        let base = base_told(base_axes.as_ref(), units::MILLIMETRE);
-        let distance = told(frame.coordinate.into(), robot.as_ref().map(|axes| &axes[..]), base, station_axes.as_ref());
-        let how = if robot.is_some() { format!(" in {}", frame.told()) } else { String::new() };
-        format!("move {} in a straight line by {distance}{how} at {speed}", mover.group)
+        Question {
+            what: format!("move {} in a straight line", mover.group),
+            preposition: "by",
+            kind: frame.coordinate.into(),
+            how: robot.map(|_| format!("in {}", frame.told())).unwrap_or_default(),
+            robot: robot.map(Vec::from),
+            base: (base_axes.as_ref(), units::MILLIMETRE),
+            station: station_axes.as_ref(),
+            speed,
+        }
     }
 
     fn going(&self, link: &Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
@@ -295,12 +310,18 @@ struct PulseTarget {
 }
 
 impl PulseTarget {
-    fn intent(&self, way: &str, speed: Speed) -> String {
+    fn question(&self, way: &str, speed: Speed) -> Question<'_> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
-        let robot = pulses.as_ref().map(|pulses| &pulses.0[..]);
-        let base = base_told(base_axes.as_ref(), units::PULSE);
-        let place = told(PositionKind::Pulse, robot, base, station_axes.as_ref());
-        format!("move {} {way} to {place} in pulses, tool {tool}, at {speed}", mover.group)
+        Question {
+            what: format!("move {} {way}", mover.group),
+            preposition: "to",
+            kind: PositionKind::Pulse,
+            how: format!("in pulses, tool {tool},"),
+            robot: pulses.as_ref().map(|pulses| pulses.0.clone()),
+            base: (base_axes.as_ref(), units::PULSE),
+            station: station_axes.as_ref(),
+            speed,
+        }
     }
 
     fn going(&self, model: Model, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {

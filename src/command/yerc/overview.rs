@@ -1,8 +1,10 @@
 //! A robot of the family in the line that `armctl status` prints.
 
+use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
-use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
 use crate::controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
@@ -10,16 +12,20 @@ use crate::failure::Failure;
 
 /// Asks for status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
-    let status = link.ask(&ReadStatus).await?;
+    let status = link.ask(&ReadStatus).await.known()?;
+    let fault = match status {
+        Some(status) => status::fault(link, status).await?,
+        None => plan_latest(link).map(|()| Fault::default())?,
+    };
     let query = ReadPosition::new(link.model, Group::R1, Coordinates::Base);
     let query = query.map_err(|error| Failure::local(error.to_string()))?;
     // A controller without a first robot has no position to show; that is no failure.
-    let position = link.try_ask(&query).await?.ok();
-    Ok(report(status, position.as_ref()))
+    let position = link.try_ask(&query).await.known()?.and_then(Result::ok);
+    Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))
 }
 
 /// What the answers say.
-pub(super) fn report(status: ControllerStatus, base: Option<&Position>) -> OverviewReport {
+pub(super) fn report(status: ControllerStatus, fault: Fault, base: Option<&Position>) -> OverviewReport {
     let position = base.map(|position| {
         let axes = position.axes.padded();
         let mm = |axis: usize| f64::from(axes[axis]) / 1000.0;
@@ -33,8 +39,8 @@ pub(super) fn report(status: ControllerStatus, base: Option<&Position>) -> Overv
         held: Some(status.held()),
         alarm: Some(status.alarm()),
         error: Some(status.error()),
+        fault,
         position,
-        not_asked: None,
-        failure: None,
+        ..OverviewReport::default()
     }
 }

@@ -360,13 +360,22 @@ pub(super) fn extended_words(form: ExtendedForm) -> String {
     short(&form.words().collect::<Vec<_>>(), form.0, 0)
 }
 
-/// Axes in a line for messages: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
-pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> String {
-    let names = match (kind.is_cartesian(), is_robot) {
+/// What the axes of a group are called.
+pub(super) fn axis_names(kind: PositionKind, group: Group) -> [&'static str; MAX_AXES] {
+    names(kind, matches!(group, Group::Robot(_)))
+}
+
+fn names(kind: PositionKind, is_robot: bool) -> [&'static str; MAX_AXES] {
+    match (kind.is_cartesian(), is_robot) {
         (true, _) => CARTESIAN_AXES,
         (false, true) => ROBOT_AXES,
         (false, false) => NUMBERED_AXES,
-    };
+    }
+}
+
+/// Axes in a line for messages: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
+pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> String {
+    let names = names(kind, is_robot);
     let mut line = String::new();
     let mut last = None;
     for (axis, (name, value)) in names.iter().zip(axes).enumerate() {

@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::decode::parse_hex;
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
 use crate::command::decode::field_table;
@@ -24,6 +23,7 @@ use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use crate::failure::Failure;
 use crate::output::view::{Cell, View};
+use crate::transport::capture::parse_hex;
 
 /// A request as it is.
 #[derive(Debug, Args)]

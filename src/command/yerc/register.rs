@@ -34,7 +34,7 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {
     /// Such as 5 or 0..20
-    #[arg(required = true, value_name = "N", value_parser = Numbers::parse)]
+    #[arg(required = true, value_name = "N", value_delimiter = ',', value_parser = Numbers::parse)]
     registers: Vec<Numbers>,
 }
 

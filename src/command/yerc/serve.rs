@@ -59,6 +59,7 @@ impl Default for Serve {
 
 impl serve::Serve for Serve {
     const ID: &'static str = "sim.yerc";
+    const TARGET: &'static str = "udp://127.0.0.1:10040";
     type Report = Serving;
     type Server = Yerc;
 
@@ -79,6 +80,7 @@ impl serve::Serve for Serve {
         let (robot, file) = (local(0)?, local(1)?);
         let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
         Ok(Started {
+            reach: serve::reach("yerc", &target),
             report: Serving { family: "yerc", model: model.name(), target },
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),

@@ -4,7 +4,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link::Yerc;
+use super::alarm::{plan_latest, present};
+use super::link::{Link, Yerc};
+use crate::command::face::overview::Fault;
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::controller::yerc::query::ReadStatus;
@@ -21,8 +24,19 @@ impl Command for Status {
     const ID: &'static str = "yerc.status";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<StatusReport, Failure> {
-        Ok(context.link.ask(&ReadStatus).await?.into())
+        let link = context.link;
+        let Some(status) = link.ask(&ReadStatus).await.known()? else {
+            plan_latest(link)?;
+            return Err(unknown());
+        };
+        Ok(StatusReport { fault: fault(link, status).await?, ..status.into() })
     }
+}
+
+/// What is wrong: the latest alarm, which is asked for where there is one. An error has no number here.
+pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault, Failure> {
+    let alarms = if status.alarm() { present(link, &mut true, 1).await? } else { Vec::new() };
+    Ok(Fault::new(status.faulted(), alarms.first()))
 }
 
 /// The controller's state (FS and DX 3.3.3).
@@ -44,6 +58,8 @@ pub struct StatusReport {
     hold_sources: Vec<&'static str>,
     alarm: bool,
     error: bool,
+    #[serde(flatten)]
+    fault: Fault,
     /// In-guard safe operation.
     safe_operation: bool,
     /// The two words as received.
@@ -78,6 +94,7 @@ impl From<ControllerStatus> for StatusReport {
             hold_sources: HOLDS.iter().filter(|(bit, _)| status.has(*bit)).map(|(_, name)| *name).collect(),
             alarm: status.alarm(),
             error: status.error(),
+            fault: Fault::new(status.faulted(), None),
             safe_operation: status.has(StatusBit::Guarded),
             raw: RawStatus { data_1: format!("{data_1:#010x}"), data_2: format!("{data_2:#010x}") },
         }
@@ -95,7 +112,8 @@ pub(super) fn mode(status: ControllerStatus) -> Option<&'static str> {
 
 impl Report for StatusReport {
     fn view(&self) -> View {
-        let bad = |on: bool| if on { Cell::from("yes").tone(Tone::Bad) } else { "no".into() };
+        let told = self.fault.told().unwrap_or_else(|| "yes".to_owned());
+        let bad = |on: bool, told: &str| if on { Cell::from(told).tone(Tone::Bad) } else { "no".into() };
         let remote = if self.command_remote { Tone::Good } else { Tone::Warning };
         let hold = if self.held { Cell::from(self.hold_sources.join(", ")).tone(Tone::Warning) } else { "no".into() };
         View::fields([
@@ -105,8 +123,8 @@ impl Report for StatusReport {
             ("running", if self.running { Cell::from("yes").tone(Tone::Good) } else { "no".into() }),
             ("servo", Cell::switch(self.servo_on)),
             ("hold", hold),
-            ("alarm", bad(self.alarm)),
-            ("error", bad(self.error)),
+            ("alarm", bad(self.alarm, &told)),
+            ("error", bad(self.error, "yes")),
             ("safe operation", if self.safe_operation { "yes".into() } else { "no".into() }),
         ])
     }

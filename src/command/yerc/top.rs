@@ -5,6 +5,7 @@ use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
 use crate::command::face::declared;
+use crate::command::face::overview::Fault;
 use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::{Access, Family as _};
 use crate::controller::units;
@@ -46,7 +47,8 @@ impl declared::Poller for Poller {
             Detail::Summary => None,
             Detail::Full => Some(self.whole(status, base.as_ref()).await?),
         };
-        Ok(Sample { line: report(status, base.as_ref()), answered_in, alarms, whole })
+        let fault = Fault::new(status.faulted(), alarms.first());
+        Ok(Sample { line: report(status, fault, base.as_ref()), answered_in, alarms, whole })
     }
 
     async fn close(self, screen: &Screen) -> Result<(), Failure> {

@@ -47,7 +47,11 @@ impl Command for List {
         let link = context.link;
         let latest = link.draft(Row::AlarmHistory)?.with(Key::History, 1).build()?;
         if link.is_dry() {
-            link.plan_depending(&latest, &latest, Reason::about("which").depending_on("SO(03) and SO(15)"));
+            link.plan_depending(
+                &latest,
+                &latest,
+                Reason::about("which").depending_on("the signals: it is asked if SO(03) or SO(15) is on"),
+            );
         }
         let image = link.look().await?;
         let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
@@ -186,7 +190,32 @@ impl Report for WasReset {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::yrcx::testing::{example, read_example, words};
+    use serde_json::json;
+
+    use crate::command::yrcx::testing::{Reply, Scripted, answer, example, read_example, run_on, words};
+    use crate::controller::yrcx::signal::output;
+
+    #[test]
+    fn the_history_is_that_of_messages() {
+        assert_eq!(words(&["alarm", "history", "10"]).unwrap(), [example("4.7.7-reference")]);
+        let past = &read_example("4.7.7-reference", &["alarm", "history", "10"])["alarms"];
+        let messages = &read_example("4.7.7-reference", &["info", "message", "10"])["messages"];
+        assert_eq!((past, &past[0]["code"]), (messages, &json!("12.551")));
+        assert_eq!(words(&["alarm", "history"]).unwrap().len(), 10);
+    }
+
+    #[test]
+    fn what_is_present_is_the_latest_while_a_signal_says_so() {
+        let none = json!({ "alarm": false, "warning": false, "alarms": [] });
+        let (data, peer) = run_on(Scripted::new([]), &["alarm", "list"]);
+        assert_eq!((data.unwrap(), peer.taken.len()), (none, 0), "nothing is asked");
+        let mut shown = Scripted::new([Reply::Ends(1, answer("4.7.7-reference"))]);
+        output::ALARM.set(&mut shown.image, true);
+        let (data, peer) = run_on(shown, &["alarm", "list"]);
+        let data = data.unwrap();
+        assert_eq!((&data["alarm"], &data["alarms"][0]["code"]), (&json!(true), &json!("12.551")));
+        assert_eq!(peer.taken[0][2], 1, "the latest");
+    }
 
     #[test]
     fn the_example_of_the_manual() {

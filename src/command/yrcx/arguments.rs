@@ -4,6 +4,7 @@
 use clap::{Args, ValueEnum};
 
 use super::position::Unit;
+use crate::controller::typed;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::Key;
@@ -185,10 +186,12 @@ impl Axes {
 
     fn numbers(&self) -> Result<Vec<usize>, Failure> {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
-        axes.split(',').map(axis).collect::<Result<Vec<usize>, Failure>>().map_err(|_| {
-            Failure::usage(format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3"))
-                .hint("name axes by their numbers, with commas between")
-        })
+        let wrong = || format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3");
+        let number = |text: &str| axis(text).map_err(|_| wrong());
+        let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
+        let ranges =
+            ranges.map_err(|why| Failure::usage(why).hint("name axes by their numbers, with commas between"))?;
+        Ok(ranges.into_iter().flatten().collect())
     }
 
     /// Axes 1 and 2 as far as they are not named beside these numbers (4.2.1); none where all axes move.

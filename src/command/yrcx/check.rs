@@ -46,7 +46,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         "alarm",
         !output::ALARM.is_on(image),
         ("none", "SO(03) is on"),
-        "`yrcx info alarm` names it, `yrcx alarm reset` resets it",
+        "`yrcx alarm list` names it, `yrcx alarm reset` resets it",
     );
     let status = Status::from_word(image.0[0]);
     layers.judge(

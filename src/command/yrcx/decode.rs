@@ -3,7 +3,7 @@
 mod capture;
 pub mod images;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -12,31 +12,35 @@ use serde::Serialize;
 pub use self::capture::ImageDecoder;
 use super::raw::words;
 use crate::command::Report;
-use crate::command::decode::capture::Selection;
-use crate::command::decode::{self, field_table, in_parentheses, problem_lines};
+use crate::command::decode::capture::{Input, Selection};
+use crate::command::decode::{self, field_table, in_parentheses, problem_lines, stdin_bytes};
 use crate::controller::yrcx::describe::{Description, FieldNote, answer, command};
 use crate::controller::yrcx::image::Words;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
+use crate::transport::capture::{holds_telegram, parse_hex};
 
 /// Words of YRCX remote commands and their answers
 #[derive(Debug, Args)]
 #[command(
     after_help = "Words that are left away are 0. An answer is explained by its command, where that is given. Words that \
-    must not be sent are explained as far as they go, and the exit code is 5.\n\nOf a capture file, what the images \
+    must not be sent are explained as far as they go, and the exit code is 5.\n\nTelegrams of PROFIBUS may be given as \
+    bytes, one after the other; so may a file of them be, in hexadecimal or as they are. A telegram is its own packet \
+    then, and has no time.\n\nOf a capture file, what the images \
     say is listed in the words of --trace when it is new, with the messages of the fieldbus around it; NUMBER and TIME are \
     those of Wireshark. Nothing found is no failure. A file that is damaged is told up to there, and the exit code is 1."
 )]
 pub struct Decode {
     /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
-    #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "file"], value_parser = words)]
+    #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "capture"], value_parser = words)]
     wi: Option<Words>,
     /// WO0 to WO15, as in 0x4000,0x0002,0x014E
     #[arg(long, value_name = "WORDS", value_parser = words)]
     wo: Option<Words>,
-    /// A capture: FILE.pcap or FILE.pcapng
-    #[arg(conflicts_with_all = ["wi", "wo"])]
-    file: Option<PathBuf>,
+    /// A file: a capture (pcap or pcapng), a log of candump, or telegrams of PROFIBUS; - for stdin; or telegrams in
+    /// hexadecimal (blanks, colons and 0x may stand between the bytes)
+    #[arg(value_name = "FILE|HEX", conflicts_with_all = ["wi", "wo"])]
+    capture: Vec<String>,
     #[command(flatten)]
     selection: Selection,
     /// Images that say nothing new, too
@@ -50,8 +54,15 @@ impl decode::Decode for Decode {
     type Report = DecodedWords;
     type Capture = ImageDecoder;
 
-    fn capture(&self) -> Option<(&Path, ImageDecoder)> {
-        Some((self.file.as_deref()?, ImageDecoder::new(self.every_image)))
+    fn capture(&self) -> Result<Option<(Input<'_>, ImageDecoder)>, Failure> {
+        let input = match self.capture.as_slice() {
+            [] => return Ok(None),
+            [stdin] if stdin == "-" => Input::Bytes("stdin", stdin_bytes()?),
+            // No name of a capture has only digits of this kind.
+            [file] if parse_hex(file).is_err() => Input::File(Path::new(file)),
+            bytes => Input::Bytes("telegrams", telegrams(&bytes.join(" "))?),
+        };
+        Ok(Some((input, ImageDecoder::new(self.every_image))))
     }
 
     fn selection(&self) -> &Selection {
@@ -67,6 +78,17 @@ impl decode::Decode for Decode {
         let wo = self.wo.map(|wo| Part::new("answer", answer(&wo, self.wi.as_ref())));
         Ok(DecodedWords { parts: wi.into_iter().chain(wo).collect() })
     }
+}
+
+/// Telegrams that were typed: as the text that they are.
+fn telegrams(text: &str) -> Result<Vec<u8>, Failure> {
+    let hint = "give telegrams as 68 05 05 68 …, or the name of a file";
+    let bytes = parse_hex(text).map_err(|error| Failure::usage(error).hint(hint))?;
+    if holds_telegram(&bytes) {
+        return Ok(text.as_bytes().to_vec());
+    }
+    let failure = Failure::new(Kind::Malformed, "no telegram of PROFIBUS begins in these bytes");
+    Err(failure.hint("one begins with 10, 68, A2, DC or E5; a file whose name has only such digits is ./NAME"))
 }
 
 /// Words in words.
@@ -122,8 +144,8 @@ mod tests {
 
     fn explained(wi: Option<&str>, wo: Option<&str>) -> DecodedWords {
         let read = |text: &str| words(text).unwrap();
-        let (selection, file) = (Selection::default(), None);
-        Decode { wi: wi.map(read), wo: wo.map(read), file, selection, every_image: false }.decode().unwrap()
+        let (selection, capture) = (Selection::default(), Vec::new());
+        Decode { wi: wi.map(read), wo: wo.map(read), capture, selection, every_image: false }.decode().unwrap()
     }
 
     #[test]

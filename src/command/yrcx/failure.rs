@@ -161,7 +161,7 @@ fn verification_hint(command: Command) -> String {
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
             let kept = kept(row, "");
-            format!("keep clear; do not send it again; `yrcx info position` tells where the robot is{kept}")
+            format!("keep clear; do not send it again; `yrcx position` tells where the robot is{kept}")
         }
         (1, Pace::Power) => "`yrcx status` tells whether servos and motor power are on".to_owned(),
         (5, _) => "keep clear; `yrcx info tasks` tells what runs".to_owned(),

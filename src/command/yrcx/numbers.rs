@@ -23,6 +23,24 @@ impl Numbers {
     }
 }
 
+/// A name that ends in a number, or a range of them: `DO2`, `SO20..SO27`, `SI20-27`.
+#[derive(Debug, Clone)]
+pub struct Series<T>(Vec<T>);
+
+impl<T: Clone + Send + Sync + 'static> Series<T> {
+    /// What reads it; `read` reads one name.
+    pub fn reader(
+        read: impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static,
+    ) -> impl Fn(&str) -> Result<Self, String> + Clone + Send + Sync + 'static {
+        move |text| typed::series(text, &read).map(Self)
+    }
+
+    /// All that were given.
+    pub fn all(given: &[Self]) -> impl Iterator<Item = &T> {
+        given.iter().flat_map(|series| &series.0)
+    }
+}
+
 /// A single number for a field of a command.
 pub fn single(command: Command, key: Key, text: &str) -> Result<i32, String> {
     number(field(command, key)?, text)

@@ -1,11 +1,16 @@
 //! A robot of the family in the line that `armctl status` prints.
 
+use super::info::AlarmReport;
 use super::link::Link;
 use super::status::position_mm;
-use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
+use crate::command::face::sample::Alarm;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
+use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::{input, output};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 
 /// Why there is no position.
@@ -26,7 +31,27 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let not_asked = not_asked(link, &image);
     let position = if not_asked.is_none() { position_mm(link).await? } else { None };
     let position = position.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
-    Ok(OverviewReport { position, not_asked, ..report(link, &image) })
+    let has_alarm = output::ALARM.is_on(&image);
+    let alarm = if has_alarm && not_asked.is_none() { latest_alarm(link).await? } else { None };
+    Ok(OverviewReport { position, not_asked, ..report(link, &image, alarm.as_ref()) })
+}
+
+/// Asks for what the signal of an alarm does not tell.
+async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
+    let order = latest(link)?;
+    Ok(link.try_ask(&order).await?.ok().and_then(|done| alarm(&done.values)))
+}
+
+/// The question for the latest alarm. That entry 1 of the history is the latest is not in the manual.
+pub(super) fn latest(link: &Link) -> Result<Order, Failure> {
+    Ok(link.draft(Command::AlarmHistory)?.with(Key::History, 1).build()?)
+}
+
+/// What the answer to it tells.
+pub(super) fn alarm(values: &Values) -> Option<Alarm> {
+    let AlarmReport { code, meaning, remedies, .. } = AlarmReport::of(values);
+    let text = format!("{} (entry 1 of the history)", meaning.unwrap_or_default());
+    Some(Alarm { code: code?, text, remedy: remedies.join("; ") })
 }
 
 /// Why no remote command may be given only to look. Somebody else's is not waited for: it may be a motion.
@@ -40,8 +65,8 @@ pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     (!link.commands()).then_some(NOT_ASKED)
 }
 
-/// What the signals say.
-pub(super) fn report(link: &Link, image: &Image) -> OverviewReport {
+/// What the signals say, and what is known of the alarm.
+pub(super) fn report(link: &Link, image: &Image, alarm: Option<&Alarm>) -> OverviewReport {
     OverviewReport {
         reachable: true,
         mode: Some(if output::AUTO_MODE.is_on(image) { "auto" } else { "manual" }),
@@ -49,9 +74,7 @@ pub(super) fn report(link: &Link, image: &Image) -> OverviewReport {
         running: Some(output::PROGRAM_RUNNING.is_on(image)),
         held: link.shown().map(|shown| !input::STOP.is_on(shown)),
         alarm: Some(output::ALARM.is_on(image)),
-        error: None,
-        position: None,
-        not_asked: None,
-        failure: None,
+        fault: Fault::new(output::ALARM.is_on(image), alarm),
+        ..OverviewReport::default()
     }
 }

@@ -372,7 +372,8 @@ fn four(values: &Values, unit: Unit) -> String {
     format!("{} {}", Key::AXES.map(axis).join(", "), unit.symbol())
 }
 
-fn mm(steps: i32) -> String {
+/// Steps of a position in mm.
+pub fn mm(steps: i32) -> String {
     format!("{:.3}", f64::from(steps) / 1000.0)
 }
 

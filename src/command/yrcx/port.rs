@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Yrcx;
-use super::numbers::{named, single};
+use super::numbers::{Series, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
 use crate::command::frame::orders::Done;
@@ -106,9 +106,9 @@ impl Place {
 #[derive(Debug, Args)]
 #[command(after_help = NAMES)]
 pub struct Get {
-    /// Ports, or signals of them
-    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = place, add = complete::PORT)]
-    places: Vec<Place>,
+    /// Ports, or signals of them; DO2..DO5 is a range
+    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = Series::reader(place), add = complete::PORT)]
+    places: Vec<Series<Place>>,
 }
 
 impl Watchable for Get {
@@ -124,12 +124,13 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ports, Failure> {
         let Context { link, screen, .. } = context;
+        let places: Vec<Place> = Series::all(&self.places).copied().collect();
         let order = |place: &Place| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
-        let orders = self.places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading ports", &orders).await?;
-        let names = || self.places.iter().map(|place| place.told());
+        let names = || places.iter().map(|place| place.told());
         let of = |at: usize, values: &Values| {
-            let bit = self.places.get(at).and_then(|place| place.bit);
+            let bit = places.get(at).and_then(|place| place.bit);
             State::of(bit, values.int(Key::Value).unwrap_or_default())
         };
         let states = Several::of(names(), answers, of)?;

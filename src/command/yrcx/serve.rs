@@ -9,6 +9,7 @@ use super::buses::Servers;
 use super::fieldbus::Served;
 use super::simulated::start;
 use crate::command::serve::{self, Serving, Started};
+use crate::controller::simulator::console::help_line;
 use crate::failure::Failure;
 use crate::settings::target::bus::simulators;
 
@@ -16,7 +17,7 @@ use crate::settings::target::bus::simulators;
 #[derive(Debug, Args)]
 #[command(
     after_help = "One connection owns the outputs; others may only listen (role=input_only with out=238, listen_only with \
-    out=237). The console takes `mischief stall` and `mischief off`, too."
+    out=237)."
 )]
 pub struct ServeArgs {
     /// The fieldbus that it is on
@@ -32,8 +33,15 @@ pub struct ServeArgs {
     console: bool,
 }
 
+/// Lines of the console that are about the fieldbus.
+const MORE: [(&str, &str); 2] = [
+    ("mischief NAME|off", "misbehave on the fieldbus; a wrong name lists those there are"),
+    ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)"),
+];
+
 impl serve::Serve for ServeArgs {
     const ID: &'static str = "sim.yrcx";
+    const TARGET: &'static str = "eip://127.0.0.1:44818";
     type Report = Serving;
     type Server = Served;
 
@@ -45,6 +53,7 @@ impl serve::Serve for ServeArgs {
         let serve = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
         let server = serve.serve(wanted, start(self.state.as_deref())?)?;
         Ok(Started {
+            reach: serve::reach("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },
             address: server.address,
             server,
@@ -59,6 +68,8 @@ impl serve::Server for Served {
     }
 
     fn console(&mut self, line: &str) -> Result<String, String> {
-        (self.console)(line)
+        let told = (self.console)(line)?;
+        let more = MORE.map(|(typed, does)| format!("\n{}", help_line(typed, does)));
+        Ok(if line.trim() == "help" { told + &more.concat() } else { told })
     }
 }

@@ -9,6 +9,7 @@ use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::files;
 use crate::settings::target::Sim;
+use crate::transport::fault::FaultSpec;
 
 /// A simulator in this process, in the start state that the URL names.
 pub fn in_process(sim: &Sim) -> Result<Simulated, Failure> {
@@ -28,6 +29,33 @@ pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
         Failure::usage(format!("{}: {error}", path.display()))
             .hint("`armctl help simulator` shows the form of the file")
     })
+}
+
+/// What goes wrong on the way, of a kind that a YRCX can meet.
+pub fn faults(text: &str) -> Result<FaultSpec, String> {
+    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
+    if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
+}
+
+/// The same where frames have a checksum, so that a damaged one does not arrive.
+pub fn faults_of_frames(text: &str, link: &str) -> Result<FaultSpec, String> {
+    let spec = faults(text)?;
+    if spec.corrupt.per_10_000() > 0 {
+        return Err(format!("corrupt is not for {link}, whose frames have a checksum"));
+    }
+    Ok(spec)
+}
+
+/// The faults and the mischief of a URL, each as its fieldbus reads it.
+pub fn wrongs<F, M>(
+    sim: &Sim,
+    faults: impl Fn(&str) -> Result<F, String>,
+    mischief: impl Fn(&str) -> Result<M, String>,
+) -> Result<(Option<F>, Option<M>), Failure> {
+    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
+    let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
+    let mischief = sim.mischief.as_deref().map(mischief).transpose();
+    Ok((faults, mischief.map_err(|why| wrong(format!("mischief: {why}")))?))
 }
 
 /// What goes wrong, by its name.

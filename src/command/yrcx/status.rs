@@ -7,9 +7,10 @@ use serde::Serialize;
 use super::info::{AxisServo, servos};
 use super::link::Link;
 use super::link::Yrcx;
-use super::overview::not_asked;
+use super::overview::{alarm, latest, not_asked};
 use super::position::{Position, Unit};
 use super::several::ask_each;
+use crate::command::face::overview::Fault;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items::{ItemError, verdict};
 use crate::command::{Command, ConnectMode, Context, Report};
@@ -47,8 +48,11 @@ impl Command for Status {
         let Context { link, screen, .. } = context;
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
         let position = link.draft(table::Command::PositionMm)?.build()?;
-        let orders = [servo, position];
+        let mut orders = vec![servo, position];
+        let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
+            let reason = Reason::about("which alarm").depending_on("whether there is one");
+            link.plan_depending(&latest, &latest, reason);
             link.plan_all(&orders)?;
         }
         if link.is_dry() && link.is_held() {
@@ -64,15 +68,19 @@ impl Command for Status {
             return Ok(StatusReport { not_asked, ..StatusReport::of(&image) });
         }
         let mut report = StatusReport::of(&image);
+        if report.alarm {
+            orders.push(latest);
+        }
         let outcomes = match ask_each(link, screen, "reading servos and position", &orders).await {
             Ok(answers) => answers.outcomes,
             Err(failure) if failure.kind == Kind::Usage => return Err(failure),
             // The signals are known, whatever became of the rest.
-            Err(failure) => vec![Err(failure.clone()), Err(failure)],
+            Err(failure) => vec![Err(failure); orders.len()],
         };
-        for (name, outcome) in ["servos", "position"].into_iter().zip(outcomes) {
+        for (name, outcome) in ["servos", "position", "alarm"].into_iter().zip(outcomes) {
             match outcome {
                 Ok(values) if name == "servos" => report.servos = Some(servos(&values)),
+                Ok(values) if name == "alarm" => report.fault = Fault::new(true, alarm(&values).as_ref()),
                 Ok(values) => report.position = Position::of(&values, Some(Unit::Mm)),
                 Err(failure) => report.errors.push(ItemError::new(name, failure)),
             }
@@ -81,7 +89,7 @@ impl Command for Status {
     }
 }
 
-/// What is looked at: signals, servos, position.
+/// What is looked at: signals, servos, position, and the alarm where there is one.
 const PARTS: usize = 3;
 
 /// How the controller stands (chapter 1, section 2).
@@ -112,6 +120,9 @@ pub struct StatusReport {
     program_reset: bool,
     /// SO(15): a warning.
     warning: bool,
+    /// The alarm of SO(03); which one it is is a remote command.
+    #[serde(flatten)]
+    fault: Fault,
     /// The servo of each axis; null where that was not asked.
     servos: Option<Vec<AxisServo>>,
     /// Why servos and position were not asked; null where they were.
@@ -138,6 +149,7 @@ impl StatusReport {
             program_running: output::PROGRAM_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
+            fault: Fault::new(output::ALARM.is_on(image), None),
             servos: None,
             not_asked: None,
             position: Position::default(),
@@ -161,7 +173,10 @@ impl Report for StatusReport {
         let view = View::fields([
             ("remote command", self.command_status.as_str().into()),
             ("emergency stop", toned(self.emergency_stop, Tone::Bad)),
-            ("alarm", toned(self.alarm, Tone::Bad)),
+            (
+                "alarm",
+                self.fault.told().map_or_else(|| toned(self.alarm, Tone::Bad), |told| Cell::from(told).tone(Tone::Bad)),
+            ),
             ("warning", toned(self.warning, Tone::Warning)),
             ("CPU OK", good(self.cpu_ok)),
             ("MP ready", good(self.mp_ready)),
@@ -184,7 +199,7 @@ impl Report for StatusReport {
     }
 
     fn failure(&self) -> Option<Failure> {
-        verdict(PARTS, &self.errors)
+        verdict(PARTS + usize::from(self.alarm), &self.errors)
     }
 }
 

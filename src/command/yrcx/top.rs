@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use tokio::time::Instant;
 
-use super::info::{AlarmReport, servos};
+use super::info::servos;
 use super::link::{Link, Yrcx};
-use super::overview::{not_asked, report};
+use super::overview::{alarm, latest, not_asked, report};
 use super::position::{Position, Unit};
 use crate::command::face::declared;
 use crate::command::face::overview::{OverviewReport, PositionMm};
@@ -21,7 +21,7 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::signal::{Side, Signal, output};
 use crate::controller::yrcx::table::Command;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::Tone;
@@ -78,7 +78,7 @@ impl declared::Poller for Poller {
             self.told.alarm = None;
         }
         let position = self.told.position_mm.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
-        let line = OverviewReport { position, not_asked, ..report(&self.link, &image) };
+        let line = OverviewReport { position, not_asked, ..report(&self.link, &image, self.told.alarm.as_ref()) };
         let whole = (detail == Detail::Full).then(|| self.whole(&image, not_asked));
         Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
     }
@@ -120,12 +120,11 @@ impl Poller {
 
     /// Gives a remote command that only reads, and remembers what it tells.
     async fn put(&mut self, command: Command) -> Result<(), Failure> {
-        let draft = self.link.draft(command)?;
         let order: Order = match command {
-            Command::AlarmHistory => draft.with(Key::History, 1).build()?,
+            Command::AlarmHistory => latest(&self.link)?,
             // No axis named: all of them.
-            Command::TorqueOfMax => draft.with(Key::Axes, 0).build()?,
-            _ => draft.build()?,
+            Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).build()?,
+            _ => self.link.draft(command)?.build()?,
         };
         // A refusal is no answer here: a robot that does not know its origin refuses to tell its position.
         let done = self.link.try_ask(&order).await?.ok();
@@ -172,13 +171,6 @@ impl Poller {
         });
         axes.collect()
     }
-}
-
-/// An entry of the history. That 1 is the latest is not in the manual.
-fn alarm(values: &Values) -> Option<Alarm> {
-    let AlarmReport { code, meaning, remedies, .. } = AlarmReport::of(values);
-    let text = format!("{} (entry 1 of the history)", meaning.unwrap_or_default());
-    Some(Alarm { code: code?, text, remedy: remedies.join("; ") })
 }
 
 fn indicators(image: &Image) -> Vec<Indicator> {

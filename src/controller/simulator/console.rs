@@ -31,6 +31,29 @@ pub(crate) fn unknown(line: &str) -> String {
     format!("no such line: '{}'", line.trim())
 }
 
+/// A line of the help: what is typed, and what it does.
+pub fn help_line(typed: &str, does: &str) -> String {
+    format!("{typed:<32}  {does}")
+}
+
+/// The help: the lines of a family, and those that every console has.
+pub(crate) fn help(lines: &[(&str, &str)]) -> String {
+    let common = [
+        ("robot", "show what the controller is in; `state` is the same"),
+        ("help", "show these lines"),
+        ("quit", "end the simulator"),
+    ];
+    let lines = lines.iter().chain(&common).map(|(typed, does)| help_line(typed, does));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+/// Names and what they are, in two columns.
+pub(crate) fn table(rows: &[(String, String)]) -> String {
+    let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or_default();
+    let lines = rows.iter().map(|(name, what)| format!("{name:<width$}  {what}").trim_end().to_owned());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
 /// One line from what always holds and what holds now.
 pub(crate) fn summary<'a>(always: &[&'a str], now: impl IntoIterator<Item = (bool, &'a str)>) -> String {
     let now = now.into_iter().filter_map(|(holds, text)| holds.then_some(text));

@@ -3,6 +3,6 @@
 //! A family adds what is its own: the keys of its start state, the lines of its console, and the controller itself.
 
 pub(crate) mod answers;
-pub(crate) mod console;
+pub mod console;
 pub(crate) mod start;
 pub(crate) mod timeline;

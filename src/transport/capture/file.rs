@@ -38,7 +38,7 @@ pub enum OpenError {
     /// Compressed by gzip or zstd.
     #[error("it is compressed")]
     Compressed,
-    /// Neither pcap nor pcapng.
+    /// Neither pcap nor pcapng, nor anything else that is known.
     #[error("it is not a pcap or pcapng file")]
     Other,
     /// Reading has failed.

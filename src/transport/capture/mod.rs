@@ -1,10 +1,11 @@
 //! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
 //!
-//! `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
+//! `dump` finds the telegrams of a line that was recorded byte by byte. `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
 //! panic. The packets are found by a reader of our own: `pcap-file` stops at a packet with a comment that is not UTF-8 or
 //! an original length of 0, where nothing that is needed is damaged, and takes a length that no block has for the end of
 //! the file.
 
+mod dump;
 mod file;
 mod layers;
 mod stream;
@@ -13,12 +14,14 @@ use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use self::dump::Form;
 use self::file::Packets;
 use self::layers::{PacketContent, Payload, content_of};
 use self::stream::{Piece, Streams};
 use super::devicenet::can::Frame;
 use super::tap::Direction;
 
+pub use self::dump::{holds_telegram, parse_hex};
 pub use self::file::{Damage, OpenError};
 
 /// Bytes that passed, with where and when.
@@ -108,8 +111,12 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     let mut summary = Summary::default();
     let mut streams = Streams::default();
     let mut file = BufReader::new(file);
-    if file.fill_buf().is_ok_and(|bytes| bytes.starts_with(b"(")) {
+    let beginning = file.fill_buf().unwrap_or_default();
+    if beginning.starts_with(b"(") {
         return Ok(candump(file, each));
+    }
+    if let Some(form) = Form::of(beginning) {
+        return Ok(dump::read(file, form, each));
     }
     let mut packets = Packets::open(file)?;
     while let Some(packet) = packets.next() {

@@ -1,7 +1,7 @@
 //! A network in this process: one device, this machine, and a clock of its own that never waits. What is asked of the
 //! device is answered at once; a connection that is open keeps to the clock of the program.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -19,6 +19,7 @@ use super::settings::Settings;
 use super::wire::Mac;
 use super::wire::dcp::IpSuite;
 use super::wire::rpc::PORT;
+use crate::fault::{FaultSpec, Faults};
 use crate::image::ImagePeer;
 use crate::image::view::State;
 
@@ -80,6 +81,23 @@ struct Inner {
     /// What came from the station and was not taken yet.
     frames: VecDeque<Vec<u8>>,
     datagrams: VecDeque<(SocketAddrV4, Vec<u8>)>,
+    /// What goes wrong on the way to the station, and on the way back.
+    faults: Option<(Faults, Faults)>,
+    /// What is on its way, by when it arrives and how much was sent before.
+    on_the_way: BTreeMap<(Now, u64), (Way, Vec<u8>)>,
+    sent: u64,
+}
+
+/// Most that is on its way.
+const MOST_ON_THE_WAY: usize = 10_000;
+
+/// From one end of the cable to the other.
+#[derive(Debug, Clone, Copy)]
+enum Way {
+    FrameThere,
+    DatagramThere,
+    FrameBack,
+    DatagramBack(SocketAddrV4),
 }
 
 impl fmt::Debug for Inner {
@@ -96,13 +114,24 @@ fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
 }
 
 impl Network {
-    /// One with this device, which has its card and address there.
-    pub fn new<A: Application + Send + 'static>(device: impl FnOnce(Mac, IpSuite) -> Device<A>) -> Self {
+    /// One with this device, which has its card and address there, and with what goes wrong on the way to it and back.
+    pub fn new<A: Application + Send + 'static>(
+        device: impl FnOnce(Mac, IpSuite) -> Device<A>,
+        faults: Option<FaultSpec>,
+    ) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(1);
         // No interface of Linux has a colon in its name.
         let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let station = Box::new(device(THERE.0, THERE.1));
-        let inner = Inner { now: Now::ZERO, station, frames: VecDeque::new(), datagrams: VecDeque::new() };
+        let inner = Inner {
+            now: Now::ZERO,
+            station,
+            frames: VecDeque::new(),
+            datagrams: VecDeque::new(),
+            faults: faults.map(Faults::pair),
+            on_the_way: BTreeMap::new(),
+            sent: 0,
+        };
         let inner = Arc::new(Mutex::new(inner));
         let mut all = all();
         all.retain(|(_, other)| other.strong_count() > 0);
@@ -149,16 +178,12 @@ impl Network {
     }
 
     pub(super) fn send_frame(&self, bytes: &[u8]) {
-        let mut inner = self.inner();
-        let now = inner.now;
-        inner.station.frame(now, bytes);
+        self.inner().send(Way::FrameThere, bytes);
     }
 
     pub(super) fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) {
-        let mut inner = self.inner();
-        let now = inner.now;
         if to == SocketAddrV4::new(THERE.1.address, PORT) {
-            inner.station.datagram(now, SocketAddrV4::new(HERE.ip.address, PORT), bytes);
+            self.inner().send(Way::DatagramThere, bytes);
         }
     }
 
@@ -174,17 +199,51 @@ impl Network {
 }
 
 impl Inner {
-    /// Lets the station do all that it has to do now.
-    fn settle(&mut self) {
-        while let Some(action) = self.station.poll(self.now) {
-            match action {
-                Action::Frame(bytes) => self.frames.push_back(bytes),
-                Action::Datagram(_, bytes) => {
-                    let from = self.station.answers_from().unwrap_or(THERE.1.address);
-                    self.datagrams.push_back((SocketAddrV4::new(from, PORT), bytes));
-                }
+    /// Sends something, which may get lost, come late or twice.
+    fn send(&mut self, way: Way, bytes: &[u8]) {
+        let Some((there, back)) = &mut self.faults else { return self.arrive(way, bytes) };
+        let faults = if matches!(way, Way::FrameThere | Way::DatagramThere) { there } else { back };
+        for (at, bytes) in faults.pass(self.now, bytes) {
+            self.sent += 1;
+            if self.on_the_way.len() < MOST_ON_THE_WAY {
+                self.on_the_way.insert((at, self.sent), (way, bytes));
             }
         }
+    }
+
+    fn arrive(&mut self, way: Way, bytes: &[u8]) {
+        match way {
+            Way::FrameThere => self.station.frame(self.now, bytes),
+            Way::DatagramThere => self.station.datagram(self.now, SocketAddrV4::new(HERE.ip.address, PORT), bytes),
+            Way::FrameBack => self.frames.push_back(bytes.to_vec()),
+            Way::DatagramBack(from) => self.datagrams.push_back((from, bytes.to_vec())),
+        }
+    }
+
+    /// Lets everything arrive that is due, and the station do all that it has to do now.
+    fn settle(&mut self) {
+        loop {
+            if let Some(first) = self.on_the_way.first_entry().filter(|first| first.key().0 <= self.now) {
+                let (way, bytes) = first.remove();
+                self.arrive(way, &bytes);
+            } else if let Some(action) = self.station.poll(self.now) {
+                match action {
+                    Action::Frame(bytes) => self.send(Way::FrameBack, &bytes),
+                    Action::Datagram(_, bytes) => {
+                        let from = self.station.answers_from().unwrap_or(THERE.1.address);
+                        self.send(Way::DatagramBack(SocketAddrV4::new(from, PORT)), &bytes);
+                    }
+                }
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// When something happens next.
+    fn wake(&self) -> Option<Now> {
+        let arrival = self.on_the_way.first_key_value().map(|((at, _), _)| *at);
+        arrival.into_iter().chain(self.station.wake()).min()
     }
 
     fn hear<T>(&mut self, until: Now, mut take: impl FnMut(&mut Self) -> Option<T>) -> Option<T> {
@@ -193,7 +252,7 @@ impl Inner {
             if let Some(taken) = take(self) {
                 return Some(taken);
             }
-            let Some(wake) = self.station.wake().filter(|wake| *wake < until) else {
+            let Some(wake) = self.wake().filter(|wake| *wake < until) else {
                 self.now = self.now.max(until);
                 return None;
             };
@@ -214,7 +273,7 @@ pub struct Link {
 impl Link {
     /// Does what is due, and says when to do so again.
     fn settle(&mut self, inner: &mut Inner) -> Option<Now> {
-        let (controller, here) = (&mut self.controller, SocketAddrV4::new(HERE.ip.address, PORT));
+        let controller = &mut self.controller;
         loop {
             inner.settle();
             if let Some(bytes) = inner.frames.pop_front() {
@@ -223,14 +282,14 @@ impl Link {
                 controller.datagram(inner.now, from, &bytes);
             } else if let Some(action) = controller.poll(inner.now) {
                 match action {
-                    Action::Frame(bytes) => inner.station.frame(inner.now, &bytes),
+                    Action::Frame(bytes) => inner.send(Way::FrameThere, &bytes),
                     Action::Datagram(to, bytes) if *to.ip() == THERE.1.address => {
-                        inner.station.datagram(inner.now, here, &bytes);
+                        inner.send(Way::DatagramThere, &bytes);
                     }
                     Action::Datagram(..) => {}
                 }
             } else {
-                return controller.wake().into_iter().chain(inner.station.wake()).min();
+                return controller.wake().into_iter().chain(inner.wake()).min();
             }
         }
     }
@@ -283,8 +342,8 @@ impl ImagePeer for Link {
     }
 
     fn wake(&self) -> Option<Duration> {
-        let station = self.network.inner().station.wake();
-        let next = self.controller.wake().into_iter().chain(station).min()?;
+        let network = self.network.inner().wake();
+        let next = self.controller.wake().into_iter().chain(network).min()?;
         Some(next.saturating_sub(self.start))
     }
 }

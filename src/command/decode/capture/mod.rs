@@ -70,6 +70,31 @@ pub fn file_among(arguments: &[String]) -> Option<&Path> {
     matches!(extension.as_str(), "pcap" | "pcapng" | "cap").then_some(path)
 }
 
+/// Where a capture is.
+#[derive(Debug)]
+pub enum Input<'a> {
+    /// In a file.
+    File(&'a Path),
+    /// Here; with what it is called.
+    Bytes(&'static str, Vec<u8>),
+}
+
+impl Input<'_> {
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Bytes(name, _) => (*name).to_owned(),
+        }
+    }
+
+    fn open(&self) -> io::Result<Box<dyn Read + '_>> {
+        Ok(match self {
+            Self::File(path) => Box::new(files::open(path)?),
+            Self::Bytes(_, bytes) => Box::new(bytes.as_slice()),
+        })
+    }
+}
+
 /// A report, unless there is no room for one, and the decoder, ready to begin anew.
 type Captured<D> = (Option<Capture<<D as CaptureDecoder>::Field>>, D);
 
@@ -203,12 +228,12 @@ impl<F> DecodedMessage<F> {
 pub fn print<D: CaptureDecoder>(
     run: &Run,
     id: &str,
-    path: &Path,
+    input: &Input<'_>,
     selection: &Selection,
     decoder: D,
 ) -> Result<(), RunError> {
-    let name = path.display().to_string();
-    let source = Source { name: &name, open: || files::open(path), selection };
+    let name = input.name();
+    let source = Source { name: &name, open: || input.open(), selection };
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
     let room = if is_streamed { FEW } else { ROOM };
     let (capture, decoder) = {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use clap::Args;
+use clap::{Args, FromArgMatches as _};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -42,17 +42,28 @@ fn wait(text: &str) -> Result<Duration, String> {
 }
 
 impl Discover {
+    /// As without arguments.
+    pub fn usual() -> Self {
+        let matches = Self::augment_args(clap::Command::new("discover")).get_matches_from(["discover"]);
+        Self::from_arg_matches(&matches).expect("nothing is required, as tests show")
+    }
+
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         if run.gate.dry_run {
             return Err(Failure::usage("nothing is found without asking").hint("it only asks who is there").into());
         }
+        run.local("robots.discover", &self.find(run).await?)
+    }
+
+    /// Asks who is there.
+    pub async fn find(self, run: &Run) -> Result<Discovered, Failure> {
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
         run.begin_trace()?;
         let boards = discover::discover(&self.searches, self.wait, &access, &run.screen).await?;
         let has_ports = discover::scope(&self.searches) < Scope::Devices;
         let serial_ports = if has_ports { serial_ports(run) } else { Vec::new() };
         let nothing = if has_ports { NOTHING } else { "nobody answered" };
-        run.local("robots.discover", &Discovered { boards, serial_ports, nothing })
+        Ok(Discovered { boards, serial_ports, nothing })
     }
 }
 
@@ -74,6 +85,15 @@ pub struct Discovered {
     nothing: &'static str,
 }
 
+impl Discovered {
+    /// Each with its target, its family where that is known, and what it is.
+    pub fn places(&self) -> Vec<(String, Option<&'static str>, String)> {
+        let boards = self.boards.iter().map(|board| (board.target.clone(), board.family, board.device.clone()));
+        let port = |port: &Port| (port.target().to_owned(), None, format!("serial port: {}", port.device()));
+        boards.chain(self.serial_ports.iter().map(port)).collect()
+    }
+}
+
 /// Said of an empty report.
 const NOTHING: &str = "nobody answered, and no serial port was found; is this machine in the robots' network? \
                        --broadcast 192.168.0.255 asks a certain one";
@@ -81,12 +101,10 @@ const NOTHING: &str = "nobody answered, and no serial port was found; is this ma
 impl Report for Discovered {
     fn view(&self) -> View {
         let mut table = Table::new(&["family", "target", "device"], self.nothing);
-        for FoundDevice { target, family, device, .. } in &self.boards {
-            table.row([Cell::maybe(*family), Cell::from(target.as_str()).whole(), device.as_str().into()]);
-        }
-        for port in &self.serial_ports {
-            let device = format!("serial port: {}", port.device());
-            table.row(["toyo?".into(), Cell::from(port.target()).whole(), device.into()]);
+        for (number, (target, family, device)) in self.places().into_iter().enumerate() {
+            let is_port = number >= self.boards.len();
+            let family = if is_port { "toyo?".into() } else { Cell::maybe(family) };
+            table.row([family, Cell::from(target).whole(), device.into()]);
         }
         View::table(table)
     }
@@ -95,6 +113,11 @@ impl Report for Discovered {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_argument_is_required() {
+        assert_eq!(Discover::usual().wait, Duration::from_millis(2500));
+    }
 
     #[test]
     fn nobody_waits_for_ever() {

@@ -327,7 +327,7 @@ impl Seen {
             return Trouble::Silent;
         }
         let Some(line) = self.sample().map(|sample| &sample.line) else { return Trouble::Held };
-        match (line.alarm == Some(true) || line.error == Some(true), line.held) {
+        match (line.fault.faulted == Some(true), line.held) {
             (true, _) => Trouble::Alarm,
             (_, Some(true)) => Trouble::Held,
             _ => Trouble::None,
@@ -340,12 +340,7 @@ impl Seen {
             return (in_short(failure.kind).to_owned(), Tone::Bad);
         }
         let Some(sample) = self.sample() else { return ("waiting".to_owned(), Tone::Plain) };
-        match (sample.alarms.first(), sample.line.alarm, sample.line.error) {
-            (Some(alarm), ..) => (format!("{} {}", alarm.code, alarm.text), Tone::Bad),
-            (None, Some(true), _) => ("alarm".to_owned(), Tone::Bad),
-            (None, _, Some(true)) => ("error".to_owned(), Tone::Bad),
-            _ => (String::new(), Tone::Plain),
-        }
+        sample.line.trouble().map_or_else(Default::default, |told| (told, Tone::Bad))
     }
 }
 
@@ -373,6 +368,7 @@ fn nearest(every: Duration, faster: bool) -> Duration {
 mod tests {
     use super::super::testing::{fleet, sample, silence};
     use super::*;
+    use crate::command::face::overview::Fault;
 
     const NOW: Moment = Duration::from_secs(10);
     const EVERY: Duration = Duration::from_millis(500);
@@ -387,7 +383,7 @@ mod tests {
         model.take(NOW, 0, Ok(sample(0.0)));
         model.take(NOW, 1, Err(silence()));
         let mut alarmed = sample(0.0);
-        alarmed.line.alarm = Some(true);
+        alarmed.line.fault = Fault::new(true, None);
         model.take(NOW, 2, Ok(alarmed));
         assert_eq!(names(&model), ["cell1", "cell2", "cell3", "cell4"]);
         model.obey(NOW, Order::Sort);

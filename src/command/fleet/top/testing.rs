@@ -1,6 +1,6 @@
 //! Robots and samples for tests.
 
-use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
 use crate::command::face::sample::{Alarm, Axis, Bank, Indicator, Sample, SignalByte, Whole};
 use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
@@ -35,9 +35,9 @@ pub fn sample(position: f64) -> Sample {
         held: Some(false),
         alarm: Some(false),
         error: Some(false),
+        fault: Fault::new(false, None),
         position: Some(PositionMm { x_mm: 1000.5, y_mm: -20.25, z_mm: 1234.0 }),
-        not_asked: None,
-        failure: None,
+        ..OverviewReport::default()
     };
     let joint = |name: &str, position, torque| Axis {
         name: name.to_owned(),
@@ -90,6 +90,7 @@ pub fn alarmed() -> Sample {
     let alarm = |code: &str, text: &str| Alarm { code: code.to_owned(), text: text.to_owned(), remedy: String::new() };
     alarmed.alarms = vec![alarm("4315", "COLLISION DETECT [SLURBT]"), alarm("1020", "衝突\x1b[2J検出")];
     alarmed.alarms[0].remedy = "look for what the robot ran into".to_owned();
+    alarmed.line.fault = Fault::new(true, alarmed.alarms.first());
     alarmed
 }
 

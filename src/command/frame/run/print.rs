@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{Run, RunError};
-use crate::command::frame::{AnyReport, Outcome};
+use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
 use crate::output::flat::{Lists, Rows};
@@ -56,15 +56,14 @@ impl Run {
     /// Writes what several robots reported, and says it as envelopes.
     pub(super) fn print_many(
         &self,
-        id: &str,
+        command: &dyn AnyCommand,
         robots: &[Robot],
         outcomes: &[Outcome],
         place: Place<'_>,
     ) -> Result<Vec<Envelope>, Failure> {
-        let envelopes = robots
-            .iter()
-            .zip(outcomes)
-            .map(|(robot, outcome)| enveloped(robot, id, outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone)));
+        let envelopes = robots.iter().zip(outcomes).map(|(robot, outcome)| {
+            enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
+        });
         let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
@@ -92,6 +91,9 @@ impl Run {
         } else {
             self.show_many(&views, place)?;
         }
+        if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
+            self.screen.note(&summary);
+        }
         for (robot, failure) in reasons {
             // Failures of the link name the robot already.
             let label = robot.label();
@@ -101,6 +103,11 @@ impl Run {
             self.screen.failure(&Failure { message, ..failure });
         }
         Ok(envelopes)
+    }
+
+    /// Whether people see a table once, with room below it.
+    fn has_trailer(&self) -> bool {
+        self.screen.format == Format::Table && !self.redraw.is_on() && !self.gate.dry_run
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.

@@ -28,7 +28,7 @@ pub struct Get {
     names: Vec<String>,
     /// Folder to put them in; - writes one file to stdout
     #[arg(long, value_name = "DIR", default_value = ".")]
-    output: PathBuf,
+    dir: PathBuf,
     /// Replace local files that exist
     #[arg(long)]
     force: bool,
@@ -44,13 +44,13 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
         let Context { link, screen, robot, several, .. } = context;
         let files = name::all_typed(link.encoding, &self.names)?;
-        let to_stdout = self.output == Path::new("-");
+        let to_stdout = self.dir == Path::new("-");
         if to_stdout {
             self.check_stdout(*screen, several)?;
         }
         // Paths without a leading `./` are easier to read.
-        let output = if self.output == Path::new(".") { Path::new("") } else { &self.output };
-        let folder = own_folder(output, &robot.name, several);
+        let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
+        let folder = own_folder(dir, &robot.name, several);
         let targets = if to_stdout { Vec::new() } else { targets(link.encoding, &files, &folder, self.force)? };
         if link.is_dry() {
             transfer::plan_all(link, "fetches the file", files.iter().map(FileName::save))?;
@@ -80,10 +80,10 @@ impl Command for Get {
 impl Get {
     fn check_stdout(&self, screen: Screen, several: bool) -> Result<(), Failure> {
         if self.names.len() > 1 || several {
-            return Err(Failure::usage("--output - writes one file of one robot").hint("name a folder for several"));
+            return Err(Failure::usage("--dir - writes one file of one robot").hint("name a folder for several"));
         }
         if screen.is_json() {
-            return Err(Failure::usage("--output - writes the bytes of the file, which are no JSON")
+            return Err(Failure::usage("--dir - writes the bytes of the file, which are no JSON")
                 .hint("leave out --json, --jq and -o, or name a folder"));
         }
         Ok(())

@@ -260,11 +260,10 @@ impl Restore {
                 chosen.push((file, entry));
             }
         }
-        if chosen.is_empty() && self.patterns != Only::default() {
-            return Err(Failure::usage(
-                "these files are parameters or system data, which change the controller itself",
-            )
-            .hint("add --machine if that is meant"));
+        if chosen.is_empty() {
+            let message = "what there is to restore are lists, parameters or system data, which change the controller";
+            return Err(Failure::usage(message)
+                .hint("add --machine if that is meant; `yerc file restore` has --type, as in --type lst"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));

@@ -28,10 +28,10 @@ use crate::output::view::View;
 )]
 pub struct Get {
     /// Such as 20010, #20010 or 20010..20027
-    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_parser = Signals::parse)]
+    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = Signals::parse)]
     signals: Vec<Signals>,
     /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
-    #[arg(long = "group", value_name = "GROUP", value_parser = Groups::parse)]
+    #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
     groups: Vec<Groups>,
 }
 

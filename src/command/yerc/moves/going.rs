@@ -6,19 +6,19 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use crate::command::Report;
+use super::question::{Question, moved_meanwhile};
 use crate::command::frame::dry_run::Known as _;
-use crate::command::yerc::link::{Link, Refusal};
+use crate::command::yerc::link::{Link, Refusal, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
+use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
 use crate::controller::yerc::status::is_absent;
 use crate::failure::{Failure, Kind};
-use crate::output::Screen;
 use crate::output::view::{Cell, Tone, View};
 use crate::settings::duration;
 
@@ -118,21 +118,32 @@ fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
 }
 
 impl<Q: Query<Answer = ()>> Going<Q> {
-    /// Orders the motion and, unless told otherwise, waits for its end.
-    pub(super) async fn run(self, link: &mut Link, screen: &Screen) -> Result<Moved, Failure> {
+    /// Has the motion confirmed, orders it and, unless told otherwise, waits for its end.
+    pub(super) async fn run(self, context: Context<'_, Yerc>, question: &Question<'_>) -> Result<Moved, Failure> {
+        let Context { link, screen, authority, .. } = context;
         let Self { order, group, mut goal, unnamed, no_wait } = self;
         let coordinates = goal.coordinates();
         let mut start = None;
         for (group, named, flag) in unnamed {
             refuse_silent_zeros(link, group, named, flag).await?;
         }
-        if !no_wait
+        let is_asked = authority.asks();
+        if (is_asked || !no_wait)
             && let Some((position, _)) =
                 position::ask(link.is_for("where it stands"), group, coordinates).await.known()?
         {
             goal = goal.from(&position);
             start = Some(position);
         }
+        authority.confirm(&question.change(group, start.as_ref(), &goal)).await?;
+        if let (Some(asked), true) = (&start, is_asked) {
+            let (now, _) = position::ask(link, group, coordinates).await?;
+            if !stands(asked, &now) {
+                return Err(Failure::new(Kind::Rejected, moved_meanwhile(group, &now))
+                    .hint("somebody else is at work there: look, then repeat the command"));
+            }
+        }
+        let start = start.filter(|_| !no_wait);
         link.is_for("orders the motion").ask(&order).await?;
         if link.is_dry() && !no_wait {
             plan_looks(link, group, coordinates)?;

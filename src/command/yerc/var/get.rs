@@ -25,7 +25,7 @@ use crate::output::view::{Cell, Table, View};
                         say so.")]
 pub struct Get {
     /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
-    #[arg(required = true, value_name = "REF", value_parser = Named::parse, add = complete::VARIABLE)]
+    #[arg(required = true, value_name = "REF", value_delimiter = ',', value_parser = Named::parse, add = complete::VARIABLE)]
     variables: Vec<Named>,
     /// Read strings by the 16-byte commands, also from a DX200
     #[arg(long)]

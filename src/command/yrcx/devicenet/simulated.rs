@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
+use crate::command::yrcx::simulated::{self, Simulated, fault_by_name, start, wrongs};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -27,9 +27,7 @@ pub(super) const MAC: u8 = 5;
 
 /// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
 pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
-    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
-    let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
-    let fault = sim.mischief.as_deref().map(fault).transpose().map_err(|why| wrong(format!("mischief: {why}")))?;
+    let (faults, fault) = wrongs(sim, faults, fault)?;
     let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
     let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault);
@@ -81,16 +79,7 @@ pub fn setup(mac: Mac, size: usize, bitrate: Bitrate) -> Setup {
 
 /// Faults of frames on their way.
 pub fn faults(text: &str) -> Result<FaultSpec, String> {
-    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
-    if spec.busy.per_10_000() > 0 {
-        return Err("busy is not for yrcx".to_owned());
-    }
-    // A damaged frame is not one that arrives damaged: its checksum has it sent again.
-    if spec.corrupt.per_10_000() > 0 {
-        Err("corrupt is not for CAN, whose frames have a checksum".to_owned())
-    } else {
-        Ok(spec)
-    }
+    simulated::faults_of_frames(text, "CAN")
 }
 
 /// What a slave does wrong, by its name.

@@ -4,9 +4,10 @@ use std::net::SocketAddrV4;
 
 use clap::Args;
 
-use super::simulated::{self, Controller, faults, mischief};
+use super::simulated::{self, Controller, mischief};
 use crate::command::serve::{address, cannot_listen};
 use crate::command::yrcx::fieldbus::{Serve, Served};
+use crate::command::yrcx::simulated::faults;
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::eip::SCHEME;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults, start, wrongs};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
@@ -22,10 +22,7 @@ use crate::transport::image::ImagePeer;
 
 /// A simulator as an adapter on the loopback, with what the URL wants to go wrong.
 pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
-    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
-    let faults = sim.fault.as_deref().map(faults).transpose().map_err(|why| wrong(format!("fault: {why}")))?;
-    let mischief = sim.mischief.as_deref().map(mischief).transpose();
-    let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
+    let (faults, mischief) = wrongs(sim, faults, mischief)?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim.state.as_deref())?, listen, faults);
     let server = server.context("the simulator on the loopback")?;
@@ -68,12 +65,6 @@ fn identity() -> Identity {
         name: "YRCX simulator of armctl".to_owned(),
         state: Some(OPERATIONAL),
     }
-}
-
-/// Faults of images on their way.
-pub fn faults(text: &str) -> Result<FaultSpec, String> {
-    let spec: FaultSpec = text.parse().map_err(|error| format!("{error}"))?;
-    if spec.busy.per_10_000() > 0 { Err("busy is not for yrcx".to_owned()) } else { Ok(spec) }
 }
 
 /// What an adapter does wrong, by its name.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{Readable, State, WordState, readable, table, word_table};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
+use crate::command::yrcx::numbers::Series;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
@@ -17,9 +18,9 @@ use crate::output::view::{Section, View};
 #[command(after_help = "Words are those of remote commands and their answers, too, as long as those last.")]
 pub struct Get {
     /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown; SOW2, SOD4, SIW2, SID4 for
-    /// words. All dedicated outputs, and the general-purpose ones that are on, unless given
-    #[arg(value_name = "SIGNAL", value_parser = readable, add = complete::OUTPUT)]
-    signals: Vec<Readable>,
+    /// words; SO20..SO37 is a range. All dedicated outputs, and the general-purpose ones that are on, unless given
+    #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = Series::reader(readable), add = complete::OUTPUT)]
+    signals: Vec<Series<Readable>>,
 }
 
 impl Command for Get {
@@ -31,7 +32,7 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
         let given = context.link.shown().copied();
         if given.is_none()
-            && let Some(signal) = self.signals.iter().find(|signal| signal.side() == Side::Input)
+            && let Some(signal) = Series::all(&self.signals).find(|signal| signal.side() == Side::Input)
         {
             return Err(Failure::usage(format!(
                 "{signal} is known to whoever commands the controller, and not seen here"
@@ -46,7 +47,7 @@ impl Command for Get {
             let told = Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown));
             states.signals = told.map(|signal| State::of(signal, &shown)).collect();
         }
-        for readable in &self.signals {
+        for readable in Series::all(&self.signals) {
             match *readable {
                 Readable::Signal(signal) => states.signals.push(State::of(signal, image(signal.side()))),
                 Readable::Word(register) => states.words.push(WordState::of(register, image(register.side()))),

@@ -8,6 +8,7 @@ mod moves;
 mod origin;
 mod pallet;
 mod push;
+mod question;
 mod relative;
 mod tool;
 
@@ -29,6 +30,7 @@ use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
 use crate::output::Screen;
 use crate::output::view::{Section, View};
 
@@ -114,6 +116,7 @@ impl<M: Motion> Command for Moving<M> {
     type Family = Yrcx;
     type Report = M::Report;
     const ID: &'static str = M::ID;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn risk(&self) -> Risk {
         self.motion.command().row().risk
@@ -129,6 +132,7 @@ impl<M: Motion> Command for Moving<M> {
         let draft = context.link.draft(self.motion.command())?;
         let draft = Ending::put(self.motion.fill(draft)?, self.unit());
         let order = staying(context.link, draft, &self.motion.stays()).await?;
+        question::confirm(context.link, &context.authority, &order, Command::intent(self)).await?;
         let [_, moving, moved] = M::VERB;
         let object = self.object();
         let doing = format!("{moving} {object}");

@@ -1,5 +1,7 @@
 //! Stations of a line, as they answer questions that own nobody.
 
+use std::time::Duration;
+
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
@@ -15,8 +17,8 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::Cell;
 use crate::settings::target::Bus;
 use crate::settings::target::profibus::{Profibus, SCHEME};
-use crate::transport::image::LinkError;
 use crate::transport::image::tap::Tap;
+use crate::transport::image::{Event, LinkError};
 use crate::transport::profibus::driver::survey;
 use crate::transport::profibus::error::ProfibusError;
 use crate::transport::profibus::link::record;
@@ -29,6 +31,7 @@ use crate::transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATI
 pub struct Board {
     profibus: Profibus,
     label: String,
+    timeout: Duration,
     tap: Tap,
 }
 
@@ -38,14 +41,15 @@ const RETRIES: u8 = 1;
 impl Board {
     /// The line of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
-        Ok(Self { profibus: connect::options(at)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+        let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
+        Ok(Self { profibus: connect::options(at)?.clone(), label, timeout, tap: at.tap.clone() })
     }
 
     /// A line without a robot.
     pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
         let profibus: &Profibus =
             bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
-        Ok(Self { profibus: profibus.clone(), label: line.to_owned(), tap })
+        Ok(Self { profibus: profibus.clone(), label: line.to_owned(), timeout: Duration::ZERO, tap })
     }
 
     /// What its URL says.
@@ -63,6 +67,18 @@ impl Board {
     /// The station of the URL; `None` if it does not answer.
     pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
         Ok(self.found().await?.map(|found| (Station::from(&found), self.image(&found))))
+    }
+
+    /// What passes between the station and another master; nothing is sent.
+    pub async fn overheard(&self) -> Result<Option<Image>, Failure> {
+        let failed = |error: &LinkError| not_open(&self.label, &SCHEME, error);
+        let listening = connect::listen(&self.profibus, self.tap.clone(), self.timeout).await;
+        let mut link = listening.map_err(|error| failed(&error))?;
+        match link.next(tokio::time::Instant::now() + self.timeout).await {
+            Event::Image(image) => Ok(Image::from_link(&image)),
+            Event::Lost(error) => Err(failed(&error)),
+            _ => Ok(None),
+        }
     }
 
     /// How the station of the URL is doing.
@@ -111,14 +127,14 @@ impl Board {
     }
 
     async fn survey(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<Found>, LinkError> {
-        let settings = connect::settings(&self.profibus, std::time::Duration::ZERO)?;
+        let settings = connect::settings(&self.profibus, Duration::ZERO)?;
         let timing = settings.timing()?;
         let requester = Requester::new(settings.master, settings.rate, timing.slot, retries);
         let mut opener = connect::opener(&self.profibus)?;
         let tap = record(self.tap.clone());
         let asked = tokio::task::spawn_blocking(move || {
             let mut port = opener()?;
-            let mut asking = Survey::new(std::time::Duration::ZERO, stations, requester, timing);
+            let mut asking = Survey::new(Duration::ZERO, stations, requester, timing);
             survey(&mut asking, port.as_mut(), tap)
         });
         match asked.await {

@@ -3,6 +3,7 @@
 use super::board::Board;
 use crate::command::face::layers::Layers;
 use crate::controller::yrcx::image::Image;
+use crate::failure::Kind;
 use crate::transport::profibus::port::latency_timer;
 
 /// In the order in which they are looked at.
@@ -11,6 +12,9 @@ pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration"
 /// Looks at them; what the controller shows, where it exchanges data with a master that is not on this line.
 pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     let settings = board.settings().clone();
+    if !settings.is_owner {
+        return overheard(board, layers).await;
+    }
     let answered = match board.station().await {
         // The adapter, or the line that has another master.
         Err(failure) => {
@@ -79,4 +83,22 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         ),
     }
     image
+}
+
+/// Where nothing may be sent there is only what passes.
+async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
+    let opens = format!("{} opens; nothing is sent, as role=listen wants it", board.settings().port);
+    match board.overheard().await {
+        Err(failure) if failure.kind != Kind::NoAnswer => layers.fail("name", &failure),
+        Err(failure) => {
+            layers.ok("name", opens);
+            layers.fail("inputs", &failure);
+        }
+        Ok(image) => {
+            layers.ok("name", opens);
+            layers.ok("inputs", "heard in the answers to its master");
+            return image;
+        }
+    }
+    None
 }

@@ -8,6 +8,7 @@ use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
 use crate::files;
 use crate::settings::target::profibus::Profibus;
+use crate::transport::image::tap::Tap;
 use crate::transport::image::{Cause, ImageLink, LinkError};
 use crate::transport::profibus::driver::Opener;
 use crate::transport::profibus::gsd::{Gsd, MAX_FILE, Module};
@@ -19,16 +20,23 @@ use crate::transport::profibus::settings::Settings;
 /// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profibus = options(&at)?;
-    let swapped = Swapped { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } };
     // Who looks must not take the outputs, and a slave shows nobody else what it shows.
     if purpose == Purpose::Look || !profibus.is_owner {
-        let silence = at.robot.timeout.value.max(LISTEN);
-        let opener = opener(profibus)?;
-        let listening = Listening::open(profibus.station, Image::BYTES, swapped, opener, at.tap, silence).await;
-        return Ok(ImageLink::over(listening?));
+        return listen(profibus, at.tap, at.robot.timeout.value).await;
     }
     let settings = settings(profibus, at.bus.calm)?;
-    Ok(ImageLink::over(Master::open(settings, swapped, opener(profibus)?, at.tap).await?))
+    Ok(ImageLink::over(Master::open(settings, swapped(profibus), opener(profibus)?, at.tap).await?))
+}
+
+/// Hears what another master and the slave exchange.
+pub(super) async fn listen(profibus: &Profibus, tap: Tap, timeout: Duration) -> Result<ImageLink, LinkError> {
+    let (silence, opener) = (timeout.max(LISTEN), opener(profibus)?);
+    let listening = Listening::open(profibus.station, Image::BYTES, swapped(profibus), opener, tap, silence).await;
+    Ok(ImageLink::over(listening?))
+}
+
+const fn swapped(profibus: &Profibus) -> Swapped {
+    Swapped { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } }
 }
 
 /// Least time to listen: longer than the longest cycle of a master.

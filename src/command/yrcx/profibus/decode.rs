@@ -6,8 +6,8 @@ use crate::controller::text::hex;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};
 use crate::transport::profibus::wire::{
-    Configuration, Control, Diagnosis, Frame, GlobalControl, Lock, Parameters, Parsed, Service, Telegram, WireError,
-    sap,
+    Configuration, Control, Diagnosis, Frame, GlobalControl, Lock, Parameters, Parsed, START, Service, Telegram,
+    WireError, sap,
 };
 use crate::transport::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
@@ -15,7 +15,10 @@ use crate::transport::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 #[derive(Debug, Default)]
 pub struct Decoder {
     tokens: u64,
-    damaged: u64,
+    /// Bytes that begin no telegram.
+    noise: usize,
+    /// Packet of the request that waits for an answer, with its master and its slave.
+    asked: Option<(u64, u8, u8)>,
 }
 
 impl BusDecoder for Decoder {
@@ -27,45 +30,78 @@ impl BusDecoder for Decoder {
         match Telegram::parse(message.bytes) {
             Ok(Parsed::Whole(Telegram::Token { .. }, _)) => self.tokens += 1,
             Ok(Parsed::Whole(Telegram::ShortAcknowledge, _)) => {
-                let link = ("master".to_owned(), "slave".to_owned());
-                images.message(decoded(message, Direction::Received, link, "acknowledged".to_owned()));
+                let decoded = decoded(message, Direction::Received, self.link(), "acknowledged".to_owned());
+                let answers = self.asked.take().map(|(number, ..)| number);
+                images.message(DecodedMessage { answers, raw: hex(message.bytes), ..decoded });
             }
-            Ok(Parsed::Whole(Telegram::Frame(frame), _)) => self::frame(message, &frame, images),
-            Ok(Parsed::Part(_)) | Err(_) => self.damaged += 1,
+            Ok(Parsed::Whole(Telegram::Frame(frame), _)) => self.frame(message, &frame, images),
+            Ok(Parsed::Part(needed)) => {
+                self.damaged(message, &format!("{needed} bytes are needed, {} are there", message.bytes.len()), images);
+            }
+            Err(error) if error.field == START => self.noise += message.bytes.len(),
+            Err(error) => self.damaged(message, &error.to_string(), images),
         }
     }
 
     fn finish(&mut self, images: &mut Images) {
         if self.tokens > 0 {
-            images.note(format!("{} tokens", self.tokens));
+            images.note(format!("tokens: {}", self.tokens));
         }
-        if self.damaged > 0 {
-            images.note(format!("{} pieces are no telegram, or a damaged one", self.damaged));
+        if self.noise > 0 {
+            images.note(format!("bytes that begin no telegram: {}", self.noise));
         }
     }
 }
 
-/// A telegram with a function code.
-fn frame(message: &Message<'_>, frame: &Frame, images: &mut Images) {
-    let is_answer = matches!(frame.control, Control::Answer(..));
-    let (direction, master, slave) =
-        if is_answer { (Direction::Received, frame.to, frame.from) } else { (Direction::Sent, frame.from, frame.to) };
-    let link = (format!("station {master}"), format!("station {slave}"));
-    let service = if is_answer { frame.from_sap } else { frame.to_sap };
-    let is_exchange = service.is_none() && !frame.data.is_empty();
-    if is_exchange && let Some(image) = Image::from_link(&frame.data) {
-        return images.image(message, direction, &link, &image);
+impl Decoder {
+    /// A telegram with a function code.
+    fn frame(&mut self, message: &Message<'_>, frame: &Frame, images: &mut Images) {
+        let is_answer = matches!(frame.control, Control::Answer(..));
+        let (direction, master, slave) = if is_answer {
+            (Direction::Received, frame.to, frame.from)
+        } else {
+            (Direction::Sent, frame.from, frame.to)
+        };
+        let asked = if is_answer { self.asked.take() } else { self.asked.replace((message.number, master, slave)) };
+        let asked = asked.filter(|asked| is_answer && (asked.1, asked.2) == (master, slave));
+        let link = link(master, slave);
+        let service = if is_answer { frame.from_sap } else { frame.to_sap };
+        let is_exchange = service.is_none() && !frame.data.is_empty();
+        if is_exchange && let Some(image) = Image::from_link(&frame.data) {
+            return images.image(message, direction, &link, &image);
+        }
+        let mut text = match frame.control {
+            Control::Request(Service::FdlStatus, _) => "are you there?".to_owned(),
+            Control::Request(..) => sap::name(service).to_owned(),
+            Control::Answer(_, status) if service.is_none() => format!("answer: {}", status.text()),
+            Control::Answer(_, status) => format!("answer to {}: {}", sap::name(service), status.text()),
+        };
+        if let Some(about) = about(frame, service) {
+            text = format!("{text}: {about}");
+        }
+        let answers = asked.map(|(number, ..)| number);
+        let decoded = decoded(message, direction, link, text);
+        images.message(DecodedMessage { answers, raw: hex(message.bytes), ..decoded });
     }
-    let mut text = match frame.control {
-        Control::Request(Service::FdlStatus, _) => "are you there?".to_owned(),
-        Control::Request(..) => sap::name(service).to_owned(),
-        Control::Answer(_, status) if service.is_none() => format!("answer: {}", status.text()),
-        Control::Answer(_, status) => format!("answer to {}: {}", sap::name(service), status.text()),
-    };
-    if let Some(about) = about(frame, service) {
-        text = format!("{text}: {about}");
+
+    /// A telegram that is not as it was sent; who sent it is not sure then.
+    fn damaged(&mut self, message: &Message<'_>, problem: &str, images: &mut Images) {
+        let direction = if self.asked.is_some() { Direction::Received } else { Direction::Sent };
+        let decoded = decoded(message, direction, self.link(), "a damaged telegram".to_owned());
+        let problem = Some(problem.to_owned());
+        images.message(DecodedMessage { problem, raw: hex(message.bytes), ..decoded });
     }
-    images.message(DecodedMessage { raw: hex(message.bytes), ..decoded(message, direction, link, text) });
+
+    /// Who talks just now, as far as it is known.
+    fn link(&self) -> (String, String) {
+        let unknown = || ("master".to_owned(), "slave".to_owned());
+        self.asked.map_or_else(unknown, |(_, master, slave)| link(master, slave))
+    }
+}
+
+/// Master and slave, as the table of links has them.
+fn link(master: u8, slave: u8) -> (String, String) {
+    (format!("station {master}"), format!("station {slave}"))
 }
 
 /// What the data of a telegram say.

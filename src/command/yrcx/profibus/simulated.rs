@@ -9,7 +9,7 @@ use tokio::runtime::Builder;
 use tokio::sync::oneshot;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, start, wrongs};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
@@ -51,11 +51,8 @@ impl Default for Options {
 
 /// A simulator as the URL wants it.
 pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
-    let wrong = |why: String| Failure::usage(why).hint("write % as %25 in a URL; `armctl help simulator` lists faults");
-    let faults = sim.fault.as_deref().map(str::parse).transpose();
-    let faults = faults.map_err(|error| wrong(format!("fault: {error}")))?;
-    let mischief = sim.mischief.as_deref().map(mischief).transpose();
-    let mischief = mischief.map_err(|why| wrong(format!("mischief: {why}")))?;
+    let faults = |text: &str| text.parse::<LineFaultSpec>().map_err(|error| error.to_string());
+    let (faults, mischief) = wrongs(sim, faults, mischief)?;
     serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
 }
 

@@ -101,7 +101,7 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
             if mismatches.is_empty() {
                 layers.ok("modules", format!("as the target says: {}", settings.layout));
             } else {
-                layers.fail("modules", &board.failure(ProfinetError::Modules(mismatches)));
+                return Err(("modules", board.failure(ProfinetError::Modules(mismatches))));
             }
         }
         Err(error) => {

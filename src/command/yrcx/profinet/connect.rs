@@ -11,7 +11,7 @@ use crate::settings::target::profinet::Profinet;
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{Cause, ImageLink, LinkError};
 use crate::transport::profinet::error::ProfinetError;
-use crate::transport::profinet::gsdml::{Gsdml, Head};
+use crate::transport::profinet::gsdml::{Gsdml, Head, MOST_BYTES};
 use crate::transport::profinet::layout::{Direction, Layout};
 use crate::transport::profinet::link::Link;
 use crate::transport::profinet::network;
@@ -146,9 +146,8 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 
 /// Reads a file of the maker.
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
-    const MOST: u64 = 16 << 20;
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MOST).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
+    let bytes = files::read(path, MOST_BYTES).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
     Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }
 

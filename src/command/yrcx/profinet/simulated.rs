@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::bus::BUS;
-use crate::command::yrcx::simulated::{Simulated, fault_by_name, start};
+use crate::command::yrcx::simulated::{Simulated, fault_by_name, faults_of_frames, start, wrongs};
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -22,22 +22,15 @@ const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// A network in this process with a simulator on it, with what the URL wants to go wrong.
 pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
-    let hint = "`armctl help simulator` lists faults";
-    if sim.fault.is_some() {
-        return Err(Failure::usage(
-            "fault: nothing gets lost on PROFINET in one process; mischief= says what goes wrong",
-        )
-        .hint(hint));
-    }
-    let fault = sim.mischief.as_deref().map(fault).transpose();
-    let fault = fault.map_err(|why| Failure::usage(format!("mischief: {why}")).hint(hint))?;
+    let (faults, fault) = wrongs(sim, |text| faults_of_frames(text, "Ethernet"), fault)?;
     let controller = controller(start(sim.state.as_deref())?);
-    Ok(Network::new(|mac, ip| {
+    let device = |mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
         let mut device = Device::new(setup, controller);
         device.set_fault(fault);
         device
-    }))
+    };
+    Ok(Network::new(device, faults))
 }
 
 /// The URL of a simulated station behind an interface.

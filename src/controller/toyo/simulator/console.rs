@@ -9,26 +9,26 @@ use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 
 /// The lines there are, as `help` shows them.
-const USAGE: &str = "\
-input STATION/PORT/BIT on|off
-input STATION/PORT BITS
-input 0/SY/BIT on|off
-start [STEP]
-stop
-reset
-home
-clear
-servo on|off
-pendant on|off
-estop [off]
-error CODE
-power cycle
-card in|out
-obstacle AXIS PLACE|off
-slave on|off
-battery low|ok
-state
-why";
+const HELP: &[(&str, &str)] = &[
+    ("input STATION/PORT/BIT on|off", "set an input: input 0/01/3 on"),
+    ("input STATION/PORT BITS", "set all eight of a port: input 0/01 00000100"),
+    ("input 0/SY/BIT on|off", "set a bit of the system port: 1 home, 2 start, 3 stop, 4 reset"),
+    ("start [STEP]", "press START"),
+    ("stop", "press STOP"),
+    ("reset", "press RESET: programs to their beginning"),
+    ("home", "press HOME: return to origin"),
+    ("clear", "cancel the error"),
+    ("servo on|off", "switch servo power"),
+    ("pendant on|off", "switch the teach pendant"),
+    ("estop [off]", "press or release the emergency stop"),
+    ("error CODE", "raise an error: error 28"),
+    ("power cycle", "switch the controller off and on"),
+    ("card in|out", "insert or take out the memory card"),
+    ("obstacle AXIS PLACE|off", "block an axis at a place in mm, or free it"),
+    ("slave on|off", "slave units are ready, or not"),
+    ("battery low|ok", "set what the battery is"),
+    ("why", "say why the last command was refused"),
+];
 
 /// A line of the console.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +73,7 @@ impl ConsoleLine {
         let words: Vec<&str> = line.split_whitespace().collect();
         Ok(match words.as_slice() {
             ["help"] => Self::Help,
-            ["state"] => Self::State,
+            ["robot" | "state"] => Self::State,
             ["why"] => Self::Why,
             ["input", place, value] => input(place, value)?,
             ["start"] => Self::Press(Button::Start),
@@ -104,8 +104,8 @@ impl ConsoleLine {
     /// Carries the line out; the answer says what is now.
     pub(super) fn carry_out(self, world: &mut World) -> Result<String, String> {
         match self {
-            Self::Help => return Ok(USAGE.to_owned()),
-            Self::State => return Ok(state(world)),
+            Self::Help => return Ok(console::help(HELP)),
+            Self::State => return Ok(console::table(&state(world))),
             Self::Why => {
                 let last = world.refusal.as_ref();
                 return Ok(last.map_or("nothing was refused".into(), |(block, why)| format!("{block}: {why}")));
@@ -246,13 +246,13 @@ fn summary(world: &World) -> String {
 }
 
 /// The summary, then error, place, tasks and outputs.
-fn state(world: &World) -> String {
-    let mut lines = vec![summary(world)];
+fn state(world: &World) -> Vec<(String, String)> {
+    let mut rows = vec![("now".to_owned(), summary(world))];
     if let Some(code) = world.errors.current() {
-        lines.push(format!("error {code:02X}"));
+        rows.push(("error".to_owned(), format!("{code:02X}")));
     }
     let [x, y, z, r] = world.arm.position(world.now);
-    lines.push(format!("X {x:.2}  Y {y:.2}  Z {z:.2}  R {r:.2} mm"));
+    rows.push(("position".to_owned(), format!("X {x:.2}  Y {y:.2}  Z {z:.2}  R {r:.2} mm")));
     for index in (0..TASKS).filter(|&index| world.memory.size(index) > 0) {
         let task = &world.tasks[index];
         let step = world.memory.step(index, task.step).map(Record::written);
@@ -261,13 +261,14 @@ fn state(world: &World) -> String {
             (true, true) => "stands",
             (false, _) => "is idle",
         };
-        lines.push(format!("task {} {what}, step {:04} {}", index + 1, task.step, step.unwrap_or_default()));
+        let told = format!("{what}, step {:04} {}", task.step, step.unwrap_or_default());
+        rows.push((format!("task {}", index + 1), told));
     }
     for (port, bits) in world.ports.outputs().filter(|(_, bits)| *bits != 0) {
-        lines.push(format!("output {}/{:02} {bits:08b}", port.station, port.port));
+        rows.push((format!("output {}/{:02}", port.station, port.port), format!("{bits:08b}")));
     }
-    lines.push(format!("{} EEPROM writes", world.memory.wear.total()));
-    lines.join("\n")
+    rows.push(("EEPROM writes".to_owned(), world.memory.wear.total().to_string()));
+    rows
 }
 
 /// The bit with a number, from 1.

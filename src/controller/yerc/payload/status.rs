@@ -154,6 +154,11 @@ impl ControllerStatus {
         self.has(S::Error)
     }
 
+    /// Whether an alarm or error is present.
+    pub fn faulted(self) -> bool {
+        self.alarm() || self.error()
+    }
+
     /// Whether anything holds the robot.
     pub fn held(self) -> bool {
         [S::HoldPendant, S::HoldExternal, S::HoldCommand].into_iter().any(|bit| self.has(bit))

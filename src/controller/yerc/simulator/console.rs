@@ -7,16 +7,29 @@ use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::yerc::payload::CycleMode;
 
 /// The lines there are, as `help` shows them.
-const USAGE: &str = "alarm CODE [DATA [TYPE]] [NAME] | alarm clear | error on|off | mode teach|play | remote on|off | \
-servo on|off | cycle step|once|continuous | hold pendant|external on|off | estop [off] | guard on|off | edit on|off | \
-convert on|off | io SIGNAL on|off | register NUMBER VALUE | state";
+const HELP: &[(&str, &str)] = &[
+    ("alarm CODE [DATA [TYPE]] [NAME]", "raise an alarm: alarm 4315 1 2 COLLISION DETECT"),
+    ("alarm clear", "take all alarms away"),
+    ("error on|off", "show an error, or none"),
+    ("mode teach|play", "turn the mode key"),
+    ("remote on|off", "take commands from outside, or not (CMD REMOTE)"),
+    ("servo on|off", "switch servo power"),
+    ("cycle step|once|continuous", "select how jobs run"),
+    ("hold pendant|external on|off", "press or release a HOLD"),
+    ("estop [off]", "press or release the emergency stop"),
+    ("guard on|off", "in-guard safe operation"),
+    ("edit on|off", "somebody edits a job at the pendant, or not"),
+    ("convert on|off", "coordinates are being converted, or not"),
+    ("io SIGNAL on|off", "set a signal: io 20010 on"),
+    ("register NUMBER VALUE", "set a register: register 0 17"),
+];
 
 /// Carries out a line; the answer says what is now.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
-        ["help"] => return Ok(USAGE.replace(" | ", "\n")),
-        ["state"] => return Ok(state(world)),
+        ["help"] => return Ok(console::help(HELP)),
+        ["robot" | "state"] => return Ok(console::table(&state(world))),
         ["alarm", "clear"] => world.alarms.clear(),
         ["alarm", rest @ ..] => return alarm(world, rest),
         ["error", state] => world.switches.error = on_off(state)?,
@@ -163,29 +176,25 @@ fn summary(world: &World) -> String {
 }
 
 /// The summary, then job, alarms, message and positions.
-fn state(world: &World) -> String {
-    let mut lines = vec![summary(world)];
+fn state(world: &World) -> Vec<(String, String)> {
+    let text = |bytes: &[u8]| encoding_rs::SHIFT_JIS.decode(bytes).0.into_owned();
+    let mut rows = vec![("now".to_owned(), summary(world))];
     let job = world.player.info();
-    if job.name.is_empty() {
-        lines.push("no job selected".into());
-    } else {
-        let (name, ..) = encoding_rs::SHIFT_JIS.decode(job.name.as_bytes());
-        lines.push(format!("job {name}, line {}, step {}", job.line, job.step));
-    }
+    let selected = format!("{}, line {}, step {}", text(job.name.as_bytes()), job.line, job.step);
+    rows.push(("job".to_owned(), if job.name.is_empty() { "none is selected".to_owned() } else { selected }));
     for alarm in world.alarms.active() {
-        let (name, ..) = encoding_rs::SHIFT_JIS.decode(alarm.name.as_bytes());
-        lines.push(format!("alarm {} {name} {}", alarm.code, alarm.sub_code(world.model)).trim_end().to_owned());
+        let told = format!("{} {} {}", alarm.code, text(alarm.name.as_bytes()), alarm.sub_code(world.model));
+        rows.push(("alarm".to_owned(), told));
     }
     if !world.switches.message.is_empty() {
-        let (text, ..) = encoding_rs::SHIFT_JIS.decode(&world.switches.message);
-        lines.push(format!("message \"{text}\""));
+        rows.push(("message".to_owned(), format!("\"{}\"", text(&world.switches.message))));
     }
     for group in &world.arm.groups {
         let pulses: Vec<String> =
             group.pulses[..group.axes].iter().map(|&pulse| super::motion::whole(pulse).to_string()).collect();
-        lines.push(format!("{} {}", group.name(), pulses.join(" ")));
+        rows.push((group.name().to_string(), format!("{} pulses", pulses.join(" "))));
     }
-    lines.join("\n")
+    rows
 }
 
 pub(super) fn cycle(word: &str) -> Option<CycleMode> {

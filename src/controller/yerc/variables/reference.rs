@@ -173,9 +173,6 @@ impl FromStr for Reference {
 pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     let first: Reference = text.split(['.', '-']).next().unwrap_or_default().parse()?;
     let numbers = typed::range(text, |end| {
-        if end.starts_with(|c: char| c.is_ascii_digit()) {
-            return parse_number(end, text);
-        }
         let end: Reference = end.parse()?;
         let same_kind = Some(end.number).filter(|_| end.kind == first.kind);
         same_kind.ok_or_else(|| ReferenceError::Range { found: text.to_owned() })

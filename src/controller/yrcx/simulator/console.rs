@@ -10,16 +10,26 @@ use crate::simulator::console::{self, on_off, unknown};
 use crate::yrcx::alarm::Alarm;
 
 /// The lines there are, as `help` shows them.
-const USAGE: &str = "estop on|off | mode auto|manual | box on|off | inputs on|off | warning on|off | \
-alarm GROUP.CATEGORY [fatal] | DI(20)=1 | DO2()=255 | obstacle R1A3 PULSES|off | load R1A3 PERCENT | power | why | \
-state";
+const HELP: &[(&str, &str)] = &[
+    ("estop on|off", "press or release the emergency stop"),
+    ("mode auto|manual", "turn the mode key"),
+    ("box on|off", "the programming box has control, or not"),
+    ("inputs on|off", "take dedicated inputs, or not"),
+    ("warning on|off", "show a warning, or none"),
+    ("alarm GROUP.CATEGORY [fatal]", "raise an alarm: alarm 12.600"),
+    ("DI(20)=1, DO2()=255", "set a port or a bit of it"),
+    ("obstacle R1A3 PULSES|off", "block an axis of a robot at a place, or free it"),
+    ("load R1A3 PERCENT", "set the load of an axis"),
+    ("power", "switch the controller off and on"),
+    ("why", "say why the last command was refused"),
+];
 
 /// Carries out a line; the answer says what is now.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
-        ["help"] => return Ok(USAGE.replace(" | ", "\n")),
-        ["state"] => return Ok(state(world)),
+        ["help"] => return Ok(console::help(HELP)),
+        ["robot" | "state"] => return Ok(console::table(&state(world))),
         ["why"] => {
             let why = world.why.as_ref().map(ToString::to_string);
             return Ok(why.unwrap_or_else(|| "nothing was refused".to_owned()));
@@ -98,8 +108,9 @@ fn summary(world: &World) -> String {
     console::summary(&[mode, power], optional) + &alarms.collect::<String>()
 }
 
-fn state(world: &World) -> String {
-    let mut lines = vec![summary(world)];
+/// The summary, then robots and tasks.
+fn state(world: &World) -> Vec<(String, String)> {
+    let mut rows = vec![("now".to_owned(), summary(world))];
     for (number, robot) in world.robots.iter().enumerate() {
         let places = robot.pulses().map(whole);
         let pulses: Vec<String> = places.iter().take(robot.axes.len()).map(ToString::to_string).collect();
@@ -114,12 +125,14 @@ fn state(world: &World) -> String {
             .collect();
         let moving = if robot.motion.is_some() { ", moving" } else { "" };
         let origin = if robot.is_at_home() { "" } else { ", origin incomplete" };
-        lines.push(format!("robot {}: {} pulses, servos {servos}{moving}{origin}", number + 1, pulses.join(" ")));
+        let told = format!("{} pulses, servos {servos}{moving}{origin}", pulses.join(" "));
+        rows.push((format!("robot {}", number + 1), told));
     }
     for task in &world.tasks {
         let state = ["stopped", "running", "suspended", "waiting"];
         let state = usize::try_from(task.status()).ok().and_then(|at| state.get(at)).unwrap_or(&"");
-        lines.push(format!("task {}: program {}, line {}, {state}", task.number, task.program, world.line_of(task)));
+        let told = format!("program {}, line {}, {state}", task.program, world.line_of(task));
+        rows.push((format!("task {}", task.number), told));
     }
-    lines.join("\n")
+    rows
 }

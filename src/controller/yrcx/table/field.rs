@@ -1,5 +1,6 @@
 //! Fields of words: where they stand, what they hold, when they count.
 
+use crate::typed;
 use crate::units::{self, Unit, UnitError};
 use crate::yrcx::value::{Key, Value};
 
@@ -499,17 +500,19 @@ fn version(text: &str) -> Result<Value, String> {
     Ok(Value::from(number))
 }
 
-/// A set such as `1,3`.
+/// A set such as `1,3` or `1-3`.
 fn set_of(text: &str) -> Result<Value, String> {
     let mut set = 0;
     if text == NOTHING {
         return Ok(Value::Int(set));
     }
     for item in text.split(',') {
-        match item.trim().parse::<u8>() {
-            Ok(number @ 1..=16) => set |= 1 << (number - 1),
-            _ => return Err(format!("'{text}' is not a valid list, such as 1,3")),
-        }
+        let wrong = || format!("'{text}' is not a valid list, such as 1,3");
+        let number = |text: &str| match text.trim().parse::<u8>() {
+            Ok(number @ 1..=16) => Ok(number),
+            _ => Err(wrong()),
+        };
+        set = typed::range(item, number)?.fold(set, |set, number| set | 1 << (number - 1));
     }
     Ok(Value::Int(set))
 }

@@ -1,4 +1,5 @@
-//! Ends that were written for another stack: a master and a strict slave in Python, over SLCAN adapters of python-can.
+//! Ends that were written for another stack: a master and a strict slave in Python, and the master `devicenet-py`, over
+//! SLCAN adapters of python-can.
 //! They are there where `ARMCTL_DEVICENET_PEERS` names the folder that `peers/install` made.
 
 use std::io::{BufRead as _, BufReader, Read as _};
@@ -23,22 +24,31 @@ fn script(name: &str) -> Option<(PathBuf, PathBuf)> {
     Some((Path::new(&folder).join("bin/python"), scripts.join(name)))
 }
 
-fn listen() -> [Listen; 1] {
-    [Listen::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))]
+/// By TCP first, as ours goes there.
+fn listen() -> Vec<Listen> {
+    let mut listen = vec![Listen::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))];
+    #[cfg(unix)]
+    listen.push(Listen::Pty);
+    listen
+}
+
+/// Each place of a hub as python-can calls it, with every size.
+fn channels() -> impl Iterator<Item = (usize, u16)> {
+    (0..listen().len()).flat_map(|place| [48, 4].map(|size| (place, size)))
+}
+
+fn channel(place: &str) -> String {
+    if place.starts_with('/') { place.to_owned() } else { format!("socket://{place}") }
 }
 
 #[test]
 fn a_scripted_master_is_served_by_our_slave() {
-    for size in [48u16, 4] {
+    for (place, size) in channels() {
         let Some((python, script)) = script("master.py") else { return };
         let device = Device::on_line(setup(5, size), Mirror::default());
         let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
-        let output = Command::new(python)
-            .arg(script)
-            .arg(format!("socket://{}", hub.places()[0]))
-            .arg(size.to_string())
-            .output()
-            .unwrap();
+        let output =
+            Command::new(python).arg(script).arg(channel(&hub.places()[place])).arg(size.to_string()).output().unwrap();
         let told = String::from_utf8_lossy(&output.stdout);
         assert!(
             output.status.success() && told.contains("released"),
@@ -49,14 +59,28 @@ fn a_scripted_master_is_served_by_our_slave() {
     }
 }
 
+#[test]
+fn a_master_that_others_wrote_polls_our_slave() {
+    for place in 0..listen().len() {
+        let Some((python, script)) = script("others.py") else { return };
+        let device = Device::on_line(setup(5, 4), Mirror::default());
+        let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
+        let output = Command::new(python).arg(script).arg(channel(&hub.places()[place])).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stdout);
+        let complaints = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && told.contains("seen its images come back"), "{told}{complaints}");
+        assert_eq!(hub.with(|device, _| device.application().image.clone()), Some(vec![0x41, 0, 5, 0]));
+    }
+}
+
 #[tokio::test]
 async fn our_master_satisfies_a_strict_slave() {
-    for size in [48u16, 4] {
+    for (place, size) in channels() {
         let Some((python, script)) = script("slave.py") else { return };
         let hub: Hub<Mirror> = Hub::start(Bitrate::K500, None, &listen(), None).unwrap();
         let mut slave = Command::new(python)
             .arg(script)
-            .arg(format!("socket://{}", hub.places()[0]))
+            .arg(channel(&hub.places()[place]))
             .arg(size.to_string())
             .stdout(Stdio::piped())
             .spawn()

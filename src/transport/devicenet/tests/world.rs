@@ -87,6 +87,8 @@ pub struct Line {
     pub late: u16,
     /// A little late, so that frames of other identifiers overtake.
     pub swap: u16,
+    /// Behind frames that the same node sends later under the same identifier: no bus does so, a broken adapter may.
+    pub reorder: u16,
 }
 
 /// All of it.
@@ -217,6 +219,11 @@ impl World {
             let mut hits = |share: u16| self.rng.u16(0..10_000) < share;
             let (drop, double, late, swap) =
                 (hits(self.line.drop), hits(self.line.double), hits(self.line.late), hits(self.line.swap));
+            if hits(self.line.reorder) {
+                let hold = Duration::from_micros(self.rng.u64(100..30_000));
+                self.arriving.push((passed.at + hold, node, passed.frame));
+                continue;
+            }
             if drop {
                 continue;
             }

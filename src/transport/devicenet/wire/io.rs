@@ -65,8 +65,9 @@ impl Assembler {
         let Fragment { kind, count } = Fragment::parse(*first);
         let expected = self.next.take();
         match kind {
-            // A first one begins anew, even where the rest of another is missing.
-            Kind::First if count == 0 && part.len() < self.size => {
+            // A first one begins anew, even where the rest of another is missing; but two in a row may be out of order, and
+            // nobody can tell which of them the rest belongs to.
+            Kind::First if count == 0 && part.len() < self.size && expected != Some(1) => {
                 self.parts = part.to_vec();
                 self.next = Some(1);
                 Piece::Part
@@ -102,6 +103,17 @@ mod tests {
             assert_eq!(assembler.take(frame), Piece::Part);
         }
         assert_eq!(assembler.take(&frames[6]), Piece::Whole(image));
+    }
+
+    /// As an adapter would hand them over that mixes up what it has: the rest would be put behind an older beginning.
+    #[test]
+    fn of_two_beginnings_in_a_row_neither_is_taken() {
+        let (older, newer) = (split(&[1; 48]), split(&[2; 48]));
+        let mut assembler = Assembler::new(48);
+        let mixed = [&newer[..1], &older[..1], &newer[1..]].concat();
+        assert!(mixed.iter().all(|frame| !matches!(assembler.take(frame), Piece::Whole(_))));
+        let last = newer.iter().map(|frame| assembler.take(frame)).last();
+        assert_eq!(last, Some(Piece::Whole(vec![2; 48])));
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub use control::{Control, FrameCount, Service, Station, Status};
 pub use diagnosis::{Block, Diagnosis, Flag};
 pub use parameters::{GlobalControl, Lock, Parameters, Watchdog};
 pub use stream::{Piece, Stream};
-pub use telegram::{Frame, MAX_DATA, Parsed, Telegram};
+pub use telegram::{CHECKSUM, Frame, MAX_DATA, Parsed, START, Telegram};
 
 /// Service access points of a slave.
 pub mod sap {

@@ -16,6 +16,10 @@ const HEADER: usize = 3;
 const FIXED: usize = 8;
 /// Largest and smallest length that a telegram of variable length says.
 const LENGTHS: std::ops::RangeInclusive<u8> = 4..=249;
+/// The field of an error: the first byte begins no telegram.
+pub const START: &str = "start delimiter";
+/// The field of an error: a telegram whose bytes do not add up.
+pub const CHECKSUM: &str = "frame check sequence";
 /// Most bytes that a telegram carries beside service access points, when it has them.
 pub const MAX_DATA: usize = 244;
 
@@ -125,7 +129,7 @@ impl Telegram {
                 }
                 frame(bytes, 4, usize::from(len))
             }
-            other => Err(WireError::value("start delimiter", 0, other)),
+            other => Err(WireError::value(START, 0, other)),
         }
     }
 }
@@ -140,7 +144,7 @@ fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
     }
     let sum = checksum(body);
     if fcs != sum {
-        return Err(differs("frame check sequence", at + len, fcs, sum));
+        return Err(differs(CHECKSUM, at + len, fcs, sum));
     }
     let control = Control::parse(body[2], at + 2)?;
     let mut rest = HEADER;

@@ -81,8 +81,12 @@ fn connection(ar: &Ar) -> Result<(), Status> {
 fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout) -> Result<(), Status> {
     check(iocr.kind == kind, IOCR, 4)?;
     check(iocr.ether_type == ETHER_TYPE, IOCR, 6)?;
-    let (class, range) = if is_legacy { (1, id::RT_CLASS_1_LEGACY) } else { (2, id::RT_CLASS_1) };
-    check(iocr.properties == class, IOCR, 7)?;
+    // The older class goes with the older start only; controllers of those days ask for either.
+    let range = match iocr.properties {
+        1 if is_legacy => id::RT_CLASS_1_LEGACY,
+        2 => id::RT_CLASS_1,
+        _ => return no(IOCR, 7),
+    };
     check((40..=1440).contains(&iocr.length), IOCR, 8)?;
     let is_any = kind == 2 && iocr.frame_id == ANY_FRAME_ID;
     check(is_any || range.contains(&iocr.frame_id), IOCR, 9)?;

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// This machine on a network with one device.
 fn interface(takes_ip: bool) -> Interface {
     let network =
-        Network::new(|mac, ip| Device::new(Setup { mac, ip: Some(ip), takes_ip, ..setup() }, Mirror::default()));
+        Network::new(|mac, ip| Device::new(Setup { mac, ip: Some(ip), takes_ip, ..setup() }, Mirror::default()), None);
     network.interface()
 }
 

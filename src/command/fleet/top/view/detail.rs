@@ -117,12 +117,11 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let bad = painter.palette.tone(Tone::Bad);
     let line = &sample.line;
     if sample.alarms.is_empty() {
-        let (text, style) = match (line.alarm, line.error) {
-            (Some(true), _) => (" an alarm; which one is not told here", bad),
-            (_, Some(true)) => (" an error; which one is not told here", bad),
-            _ => (" no alarm", painter.palette.quiet()),
+        let (text, style) = match line.trouble() {
+            Some(what) => (format!(" an {what}; which one is not told here"), bad),
+            None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
-        painter.left(line_of(area, 0), text, style);
+        painter.left(line_of(area, 0), &text, style);
         return 1;
     }
     let mut taken = 0;

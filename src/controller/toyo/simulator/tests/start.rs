@@ -85,8 +85,11 @@ fn the_console_tells_how_it_is() {
     bench.run();
     assert_eq!(
         bench.console("state"),
-        "sequential, automatic mode, host on, servo on\nX 0.00  Y 0.00  Z 0.00  R 0.00 mm\n\
-         task 1 is idle, step 0001 OUT STN=0 PN01=.......1\noutput 0/01 00000001\n0 EEPROM writes"
+        "now            sequential, automatic mode, host on, servo on\n\
+         position       X 0.00  Y 0.00  Z 0.00  R 0.00 mm\n\
+         task 1         is idle, step 0001 OUT STN=0 PN01=.......1\n\
+         output 0/01    00000001\n\
+         EEPROM writes  0"
     );
     assert!(bench.console("help").lines().count() > 10);
     bench.ng("@JGST X=+L Y=SP Z=SP R=SP", "not reset");

@@ -134,7 +134,7 @@ fn the_example_names_every_key() {
 fn the_console_tells_what_it_does_not_know() {
     let mut bench = Bench::default();
     assert!(bench.console("help").contains("box on|off"));
-    assert!(bench.console("state").contains("robot 2: 0 9000 0 0 pulses, servos ++++"));
+    assert!(bench.console("robot").contains("robot 2  0 9000 0 0 pulses, servos ++++"));
     assert_eq!(bench.console("why"), "nothing was refused");
     assert_eq!(bench.console("DI(25)=1"), "DI2() is 127");
     for line in ["", "estop", "estop x", "alarm 1", "obstacle R9A1 1", "load R1A1 101", "SI(20)=1", "mode x"] {

@@ -1,0 +1,49 @@
+//! `armctl help environment`, and the section of the man page.
+
+/// Variables of the environment, and what each says.
+pub const VARIABLES: [(&str, &str); 13] = [
+    ("ARMCTL_TARGET", "URL or address of the controller, as -t"),
+    ("ARMCTL_ROBOT", "robots of the inventory, as -r: NAME, or NAME,NAME"),
+    ("ARMCTL_CONFIG", "the inventory, as --config"),
+    ("ARMCTL_OUTPUT", "how to print data, as -o: table, json, jsonl or csv"),
+    ("ARMCTL_TIMEOUT", "longest wait for an answer, as --timeout"),
+    ("ARMCTL_RETRIES", "repetitions of a read after silence, as --retries"),
+    ("ARMCTL_ENCODING", "encoding of names and texts on the controller, as --encoding"),
+    ("NO_COLOR", "no colour, unless --color says otherwise"),
+    ("CLICOLOR_FORCE", "colour even into a file, unless it is 0 or NO_COLOR is set"),
+    ("TERM", "dumb: no colour, no pager, nothing that redraws itself"),
+    ("PAGER", "what shows long help on a terminal; cat for none"),
+    ("XDG_CONFIG_HOME", "folder of armctl/robots.toml, instead of ~/.config"),
+    ("XDG_RUNTIME_DIR", "folder of the sockets of sessions"),
+];
+
+/// What counts before and after them.
+pub const ORDER: &str = "Flags count before the environment, the environment before robots.toml.
+An empty variable is as none; a wrong value is an error that names it (exit
+code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error unless a flag
+names the robot. What moves, deletes or overwrites takes several robots by -r
+alone.";
+
+/// The topic.
+pub fn text() -> String {
+    let line = |(name, what): &(&str, &str)| format!("  {name:<16} {what}\n");
+    format!("Environment\n\n{}\n{ORDER}\n", VARIABLES.iter().map(line).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_variable_of_a_flag_is_there() {
+        let help = crate::command::about::help::text(&["options".to_owned()], false, || {
+            <crate::cli::Cli as clap::CommandFactory>::command()
+        });
+        let help = help.unwrap();
+        let named: Vec<&str> = help.split(|c: char| !(c.is_ascii_uppercase() || c == '_')).collect();
+        for name in named.into_iter().filter(|name| name.starts_with("ARMCTL_")) {
+            assert!(VARIABLES.iter().any(|(known, _)| *known == name), "{name}");
+        }
+        assert!(text().lines().all(|line| line.chars().count() <= 80), "{}", text());
+    }
+}

@@ -1,0 +1,121 @@
+//! `armctl robots edit` and `path`: the file itself.
+
+use std::ffi::OsString;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::Context as _;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::file;
+use crate::command::Report;
+use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::run::{Run, RunError};
+use crate::failure::{Failure, plain};
+use crate::files;
+use crate::output::view::View;
+use crate::settings::inventory::Inventory;
+
+/// What a new file begins with.
+const NEW: &str = "# The robots of this site. `armctl help inventory` shows the form of this file.\n";
+
+/// What editors are named by, the first that is set.
+const VARIABLES: [&str; 2] = ["VISUAL", "EDITOR"];
+/// The editor where none is named.
+const USUAL: &str = if cfg!(windows) { "notepad" } else { "vi" };
+
+/// Has a copy of the file edited; it replaces the file if it can be read.
+pub fn edit(run: &Run) -> Result<(), RunError> {
+    let path = file::path(run)?;
+    let place = || path.display().to_string();
+    let before = file::read(path)?;
+    let folder = files::folder_of(path);
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let copy = tempfile::Builder::new().prefix("robots-").suffix(".toml").tempfile_in(&folder);
+    let mut copy = copy.with_context(|| folder.display().to_string())?;
+    copy.write_all(if before.is_empty() { NEW } else { &before }.as_bytes()).with_context(place)?;
+    // An editor may put another file in its place: from here on it is a name.
+    let copy = copy.into_temp_path();
+    open_editor(&copy)?;
+    let after = files::text(&copy, files::SETTINGS).with_context(|| copy.display().to_string())?;
+    if after == before || before.is_empty() && after == NEW {
+        let robots = Inventory::parse(&before, &place())?.robots.len();
+        return run.local("robots.edit", &Edited { file: place(), changed: false, robots });
+    }
+    // Named like the copy, so that line and column are those of the file that is to be corrected.
+    let checked = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
+        file::replace(path, |now| {
+            if now == before { Ok(after) } else { Err(Failure::usage(format!("{} was changed meanwhile", place()))) }
+        })
+    });
+    match checked {
+        Ok(inventory) => {
+            let robots = inventory.robots.len();
+            run.local("robots.edit", &Edited { file: place(), changed: true, robots })
+        }
+        Err(failure) => {
+            let kept = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
+            let why = failure.hint.map_or_else(String::new, |hint| format!("{hint}; "));
+            let hint = format!("{why}nothing was replaced: what you wrote is in {}", kept.display());
+            Err(Failure { hint: Some(hint), ..failure }.into())
+        }
+    }
+}
+
+/// Waits until the editor of the user has ended.
+fn open_editor(path: &Path) -> Result<(), Failure> {
+    let named = VARIABLES.iter().find_map(|name| std::env::var(name).ok().filter(|line| !line.trim().is_empty()));
+    let line = named.unwrap_or_else(|| USUAL.to_owned());
+    let hint = || format!("set {} to the editor of your choice", VARIABLES.join(" or "));
+    let words = shlex::split(&line).filter(|words| !words.is_empty());
+    let words = words.ok_or_else(|| Failure::usage(format!("the editor '{line}' is not a command")).hint(hint()))?;
+    // Ctrl-C in the editor is the editor's.
+    catch_interrupts();
+    let arguments = words[1..].iter().map(OsString::from).chain([path.into()]);
+    let ended = Command::new(&words[0]).args(arguments).status();
+    let ended = ended.map_err(|error| Failure::usage(format!("editor '{line}': {}", plain(&error))).hint(hint()))?;
+    if ended.success() {
+        return Ok(());
+    }
+    Err(Failure::local(format!("the editor '{line}' failed ({ended}); nothing was changed")).hint(hint()))
+}
+
+/// The file after an edit.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Edited {
+    file: String,
+    /// Whether it was replaced.
+    changed: bool,
+    /// Robots that it has.
+    robots: usize,
+}
+
+impl Report for Edited {
+    fn view(&self) -> View {
+        let Self { file, changed, robots } = self;
+        let plural = if *robots == 1 { "" } else { "s" };
+        View::text(format!("{file}: {}, {robots} robot{plural}", if *changed { "changed" } else { "not changed" }))
+    }
+}
+
+/// Says where the file is, or would be.
+pub fn path(run: &Run) -> Result<(), RunError> {
+    let path = file::path(run)?;
+    run.local("robots.path", &InventoryPath { file: path.display().to_string(), exists: path.exists() })
+}
+
+/// Where the inventory is.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct InventoryPath {
+    file: String,
+    /// Whether it is there; `robots add` and `setup` make it.
+    exists: bool,
+}
+
+impl Report for InventoryPath {
+    fn view(&self) -> View {
+        View::text(self.file.clone())
+    }
+}

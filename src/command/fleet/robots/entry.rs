@@ -1,0 +1,396 @@
+//! Robots that come into the inventory, change, and leave it.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use toml_edit::{Array, Table, Value, value};
+
+use super::file::change;
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Candidate, Report, ValueKind};
+use crate::controller::nearest::nearest;
+use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
+use crate::failure::Failure;
+use crate::output::jq::after_a_change;
+use crate::output::view::{self, Cell, View};
+use crate::settings::duration;
+use crate::settings::inventory::{Entry, Inventory, is_name};
+use crate::settings::target::{Family, Given, Target};
+
+/// Arguments of `robots add`.
+#[derive(Debug, Args)]
+pub struct Add {
+    /// Its name
+    name: String,
+    /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
+    #[arg(add = ValueKind::Url)]
+    url: Given,
+    /// Its family, where the URL does not tell
+    #[arg(long, add = ValueKind::Family)]
+    family: Option<Family>,
+    /// Take read commands only
+    #[arg(long)]
+    read_only: bool,
+    /// Have the first command that needs a command connection open a session for it (yrcx)
+    #[arg(long)]
+    hold: bool,
+    /// A word to choose it by (repeatable)
+    #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
+    tags: Vec<String>,
+    /// Make it the robot that is taken when none is named
+    #[arg(long)]
+    default: bool,
+}
+
+/// A robot that comes into the inventory.
+#[derive(Debug)]
+pub struct NewRobot {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub target: Target,
+    /// Its family.
+    pub family: Family,
+    /// Read commands only.
+    pub read_only: bool,
+    /// See [`Entry`].
+    pub hold: bool,
+    /// Words to choose it by.
+    pub tags: Vec<String>,
+    /// Taken when no robot is named.
+    pub is_default: bool,
+}
+
+impl NewRobot {
+    /// Its table in the file.
+    pub fn table(&self) -> Table {
+        let mut table = Table::new();
+        table["name"] = value(&self.name);
+        table["target"] = value(self.target.url());
+        if self.target.family().is_none() {
+            table["family"] = value(self.family.name());
+        }
+        for (key, _) in [("read_only", self.read_only), ("hold", self.hold)].into_iter().filter(|(_, is_on)| *is_on) {
+            table[key] = value(true);
+        }
+        if !self.tags.is_empty() {
+            table["tags"] = value(self.tags.iter().collect::<Array>());
+        }
+        table
+    }
+
+    /// Writes it into the file.
+    pub fn add(self, run: &Run, id: &'static str) -> Result<(), RunError> {
+        let file = change(run, |document| document.add(self.table(), self.is_default))?;
+        let target = self.target.url().to_owned();
+        told(run.local(id, &Changed { done: "added", name: self.name, target, file }))
+    }
+}
+
+impl Add {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
+        check_new(&run.sources.inventory, &self.name)?;
+        let target = self.url.of(self.family)?;
+        let Some(family) = self.family.or(target.family()) else {
+            let failure = Failure::usage(format!("'{target}' does not tell the family"));
+            return Err(failure.hint("add --family yerc or --family toyo").into());
+        };
+        target
+            .check(family)
+            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
+        let Self { name, read_only, hold, tags, default: is_default, .. } = self;
+        NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add")
+    }
+}
+
+/// Arguments of `robots remove`.
+#[derive(Debug, Args)]
+pub struct Remove {
+    /// Its name
+    #[arg(add = ValueKind::Robot)]
+    name: String,
+}
+
+impl Remove {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
+        let target = known(&run.sources.inventory, &self.name)?.target.url().to_owned();
+        let file = change(run, |document| document.remove(&self.name))?;
+        told(run.local("robots.remove", &Changed { done: "removed", name: self.name, target, file }))
+    }
+}
+
+/// Changes settings of a robot; `KEY=` with nothing behind it removes one.
+#[derive(Debug, Args)]
+#[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, tags=A,B.")]
+pub struct Set {
+    /// Its name
+    #[arg(add = ValueKind::Robot)]
+    name: String,
+    /// A setting and its value, such as read_only=off or timeout=5s
+    #[arg(required = true, value_name = "KEY=VALUE", add = ValueKind::Listed(candidates))]
+    settings: Vec<String>,
+}
+
+/// Makes a value of the file of what was typed for a robot of a family.
+type Parse = fn(&str, Family) -> Result<Value, Failure>;
+
+/// The settings of an entry, with what they are.
+const SETTINGS: [(&str, &str, Parse); 9] = [
+    ("target", "where it is", |text, family| {
+        let target = text.parse::<Given>()?.of(Some(family))?;
+        Ok(target.url().into())
+    }),
+    ("family", "yerc, yrcx or toyo", |text, _| Ok(parsed::<Family>(text)?.name().into())),
+    ("model", "fs100 or dx200 (yerc)", |text, _| Ok(parsed::<Model>(text)?.name().into())),
+    ("read_only", "on or off: take read commands only", |text, _| Ok(switch(text)?.into())),
+    ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
+    ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
+    ("timeout", "longest wait for an answer, such as 5s", |text, _| {
+        Ok(duration::display(duration::parse_some(text).map_err(Failure::usage)?).into())
+    }),
+    ("retries", "repetitions of a read after silence", |text, _| {
+        let retries =
+            text.parse::<u32>().map_err(|_| Failure::usage(format!("'{text}' is not a number of repetitions")));
+        Ok(i64::from(retries?).into())
+    }),
+    ("tags", "words to choose it by, such as line1,welding", |text, _| {
+        Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))
+    }),
+];
+
+fn candidates() -> Vec<Candidate> {
+    SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).begun()).collect()
+}
+
+fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
+    text.parse::<T>().map_err(|why| Failure::usage(why.to_string()))
+}
+
+fn switch(text: &str) -> Result<bool, Failure> {
+    match text {
+        "on" | "true" | "yes" => Ok(true),
+        "off" | "false" | "no" => Ok(false),
+        _ => Err(Failure::usage(format!("'{text}' is not on or off"))),
+    }
+}
+
+impl Set {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
+        let entry = known(&run.sources.inventory, &self.name)?;
+        let settings = self.settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
+        // What an address without a scheme means depends on the family that comes with it.
+        let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
+        let family = family.unwrap_or(entry.family);
+        let values = settings.iter().map(|(key, text, parse)| {
+            let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| about(key, why))?) };
+            Ok((*key, new))
+        });
+        let values = values.collect::<Result<Vec<_>, Failure>>()?;
+        let mut changes = Vec::new();
+        let file = change(run, |document| {
+            for (key, new) in values {
+                let told = new.as_ref().map(json);
+                let old = document.set(&self.name, key, new)?;
+                changes.push(SettingChange { setting: key, old: old.as_ref().map(json), new: told });
+            }
+            Ok(())
+        })?;
+        told(run.local("robots.set", &WasSet { name: self.name, changes, file }))
+    }
+}
+
+/// A setting as typed: its key, the text of its value, and how that is read.
+fn assigned(setting: &str) -> Result<(&'static str, &str, Parse), Failure> {
+    let Some((key, text)) = setting.split_once('=') else {
+        return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("as in read_only=off or timeout=5s"));
+    };
+    if let Some((key, _, parse)) = SETTINGS.iter().find(|(known, ..)| *known == key) {
+        return Ok((key, text.trim(), *parse));
+    }
+    let failure = Failure::usage(format!("a robot has no setting '{key}'"));
+    Err(match (key, nearest(key, SETTINGS.iter().map(|(known, ..)| *known))) {
+        ("name", _) => failure.hint("`armctl robots rename OLD NEW` gives it another name"),
+        ("default", _) => failure.hint("`armctl robots default NAME` chooses the default"),
+        (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
+        (_, None) => failure.hint(format!("there are {}", SETTINGS.map(|(known, ..)| known).join(", "))),
+    })
+}
+
+fn about(key: &str, failure: Failure) -> Failure {
+    Failure { message: format!("{key}: {}", failure.message), ..failure }
+}
+
+/// A value of the file as one of a report.
+fn json(value: &Value) -> serde_json::Value {
+    match value {
+        Value::Boolean(is_on) => (*is_on.value()).into(),
+        Value::Integer(number) => (*number.value()).into(),
+        Value::Array(list) => list.iter().map(json).collect(),
+        Value::String(text) => text.value().as_str().into(),
+        other => other.to_string().trim().into(),
+    }
+}
+
+/// Settings of a robot that were changed.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WasSet {
+    name: String,
+    changes: Vec<SettingChange>,
+    /// The file that was changed.
+    file: String,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+struct SettingChange {
+    setting: &'static str,
+    /// What the entry had; null if nothing.
+    old: Option<serde_json::Value>,
+    /// What it has; null if nothing.
+    new: Option<serde_json::Value>,
+}
+
+impl Report for WasSet {
+    fn view(&self) -> View {
+        let mut table = view::Table::new(&["setting", "old", "new"], "");
+        for SettingChange { setting, old, new } in &self.changes {
+            let shown = |value: &Option<serde_json::Value>| {
+                Cell::maybe(value.as_ref().map(|value| match value {
+                    serde_json::Value::String(text) => text.clone(),
+                    serde_json::Value::Array(list) => {
+                        list.iter().filter_map(serde_json::Value::as_str).collect::<Vec<_>>().join(" ")
+                    }
+                    other => other.to_string(),
+                }))
+            };
+            table.row([(*setting).into(), shown(old), shown(new)]);
+        }
+        View::table(table)
+    }
+}
+
+/// Arguments of `robots rename`.
+#[derive(Debug, Args)]
+pub struct Rename {
+    /// Its name
+    #[arg(add = ValueKind::Robot)]
+    old: String,
+    /// Its new name
+    new: String,
+}
+
+impl Rename {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
+        let inventory = &run.sources.inventory;
+        let target = known(inventory, &self.old)?.target.url().to_owned();
+        check_new(inventory, &self.new)?;
+        let file = change(run, |document| document.rename(&self.old, &self.new))?;
+        let Self { old, new } = self;
+        run.screen.note(&format!(
+            "hint: backups of several robots have a folder for each: rename those that are called {old}; a session that \
+             is open keeps that name until it is closed"
+        ));
+        told(run.local("robots.rename", &Renamed { old, new, target, file }))
+    }
+}
+
+/// A robot with another name.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Renamed {
+    old: String,
+    new: String,
+    target: String,
+    /// The file that was changed.
+    file: String,
+}
+
+impl Report for Renamed {
+    fn view(&self) -> View {
+        View::text(format!("{} is now {} ({})", self.old, self.new, self.target))
+    }
+}
+
+/// Arguments of `robots default`.
+#[derive(Debug, Args)]
+pub struct Default {
+    /// Its name
+    #[arg(add = ValueKind::Robot)]
+    name: String,
+}
+
+impl Default {
+    pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
+        let inventory = &run.sources.inventory;
+        let target = known(inventory, &self.name)?.target.url().to_owned();
+        let file = change(run, |document| {
+            document.set_default(&self.name);
+            Ok(())
+        })?;
+        told(run.local("robots.default", &WasChosen { old: inventory.default.clone(), new: self.name, target, file }))
+    }
+}
+
+/// The robot that is taken when none is named.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct WasChosen {
+    /// The one before; null if there was none.
+    old: Option<String>,
+    new: String,
+    target: String,
+    /// The file that was changed.
+    file: String,
+}
+
+impl Report for WasChosen {
+    fn view(&self) -> View {
+        View::text(format!("{} is the default ({})", self.new, self.target))
+    }
+}
+
+/// What was changed is changed, also where that could not be reported.
+fn told(reported: Result<(), RunError>) -> Result<(), RunError> {
+    reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
+}
+
+/// Whether a robot may be called so: a name that none has.
+pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
+    if !is_name(name) {
+        return Err(
+            Failure::usage(format!("'{name}' is not a valid robot name")).hint("use letters, digits, '-', '_' and '.'")
+        );
+    }
+    if inventory.robots.iter().any(|robot| robot.name == name) {
+        return Err(Failure::usage(format!("there is a robot '{name}' already")).hint(format!(
+            "`armctl robots set {name} KEY=VALUE` changes it, `armctl robots remove {name}` removes it"
+        )));
+    }
+    Ok(())
+}
+
+/// The entry of a name.
+pub fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Failure> {
+    inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
+        let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
+        match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {
+            Some(near) => failure.hint(format!("did you mean '{near}'?")),
+            None => failure.hint("`armctl robots list` shows them, `armctl robots add` adds one"),
+        }
+    })
+}
+
+/// A robot that came into the inventory or left it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Changed {
+    /// `added` or `removed`.
+    done: &'static str,
+    name: String,
+    target: String,
+    /// The file that was changed.
+    file: String,
+}
+
+impl Report for Changed {
+    fn view(&self) -> View {
+        View::text(format!("{} {} ({})", self.done, self.name, self.target))
+    }
+}

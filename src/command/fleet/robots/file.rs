@@ -1,0 +1,53 @@
+//! The one place that changes `robots.toml`.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+
+use crate::command::frame::run::Run;
+use crate::failure::{Failure, Kind};
+use crate::files;
+use crate::output::busy::busy;
+use crate::settings::document::{Document, Wrong};
+use crate::settings::inventory::Inventory;
+
+/// Where the inventory is, or would be.
+pub fn path(run: &Run) -> Result<&Path, Failure> {
+    run.sources.inventory.path.as_deref().ok_or_else(|| {
+        Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
+    })
+}
+
+/// The text of the file; empty where there is none yet.
+pub fn read(path: &Path) -> Result<String, Failure> {
+    match files::text(path, files::SETTINGS) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        text => Ok(text.with_context(|| path.display().to_string())?),
+    }
+}
+
+/// Changes the file; it is written beside and renamed. What comes back is where it is.
+pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>) -> Result<String, Failure> {
+    let path = path(run)?;
+    replace(path, |text| {
+        let wrong = |why: &dyn std::fmt::Display| {
+            Failure::usage(format!("{}: {why}", path.display()))
+                .hint("correct the file with `armctl robots edit`: `armctl help inventory` shows its form")
+        };
+        let mut document = Document::parse(text).map_err(|error| wrong(&error))?;
+        change(&mut document).map_err(|why| wrong(&why))?;
+        Ok(document.to_string())
+    })?;
+    Ok(path.display().to_string())
+}
+
+/// Replaces the file by what is made of its text. What would not be read again is not written.
+pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String, Failure>) -> Result<Inventory, Failure> {
+    let _busy = busy();
+    // Others may be changing it: what is read is what is replaced.
+    let _turn = files::turn(path).with_context(|| path.display().to_string())?;
+    let text = make(&read(path)?)?;
+    let inventory = Inventory::parse(&text, &path.display().to_string())?;
+    files::replace(path, text.as_bytes()).with_context(|| path.display().to_string())?;
+    Ok(inventory)
+}

@@ -1,0 +1,222 @@
+//! `armctl setup`: from nothing to a robot that is named, checked and read-only, question by question.
+
+use clap::Args;
+
+use super::robots::discover::Discover;
+use super::robots::entry::{NewRobot, check_new};
+use super::robots::file;
+use crate::command::face::layers;
+use crate::command::families::{self, FAMILIES};
+use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Access, ConnectMode};
+use crate::controller::yerc::Model;
+use crate::failure::{Failure, Kind};
+use crate::output::render;
+use crate::output::view::View;
+use crate::settings::target::{Family, Given, Target};
+
+/// Asks for address, name and what the robot may be told, checks the connection, and writes robots.toml.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "It reads while it checks, and changes nothing on the controller. `armctl robots add` does the same \
+                        without questions."
+)]
+pub struct Setup {}
+
+/// Who is set up.
+struct Found {
+    family: Family,
+    target: Target,
+}
+
+impl Setup {
+    /// Does it.
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
+        if !run.screen.can_ask() {
+            return Err(Failure::usage("setup asks questions, and there is no terminal to ask at")
+                .hint("`armctl robots add NAME URL --read-only` does the same without questions")
+                .into());
+        }
+        let path = file::path(run)?.display().to_string();
+        // From here on Ctrl-C ends in a message and an exit code.
+        catch_interrupts();
+        run.screen
+            .ask_note("Set up a robot. Enter takes what is in brackets; until the last answer nothing is written.");
+        let Found { family, target } = reached(run).await.map_err(unanswered)?;
+        let robot = described(run, family, target).await.map_err(unanswered)?;
+        run.screen.ask_note(&format!("\n[[robot]]\n{}", robot.table()));
+        if !yes(run, format!("Write this to {path}?"), true).await.map_err(unanswered)? {
+            return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
+        }
+        robot.add(run, "setup")?;
+        run.screen.note("`armctl status` shows it; `armctl -h` lists what else there is");
+        Ok(())
+    }
+}
+
+/// A question that got no answer is about no controller here.
+fn unanswered(failure: Failure) -> Failure {
+    match failure.kind {
+        Kind::Rejected => Failure::new(Kind::Rejected, "there was no answer; nothing was written")
+            .hint("`armctl robots add NAME URL --read-only` does the same without questions"),
+        Kind::Interrupted => Failure { message: format!("{}; nothing was written", failure.message), ..failure },
+        _ => failure,
+    }
+}
+
+/// Asks on a thread of its own, so that Ctrl-C is heard meanwhile.
+async fn asked<T: Send + 'static>(
+    question: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let asked = interruptible(tokio::task::spawn_blocking(question)).await?;
+    asked.map_err(|error| Failure::local(format!("the question failed: {error}")))?
+}
+
+async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
+    let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
+    asked(move || screen.ask_line(&question, usual.as_deref())).await
+}
+
+async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
+    let screen = run.screen;
+    asked(move || screen.ask_choice(question, &options)).await
+}
+
+async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
+    let (screen, question) = (run.screen, question.into());
+    asked(move || screen.ask_yes(&question, usual)).await
+}
+
+/// An address whose check is good enough for whoever sits there.
+async fn reached(run: &Run) -> Result<Found, Failure> {
+    loop {
+        let found = address(run).await?;
+        loop {
+            if check(run, &found).await? {
+                return Ok(found);
+            }
+            let ways = ["check again", "another address", "go on all the same"];
+            match choice(run, "Something is in the way. What now?", ways.map(String::from).into()).await? {
+                0 => {}
+                1 => break,
+                _ => return Ok(found),
+            }
+        }
+    }
+}
+
+async fn address(run: &Run) -> Result<Found, Failure> {
+    let ways = [
+        "at an address or serial port that you type",
+        "look for it: ask the boards in this network, list the serial ports",
+        "nowhere yet: a simulator",
+    ];
+    loop {
+        let found = match choice(run, "Where is the robot?", ways.map(String::from).into()).await? {
+            0 => typed(run).await,
+            1 => match look(run).await? {
+                Some((given, family)) => complete(run, &given, family).await,
+                None => continue,
+            },
+            _ => simulator(run).await,
+        };
+        match found {
+            Err(failure) if failure.kind == Kind::Usage => run.screen.failure(&failure),
+            found => return found,
+        }
+    }
+}
+
+async fn typed(run: &Run) -> Result<Found, Failure> {
+    let given = line(run, "Address, such as 192.168.1.31, COM3, /dev/ttyUSB0 or a URL", None).await?;
+    complete(run, &given.parse()?, None).await
+}
+
+/// One of those that can be found; `None` if it is not among them.
+async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
+    let found = interruptible(Discover::usual().find(run)).await??;
+    let mut places = found.places();
+    let shown = places.iter().map(|(target, _, device)| format!("{target}  {device}"));
+    let options: Vec<String> = shown.chain(["none of these".to_owned()]).collect();
+    let at = choice(run, "This was found:", options).await?;
+    if at >= places.len() {
+        return Ok(None);
+    }
+    let (target, family, _) = places.swap_remove(at);
+    Ok(Some((target.parse()?, family.and_then(|family| family.parse().ok()))))
+}
+
+async fn simulator(run: &Run) -> Result<Found, Failure> {
+    let family = family(run).await?;
+    let question = format!("Address of one that `armctl sim {family}` serves, or sim: for one inside armctl");
+    let given = line(run, question, Some(families::of(family).simulator())).await?;
+    complete(run, &given.parse()?, Some(family)).await
+}
+
+/// Asks for what an address does not tell.
+async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
+    let told = match given {
+        Given::Url(target) => target.family(),
+        Given::Bare(_) => None,
+    };
+    let family = match known.or(told) {
+        Some(family) => family,
+        None => family(run).await?,
+    };
+    let mut target = given.of(Some(family))?;
+    target.check(family).map_err(Failure::usage)?;
+    let is_open = family.has_model() && !target.is_simulated() && target.traits().model.is_none();
+    // Simulators serve the first model unless they are told otherwise, and say the other one in their URL.
+    if is_open && known.is_none() {
+        let models = [Model::Dx200, Model::Fs100];
+        let names = models.map(|model| model.name().to_uppercase());
+        let at = choice(run, "Which model is it?", names.into()).await?;
+        let url = target.url();
+        let sign = if url.contains('?') { '&' } else { '?' };
+        target = format!("{url}{sign}model={}", models[at.min(1)]).parse()?;
+    }
+    Ok(Found { family, target })
+}
+
+async fn family(run: &Run) -> Result<Family, Failure> {
+    let titles = FAMILIES.map(|face| format!("{} ({})", face.title(), face.family()));
+    let at = choice(run, "Which controller is it?", titles.into()).await?;
+    FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
+}
+
+/// Shows each layer; whether none failed.
+async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
+    let robot = run.sources.at(&found.target, found.family)?;
+    let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
+    run.begin_trace()?;
+    let layers = interruptible(families::of(found.family).check(&robot, access, &run.screen)).await??;
+    let table = render::text(&View::table(layers::table(&layers)), run.screen.width(), false);
+    run.screen.ask_note(&format!("\n{}", table.trim_end()));
+    Ok(layers::first_failed(&layers).is_none())
+}
+
+/// What it is called, and what it may be told.
+async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
+    let (screen, inventory) = (&run.screen, &run.sources.inventory);
+    let free = (1_u32..).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
+    screen.ask_note("");
+    let name = loop {
+        let name = line(run, "Name", free.as_deref()).await?;
+        match check_new(inventory, &name) {
+            Ok(()) => break name,
+            Err(failure) => screen.failure(&failure),
+        }
+    };
+    let read_only = yes(run, "Read-only: take no command that changes something?", true).await?;
+    let hold = family == Family::Yrcx
+        && !read_only
+        && yes(run, "Hold: open a session by itself where a command needs one?", false).await?;
+    let is_default = match &inventory.default {
+        // The first one is, without a question.
+        None if inventory.robots.is_empty() => true,
+        None => yes(run, "Take it when no robot is named (default)?", true).await?,
+        Some(other) => yes(run, format!("Take it when no robot is named, instead of {other}?"), false).await?,
+    };
+    Ok(NewRobot { name, target, family, read_only, hold, tags: Vec::new(), is_default })
+}

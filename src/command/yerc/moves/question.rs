@@ -1,0 +1,105 @@
+//! What is asked before a motion: each axis with its value and unit, from where it stands as far as that can be compared.
+
+use super::arguments::{Speed, Values, base_told, told};
+use super::going::Goal;
+use crate::command::yerc::position::{axis_names, in_a_line};
+use crate::controller::units::{self, Unit};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{Position, PositionKind, SpeedClass};
+use crate::gate::Change;
+
+/// A motion in words.
+#[derive(Debug)]
+pub(super) struct Question<'a> {
+    /// `move R1 in a straight line`.
+    pub(super) what: String,
+    /// `to`, or `by` where they are distances.
+    pub(super) preposition: &'static str,
+    /// What the numbers are.
+    pub(super) kind: PositionKind,
+    /// Those of a robot.
+    pub(super) robot: Option<Vec<i32>>,
+    /// Those of its base, and their unit.
+    pub(super) base: (Option<&'a Values>, Unit),
+    /// Those of a station.
+    pub(super) station: Option<&'a Values>,
+    /// `in base coordinates, tool 0`; nothing where there is nothing to say.
+    pub(super) how: String,
+    pub(super) speed: Speed,
+}
+
+impl Question<'_> {
+    /// In a line: where nothing of the robot was read.
+    pub(super) fn in_a_line(&self) -> String {
+        let base = base_told(self.base.0, self.base.1);
+        let place = told(self.kind, self.robot.as_deref(), base, self.station);
+        let how = if self.how.is_empty() { String::new() } else { format!(" {}", self.how) };
+        format!("{} {} {place}{how} at {}", self.what, self.preposition, self.speed)
+    }
+
+    /// An axis a line; with its present value where `start` can be compared with the goal.
+    pub(super) fn change(&self, group: Group, start: Option<&Position>, goal: &Goal) -> Change {
+        let mut change = Change::new(format!("{} at {}", self.what, self.speed));
+        match (goal, start) {
+            (Goal::Base(target, tool), Some(start)) if start.tool == *tool && start.kind == PositionKind::Base => {
+                change = compared(change, group, start, target);
+                let [x, y, z] = [0, 1, 2].map(|axis| apart(start, target, axis));
+                let way = (x * x + y * y + z * z).sqrt() / 1000.0;
+                change = change.note(format!("The target is {way:.3} mm away{}.", self.time(way)));
+            }
+            (Goal::Pulses(target), Some(start)) if start.kind == PositionKind::Pulse => {
+                change = compared(change, group, start, target);
+            }
+            _ => {
+                let robot = (self.robot.as_deref().unwrap_or_default(), self.kind);
+                let station = (self.station.map_or(&[][..], |axes| &axes.0), PositionKind::Pulse);
+                for (axes, kind) in [robot, station] {
+                    for (at, (name, value)) in axis_names(kind, group).iter().zip(axes).enumerate() {
+                        change = change.item(format!("{name}: {} {}", self.preposition, shown(kind, at, *value)));
+                    }
+                }
+            }
+        }
+        if let Some(base) = base_told(self.base.0, self.base.1) {
+            change = change.item(format!("base: {} {base}", self.preposition));
+        }
+        match self.how.trim_end_matches(',').strip_prefix("in ") {
+            Some(how) => change.note(format!("In {how}.")),
+            None => change,
+        }
+    }
+
+    /// How long it takes at least, where the speed is one along the way.
+    fn time(&self, way_mm: f64) -> String {
+        if self.speed.class != SpeedClass::Linear {
+            return String::new();
+        }
+        format!(": {:.1} s at least", way_mm / (f64::from(self.speed.word) / 10.0))
+    }
+}
+
+fn compared(change: Change, group: Group, start: &Position, target: &[i32]) -> Change {
+    let axes = axis_names(start.kind, group).into_iter().zip(start.axes.as_slice().iter().zip(target)).enumerate();
+    axes.fold(change, |change, (at, (name, (old, new)))| {
+        change.replaces(name, start.kind.unit(at).show(*old).to_string().as_str(), &shown(start.kind, at, *new))
+    })
+}
+
+/// A value with its unit.
+fn shown(kind: PositionKind, axis: usize, value: i32) -> String {
+    let unit = kind.unit(axis);
+    let symbol = if unit == units::PULSE { "pulses" } else { unit.symbol };
+    format!("{} {symbol}", unit.show(value))
+}
+
+/// How far an axis goes, in steps.
+fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
+    let of = |axes: &[i32]| axes.get(axis).copied().map_or(0.0, f64::from);
+    of(target) - of(start.axes.as_slice())
+}
+
+/// Where the robot stands is not where it stood when that was asked.
+pub(super) fn moved_meanwhile(group: Group, now: &Position) -> String {
+    let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
+    format!("{group} has moved since the question, to {place}; nothing was ordered")
+}

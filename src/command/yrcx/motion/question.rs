@@ -1,0 +1,99 @@
+//! What is asked before a motion once the controller can be asked first: each axis with where it is and where it goes.
+
+use crate::command::frame::authority::Authority;
+use crate::command::yrcx::link::Link;
+use crate::command::yrcx::overwrite::mm;
+use crate::command::yrcx::position::Unit;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::{Failure, Kind};
+use crate::gate::Change;
+
+/// Where a motion ends.
+#[derive(Debug, Clone, PartialEq)]
+struct Goal {
+    unit: Unit,
+    /// Of axes 1 to 4; none for those that are not sent anywhere.
+    axes: [Option<i32>; 4],
+}
+
+/// Has a motion confirmed that `intent` says in a line. Where somebody is asked, it is read first where the robot is and
+/// where the point is that it goes to; that must be the same place after the answer.
+pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<(), Failure> {
+    let change = Change::new(intent);
+    if !authority.asks() {
+        return authority.confirm(&change).await;
+    }
+    let Some(goal) = goal(link, order).await? else {
+        let is_point = order.values().int(Key::Point).is_some();
+        let change = if is_point { change.note("Where the point is could not be read.") } else { change };
+        return authority.confirm(&change).await;
+    };
+    let here = match goal.unit {
+        Unit::Mm => Command::PositionMm,
+        Unit::Pulse => Command::PositionPulse,
+    };
+    let here = read(link, here, &[]).await?.and_then(|values| values.axes());
+    authority.confirm(&goal.told(change, here)).await?;
+    match self::goal(link, order).await? {
+        Some(now) if now == goal => Ok(()),
+        _ => Err(Failure::new(Kind::Rejected, "the point was changed since the question; nothing was moved")
+            .hint("somebody else is at work there: look, then repeat the command")),
+    }
+}
+
+/// Where an order leads, as far as numbers tell; distances and pallets are told in its line.
+async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
+    let values = order.values();
+    let mask = values.int(Key::Axes).unwrap_or_default();
+    let is_meant = |at: usize| mask == 0 || mask >> at & 1 == 1;
+    let goal = |unit, of: &dyn Fn(Key) -> Option<i32>| {
+        let axes = [0, 1, 2, 3].map(|at: usize| Key::AXES.get(at).filter(|_| is_meant(at)).and_then(|key| of(*key)));
+        Some(Goal { unit, axes })
+    };
+    let point = match order.command() {
+        Command::MoveMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
+        Command::MovePulse => return Ok(goal(Unit::Pulse, &|key| values.int(key))),
+        Command::DriveMm => return Ok(goal(Unit::Mm, &|_| values.int(Key::Target))),
+        Command::DrivePulse => return Ok(goal(Unit::Pulse, &|_| values.int(Key::Target))),
+        Command::MovePtp | Command::MoveLinear | Command::MoveArch | Command::DrivePoint => Key::Point,
+        Command::MoveCircular => Key::Point2,
+        _ => return Ok(None),
+    };
+    let number = values.int(point).unwrap_or_default();
+    let point = read(link, Command::PointGet, &[(Key::Point, number)]).await?;
+    Ok(point.and_then(|point| {
+        let unit = if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse };
+        goal(unit, &|key| point.int(key))
+    }))
+}
+
+/// Reads something; nothing where the controller refuses to tell.
+async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
+    let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
+    Ok(link.try_ask(&draft.build()?).await?.ok().map(|done| done.values))
+}
+
+impl Goal {
+    /// A line for each axis that is sent somewhere, and how far that is.
+    fn told(&self, change: Change, here: Option<[i32; 4]>) -> Change {
+        let shown = |steps: i32| if self.unit == Unit::Mm { mm(steps) } else { steps.to_string() };
+        let told = self.axes.iter().enumerate().filter_map(|(at, new)| Some((at, (*new)?)));
+        let change = told.fold(change, |change, (at, new)| {
+            let (what, new) = (format!("axis {}", at + 1), format!("{} {}", shown(new), self.unit.symbol()));
+            match here.and_then(|here| here.get(at).copied()) {
+                Some(old) => change.replaces(&what, &shown(old), &new),
+                None => change.item(format!("{what}: to {new}")),
+            }
+        });
+        match (self.unit, self.axes, here) {
+            (Unit::Mm, [Some(x), Some(y), Some(z), _], Some(here)) => {
+                let apart = [x, y, z].into_iter().zip(here).map(|(new, old)| f64::from(new) - f64::from(old));
+                let way = apart.map(|steps| steps * steps).sum::<f64>().sqrt() / 1000.0;
+                change.note(format!("The target is {way:.3} mm away."))
+            }
+            _ => change,
+        }
+    }
+}

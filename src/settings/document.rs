@@ -1,0 +1,231 @@
+//! `robots.toml` as a text that people keep: whatever is changed in it, the comments and the order of the rest stay.
+
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value, value};
+
+/// The text of an inventory, to be changed.
+#[derive(Debug, Clone)]
+pub struct Document(DocumentMut);
+
+/// Why a text cannot be changed so.
+pub type Wrong = &'static str;
+
+const NO_LIST: Wrong = "`robot` is no list of [[robot]] tables";
+const NO_ENTRY: Wrong = "the robot has no [[robot]] table of its own";
+
+impl Document {
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// It is not TOML.
+    pub fn parse(text: &str) -> Result<Self, TomlError> {
+        text.parse().map(Self)
+    }
+
+    /// Appends an entry; the first one becomes the default.
+    pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), Wrong> {
+        let name = entry.get("name").cloned().unwrap_or_default();
+        let list = self.0.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+        let list = list.as_array_of_tables_mut().ok_or(NO_LIST)?;
+        list.push(entry);
+        if is_default || list.len() == 1 {
+            self.set_default(name.as_str().unwrap_or_default());
+        }
+        Ok(())
+    }
+
+    /// Removes an entry with the comment that stands right above it.
+    pub fn remove(&mut self, name: &str) -> Result<(), Wrong> {
+        let list = self.list()?;
+        let at = list.iter().position(|entry| is_called(entry, name)).ok_or(NO_ENTRY)?;
+        let gone = list.remove(at);
+        let above = gone.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+        // What an empty line separates from the entry is about something else, such as the file.
+        let kept = above.rfind("\n\n").map_or("", |end| &above[..end + 1]);
+        if kept.contains('#') {
+            self.put_before_table(gone.position(), kept);
+        }
+        if self.default() == Some(name) {
+            self.remove_default();
+        }
+        Ok(())
+    }
+
+    /// Gives an entry another name, and the default that names it.
+    pub fn rename(&mut self, old: &str, new: &str) -> Result<(), Wrong> {
+        put(self.entry(old)?, "name", new.into());
+        if self.default() == Some(old) {
+            self.set_default(new);
+        }
+        Ok(())
+    }
+
+    /// The robot that is taken when none is named.
+    pub fn set_default(&mut self, name: &str) {
+        put(self.0.as_table_mut(), "default", name.into());
+    }
+
+    /// Writes a setting of an entry, or removes it; what was there comes back.
+    pub fn set(&mut self, name: &str, key: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
+        let entry = self.entry(name)?;
+        Ok(match new {
+            Some(new) => put(entry, key, new),
+            None => entry.remove(key).and_then(|item| item.into_value().ok()),
+        })
+    }
+
+    fn default(&self) -> Option<&str> {
+        self.0.get("default").and_then(Item::as_str)
+    }
+
+    /// Removes the default; a comment above it, which may be that of the file, stays where it is.
+    fn remove_default(&mut self) {
+        let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
+        let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+        if above.contains('#') {
+            self.put_before_table(None, above);
+        }
+    }
+
+    fn list(&mut self) -> Result<&mut ArrayOfTables, Wrong> {
+        self.0.get_mut("robot").and_then(Item::as_array_of_tables_mut).ok_or(NO_LIST)
+    }
+
+    fn entry(&mut self, name: &str) -> Result<&mut Table, Wrong> {
+        self.list()?.iter_mut().find(|entry| is_called(entry, name)).ok_or(NO_ENTRY)
+    }
+
+    /// Puts comments before the table that follows a place in the text, or at the end.
+    fn put_before_table(&mut self, place: Option<isize>, text: &str) {
+        let lists = self.0.iter_mut().flat_map(|(_, item)| match item {
+            Item::Table(table) => vec![table],
+            Item::ArrayOfTables(list) => list.iter_mut().collect(),
+            _ => Vec::new(),
+        });
+        match lists.filter(|table| table.position() > place).min_by_key(|table| table.position()) {
+            Some(next) => {
+                let own = next.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
+                let whole = format!("{text}{own}");
+                next.decor_mut().set_prefix(whole);
+            }
+            None => {
+                let whole = format!("{text}{}", self.0.trailing().as_str().unwrap_or_default());
+                self.0.set_trailing(whole);
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Document {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+fn is_called(entry: &Table, name: &str) -> bool {
+    entry.get("name").and_then(Item::as_str) == Some(name)
+}
+
+/// Writes a value where it stands, with the comment behind it, or at the end of the table; what was there comes back.
+fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
+    match table.get_mut(key) {
+        Some(Item::Value(old)) => {
+            *new.decor_mut() = old.decor().clone();
+            Some(std::mem::replace(old, new))
+        }
+        _ => {
+            table.insert(key, value(new));
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With a comment at each place where people write one.
+    const TEXT: &str = "\
+# Hall 3, kept by Ann
+
+# who answers when nobody is named
+default = \"a\" # for now
+
+[defaults] # of all
+timeout = \"2s\"
+
+# Cells
+
+# the old one
+[[robot]]
+name = \"a\"   # left
+read_only = true # until May
+target = \"udp://h\"
+
+# the new one
+[[robot]]
+target = \"udp://i\"
+name = \"b\"
+# the end
+";
+
+    fn changed(change: impl FnOnce(&mut Document)) -> String {
+        let mut document = Document::parse(TEXT).unwrap();
+        change(&mut document);
+        document.to_string()
+    }
+
+    /// What is gone and what is new, in the order of the lines.
+    fn difference(text: &str) -> (Vec<&str>, Vec<&str>) {
+        let (old, new): (Vec<&str>, Vec<&str>) = (TEXT.lines().collect(), text.lines().collect());
+        let gone = old.iter().filter(|line| !new.contains(line)).copied().collect();
+        (gone, new.iter().filter(|line| !old.contains(line)).copied().collect())
+    }
+
+    #[test]
+    fn nothing_but_what_was_meant_is_changed() {
+        let set = changed(|document| {
+            assert_eq!(document.set("a", "read_only", Some(false.into())).unwrap().unwrap().as_bool(), Some(true));
+            assert!(document.set("b", "retries", Some(5.into())).unwrap().is_none());
+        });
+        let (gone, new) = difference(&set);
+        assert_eq!(gone, ["read_only = true # until May"]);
+        assert_eq!(new, ["read_only = false # until May", "retries = 5"]);
+
+        let renamed = changed(|document| document.rename("a", "press").unwrap());
+        let (_, new) = difference(&renamed);
+        assert_eq!(new, ["default = \"press\" # for now", "name = \"press\"   # left"]);
+        let defaulted = changed(|document| document.set_default("b"));
+        assert_eq!(difference(&defaulted).1, ["default = \"b\" # for now"]);
+        let unset = changed(|document| assert!(document.set("a", "read_only", None).unwrap().is_some()));
+        assert_eq!(difference(&unset), (vec!["read_only = true # until May"], vec![]));
+    }
+
+    #[test]
+    fn an_entry_goes_with_its_own_comment_alone() {
+        let removed = changed(|document| document.remove("a").unwrap());
+        for kept in ["# Hall 3, kept by Ann", "# Cells", "# the new one", "# of all", "# the end", "name = \"b\""] {
+            assert!(removed.contains(kept), "{kept}:\n{removed}");
+        }
+        assert!(!removed.contains("the old one") && !removed.contains("default ="), "{removed}");
+        assert!(removed.find("# Cells") > removed.find("timeout"), "{removed}");
+        let mut document = Document::parse(&removed).unwrap();
+        document.remove("b").unwrap();
+        let empty = document.to_string();
+        assert!(empty.contains("# Cells") && empty.contains("# Hall 3"), "{empty}");
+        assert_eq!(document.remove("b"), Err(NO_ENTRY));
+    }
+
+    #[test]
+    fn a_new_entry_stands_at_the_end() {
+        let mut entry = Table::new();
+        entry.insert("name", value("c"));
+        entry.insert("target", value("udp://j"));
+        let added = changed(|document| document.add(entry.clone(), false).unwrap());
+        assert_eq!(difference(&added), (vec![], vec!["name = \"c\"", "target = \"udp://j\""]));
+        assert!(added.find("\"c\"") > added.find("\"b\""), "{added}");
+        let mut none = Document::parse("").unwrap();
+        none.add(entry, false).unwrap();
+        assert!(none.to_string().starts_with("default = \"c\""), "{none}");
+        assert!(Document::parse("robot = 1").unwrap().add(Table::new(), false).is_err());
+    }
+}

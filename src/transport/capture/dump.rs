@@ -1,0 +1,221 @@
+//! Telegrams of PROFIBUS as a logger on the line writes them: one after the other, as bytes or in hexadecimal.
+
+use std::io::{BufRead, Read as _};
+use std::time::Duration;
+
+use super::{Carrier, Damage, Message, Summary};
+use crate::profibus::wire::{CHECKSUM, Parsed, START, Telegram};
+use crate::tap::LINKTYPE_PROFIBUS_DL;
+
+/// Longest line in hexadecimal.
+const MOST_LINE: usize = 16 << 20;
+/// More than the longest telegram has: what is still no telegram then never becomes one.
+const MOST_TELEGRAM: usize = 512;
+/// Most noise that is kept.
+const MOST_NOISE: usize = 1 << 16;
+
+/// How a dump is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// Digits, with or without something between the bytes.
+    Hexadecimal,
+    /// As they travel.
+    Bytes,
+}
+
+impl Form {
+    /// That of a file that begins like this, if it is a dump.
+    pub fn of(beginning: &[u8]) -> Option<Self> {
+        let is_digits = |byte: &u8| byte.is_ascii_hexdigit() || is_between(char::from(*byte)) || b"xX".contains(byte);
+        if beginning.iter().all(is_digits) && beginning.iter().any(u8::is_ascii_hexdigit) {
+            return Some(Self::Hexadecimal);
+        }
+        // Tokens and acknowledges are too short to tell anything of an unknown file.
+        let begins = |at| matches!(Telegram::parse(&beginning[at..]), Ok(Parsed::Whole(Telegram::Frame(_), _)));
+        (0..beginning.len().min(MOST_TELEGRAM)).any(begins).then_some(Self::Bytes)
+    }
+}
+
+/// Reads a dump. Its telegrams are counted from 1, damaged ones and what is between them as well; they have no time.
+pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_>)) -> Summary {
+    let mut pieces = Pieces::default();
+    let mut offset = 0;
+    loop {
+        let next = match form {
+            Form::Bytes => file.fill_buf().map(<[u8]>::to_vec).map_err(|_| UNREADABLE),
+            Form::Hexadecimal => line(&mut file),
+        };
+        let bytes = match (next, form) {
+            (Ok(taken), Form::Hexadecimal) => parse_hex(&String::from_utf8_lossy(&taken))
+                .map(|bytes| (taken.len(), bytes))
+                .map_err(|_| "a line is not in hexadecimal"),
+            (taken, _) => taken.map(|bytes| (bytes.len(), bytes)),
+        };
+        match bytes {
+            Ok((0, _)) => break,
+            Ok((len, bytes)) => {
+                if form == Form::Bytes {
+                    file.consume(len);
+                }
+                pieces.bytes.extend(bytes);
+                offset += len;
+            }
+            Err(problem) => {
+                pieces.summary.damage = Some(Damage { offset, problem });
+                break;
+            }
+        }
+        pieces.take(false, &mut each);
+    }
+    pieces.take(true, &mut each);
+    pieces.summary
+}
+
+const UNREADABLE: &str = "it cannot be read any further";
+
+/// The next line; nothing at the end.
+fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
+    let mut line = Vec::new();
+    let most = u64::try_from(MOST_LINE).unwrap_or(u64::MAX);
+    match file.by_ref().take(most).read_until(b'\n', &mut line) {
+        Ok(len) if len == MOST_LINE => Err("a line is too long"),
+        Ok(_) => Ok(line),
+        Err(_) => Err(UNREADABLE),
+    }
+}
+
+/// What has been read and not handed on.
+#[derive(Debug, Default)]
+struct Pieces {
+    bytes: Vec<u8>,
+    /// How many of them were handed on.
+    start: usize,
+    /// How many behind those begin no telegram.
+    noise: usize,
+    summary: Summary,
+}
+
+impl Pieces {
+    /// Hands on what is whole, and at the end the rest.
+    fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
+        loop {
+            let rest = &self.bytes[self.start + self.noise..];
+            if rest.is_empty() {
+                break;
+            }
+            let len = match Telegram::parse(rest) {
+                Ok(Parsed::Whole(_, len)) => len,
+                Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
+                Ok(Parsed::Part(_)) => rest.len(),
+                // All of it, or what is inside would be taken for acknowledges and tokens, which have no check.
+                Err(error) if error.field == CHECKSUM => error.offset + 2,
+                Err(_) => {
+                    self.noise += 1;
+                    continue;
+                }
+            };
+            self.hand_on(self.noise, each);
+            self.hand_on(len, each);
+            self.noise = 0;
+        }
+        if is_end || self.noise >= MOST_NOISE {
+            self.hand_on(self.noise, each);
+            self.noise = 0;
+        }
+        self.bytes.drain(..self.start);
+        self.start = 0;
+    }
+
+    /// Hands on so many bytes as one message.
+    fn hand_on(&mut self, len: usize, each: &mut impl FnMut(&Message<'_>)) {
+        if len == 0 {
+            return;
+        }
+        self.summary.packets += 1;
+        let carrier = Carrier::Frame { link_type: LINKTYPE_PROFIBUS_DL };
+        let (number, time, bytes) = (self.summary.packets, Duration::ZERO, &self.bytes[self.start..self.start + len]);
+        each(&Message { number, time, carrier, bytes, is_cut: false });
+        self.start += len;
+    }
+}
+
+/// Whether a telegram begins anywhere in these bytes, damaged or not.
+pub fn holds_telegram(bytes: &[u8]) -> bool {
+    (0..bytes.len()).any(|at| !matches!(Telegram::parse(&bytes[at..]), Err(error) if error.field == START))
+}
+
+/// What may stand between bytes in hexadecimal.
+fn is_between(c: char) -> bool {
+    c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')
+}
+
+/// Bytes from hexadecimal digits, as tools print them: together or apart, with `0x`, colons, commas or dashes.
+pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
+    /// Digits that are repeated in an error.
+    const MOST: usize = 24;
+
+    let mut bytes = Vec::with_capacity(text.len() / 2);
+    for token in text.split(is_between) {
+        let digits = token.strip_prefix("0x").or_else(|| token.strip_prefix("0X")).unwrap_or(token);
+        if let Some(wrong) = digits.chars().find(|c| !c.is_ascii_hexdigit()) {
+            return Err(format!("'{}' is not a valid hexadecimal digit", wrong.escape_debug()));
+        }
+        if digits.len() > 1 && digits.len() % 2 == 1 {
+            let rest = if digits.len() > MOST { "…" } else { "" };
+            return Err(format!("'{}{rest}' has an odd number of digits", &digits[..digits.len().min(MOST)]));
+        }
+        // Only digits are left, so every pair is a byte.
+        let pairs = digits.as_bytes().chunks(2).filter_map(|pair| std::str::from_utf8(pair).ok());
+        bytes.extend(pairs.filter_map(|pair| u8::from_str_radix(pair, 16).ok()));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DUMP: &str = "10 05 02 49 50 16\n0x10,0x02,0x05,0x00,0x07,0x16\nDC0202 E5\n";
+
+    fn pieces(file: &[u8]) -> (Vec<Vec<u8>>, Summary) {
+        let form = Form::of(file).unwrap();
+        let mut all = Vec::new();
+        // In small pieces, as a pipe may give them.
+        let file = std::io::BufReader::with_capacity(5, file);
+        let summary = read(file, form, |message| all.push(message.bytes.to_vec()));
+        (all, summary)
+    }
+
+    #[test]
+    fn telegrams_are_found_in_either_form() {
+        let expected =
+            ["100502495016", "100205000716", "DC0202", "E5"].map(|telegram| parse_hex(telegram).unwrap()).to_vec();
+        let (all, summary) = pieces(DUMP.as_bytes());
+        assert_eq!((&all, summary.packets, summary.damage), (&expected, 4, None));
+        let (all, summary) = pieces(&expected.concat());
+        assert_eq!((&all, summary.packets, summary.damage), (&expected, 4, None));
+    }
+
+    #[test]
+    fn damage_stays_one_piece_and_what_follows_is_found() {
+        // A check that is wrong, with an acknowledge inside; noise; a telegram; one that is cut.
+        let (all, _) = pieces(b"68 05 05 68 85 82 E5 3C 3E 00 16 FF 16 10 05 02 49 50 16 68 05 05 68 85");
+        let lengths: Vec<_> = all.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [11, 2, 6, 5]);
+    }
+
+    #[test]
+    fn a_line_that_is_no_hexadecimal_ends_the_dump_where_it_is() {
+        let (all, summary) = pieces(b"E5\n1 0 5\n123\n");
+        assert_eq!(all.len(), 2, "{all:?}");
+        let damage = summary.damage.unwrap();
+        assert_eq!((damage.offset, damage.problem), (9, "a line is not in hexadecimal"));
+    }
+
+    #[test]
+    fn other_files_are_no_dump() {
+        for other in [&b""[..], b"\n \n", b"YERC", b"\x10\x05\x02\x49\x51\x16", b"\xD4\xC3\xB2\xA1"] {
+            assert_eq!(Form::of(other), None, "{other:?}");
+        }
+    }
+}
