@@ -29,7 +29,7 @@ enum NextLine {
 /// Off a terminal, a line each time so many bytes more are done, where their number is not known.
 const LINE_EVERY: u64 = 1 << 20;
 /// What is done sooner has no lines.
-const QUICK: Duration = Duration::from_secs(2);
+const QUICK: Duration = Duration::from_secs(10);
 
 impl Screen {
     /// Starts to show the transfer of bytes called `what`; `total` where it is known.
