@@ -232,8 +232,6 @@ mod tests {
         let wants = |line: &str| wants_json(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
         for line in [
             "armctl --json x",
-            "armctl x --jq .a",
-            "armctl x --jq=.a",
             "armctl x -o json",
             "armctl x -ojsonl",
             "armctl x -o=json",
@@ -248,7 +246,7 @@ mod tests {
         for line in ["armctl x -o csv", "armctl x --output=table"] {
             assert_eq!(wants(line), Some(false), "{line}");
         }
-        for line in ["armctl x", "armctl say -- --json", "armctl x json", "armctl x --outputs json"] {
+        for line in ["armctl x", "armctl x --jq .a", "armctl x --jq=.a", "armctl say -- --json", "armctl x json"] {
             assert_eq!(wants(line), None, "{line}");
         }
     }

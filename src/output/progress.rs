@@ -19,32 +19,36 @@ pub struct Progress {
 /// When the next line is due off a terminal.
 #[derive(Debug)]
 enum NextLine {
-    /// When so many bytes are done.
+    /// When so many bytes are done, of which nobody knows how many there are.
     Bytes(u64),
-    /// At a moment, for so many items that were begun at another.
-    Items { total: u64, began: Instant, due: Instant },
+    /// With each tenth of `total` from the first one that is not done at once; how much is done is counted in KiB or in
+    /// items.
+    Tenths { total: u64, began: Instant, told: u64, in_kib: bool },
 }
 
-/// Off a terminal, a line each time so many bytes more are done.
+/// Off a terminal, a line each time so many bytes more are done, where their number is not known.
 const LINE_EVERY: u64 = 1 << 20;
-/// The same for items, by time: they take as long as they take.
-const LINE_AFTER: Duration = Duration::from_secs(10);
+/// What is done sooner has no lines.
+const QUICK: Duration = Duration::from_secs(10);
 
 impl Screen {
     /// Starts to show the transfer of bytes called `what`; `total` where it is known.
     pub fn bytes_progress(&self, what: &str, total: Option<u64>) -> Progress {
         let template = match total {
-            Some(_) => "{msg} {bar:24} {bytes}/{total_bytes} {bytes_per_sec} {eta}",
+            Some(_) => "{msg} {bar:24} {percent}% {bytes}/{total_bytes} {bytes_per_sec} {eta}",
             None => "{msg} {spinner} {bytes} {bytes_per_sec} {elapsed}",
         };
-        self.progress(what, total, template, NextLine::Bytes(LINE_EVERY))
+        let next_line = match total {
+            Some(total) => NextLine::Tenths { total, began: Instant::now(), told: 0, in_kib: true },
+            None => NextLine::Bytes(LINE_EVERY),
+        };
+        self.progress(what, total, template, next_line)
     }
 
     /// Starts to show how many of `total` items called `what` are done, and how long the rest takes.
     pub fn items_progress(&self, what: &str, total: u64) -> Progress {
-        let began = Instant::now();
-        let next_line = NextLine::Items { total, began, due: began + LINE_AFTER };
-        self.progress(what, Some(total), "{msg} {bar:24} {pos}/{len} {eta} left", next_line)
+        let next_line = NextLine::Tenths { total, began: Instant::now(), told: 0, in_kib: false };
+        self.progress(what, Some(total), "{msg} {bar:24} {percent}% {pos}/{len} {eta} left", next_line)
     }
 
     /// Starts to show that `what` takes its time.
@@ -86,12 +90,12 @@ impl Progress {
                 *due = done - done % LINE_EVERY + LINE_EVERY;
                 Screen::stderr(&format!("{what} {} KiB\n", done >> 10));
             }
-            NextLine::Items { total, began, due } if now >= *due => {
-                *due = now + LINE_AFTER;
-                let rest = left(done, *total, now - *began);
-                Screen::stderr(&format!("{what}: {done} of {total}, {rest} left\n"));
+            NextLine::Bytes(_) => {}
+            NextLine::Tenths { total, began, told, in_kib } => {
+                if let Some(line) = tenth(done, *total, now - *began, told, *in_kib) {
+                    Screen::stderr(&format!("{what}: {line}\n"));
+                }
             }
-            _ => {}
         }
     }
 
@@ -111,6 +115,17 @@ impl Drop for Progress {
     }
 }
 
+/// The line of a new tenth; `told` is the last one.
+fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) -> Option<String> {
+    let tenths = done.saturating_mul(10) / total.max(1);
+    if tenths <= *told || passed < QUICK {
+        return None;
+    }
+    *told = tenths;
+    let (done_now, total_now, unit) = if in_kib { (done >> 10, total >> 10, " KiB") } else { (done, total, "") };
+    Some(format!("{}0 %, {done_now} of {total_now}{unit}, {} left", tenths, left(done, total, passed)))
+}
+
 /// How long the rest takes if it goes on like that: `1 min 20 s`.
 fn left(done: u64, total: u64, passed: Duration) -> String {
     let rest = u128::from(total.saturating_sub(done)) * passed.as_millis() / u128::from(done.max(1));
@@ -121,6 +136,21 @@ fn left(done: u64, total: u64, passed: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn in_a_log_there_is_a_line_for_each_tenth() {
+        let passed = Duration::from_secs(10);
+        let mut told = 0;
+        let lines: Vec<String> = (1..=200).filter_map(|done| tenth(done, 200, passed, &mut told, false)).collect();
+        assert_eq!(lines.len(), 10);
+        assert_eq!(
+            (lines[0].as_str(), lines[9].as_str()),
+            ("10 %, 20 of 200, 1 min 30 s left", "100 %, 200 of 200, 0 s left")
+        );
+        assert_eq!(tenth(200, 200, passed, &mut told, false), None, "no tenth is told twice");
+        assert_eq!(tenth(2048, 4096, passed, &mut 0, true).as_deref(), Some("50 %, 2 of 4 KiB, 10 s left"));
+        assert_eq!(tenth(1, 2, Duration::from_secs(1), &mut 0, false), None, "what is quick has no lines");
+    }
 
     #[test]
     fn the_rest_takes_as_long_as_what_was_done() {

@@ -4,6 +4,7 @@
 //! writes into them what was printed: type the commands, have the rest written, and read it.
 #![cfg(unix)]
 
+mod csv;
 mod exits;
 mod json;
 mod transcript;

@@ -119,4 +119,8 @@ impl Report for Codes {
         });
         View { sections: sections.collect() }
     }
+
+    fn rows(&self) -> Option<&'static str> {
+        Some("codes")
+    }
 }

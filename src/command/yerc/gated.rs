@@ -19,6 +19,7 @@ use crate::gate::Gate;
 const LINES: &[(&str, Risk, Risk)] = &[
     ("status", Read, Read),
     ("alarm list", Read, Read),
+    ("alarm watch", Read, Read),
     ("alarm history", Read, Read),
     ("alarm reset", Write, Write),
     ("alarm cancel", Write, Write),
@@ -44,11 +45,13 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("position-error", Read, Read),
     ("torque", Read, Read),
     ("var get B0", Read, Read),
+    ("var watch B0", Read, Read),
     ("var set B0=1 P1.tool=2", Write, Write),
     ("var dump DIR/new.json", Read, Read),
     // Each variable may be set again; to write back many replaces what is in them.
     ("var restore DIR/dump.json", Destroy, Write),
     ("io get 10010", Read, Read),
+    ("io watch 10010", Read, Read),
     ("io set 27010=on", Write, Write),
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
