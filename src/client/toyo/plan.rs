@@ -85,7 +85,11 @@ impl Client {
             let word = text.trim_start_matches('@').split(' ').next().unwrap_or_default();
             let moves = Row::named(word).is_some_and(|row| row.risk == Risk::Motion) && !text.contains('?');
             let notes = if moves { describe(text, Sender::Host, None).fields } else { Vec::new() };
-            let fields: Vec<_> = notes.into_iter().map(|note| (note.name.to_owned(), note.meaning)).collect();
+            let fields: Vec<_> = notes
+                .into_iter()
+                .filter(|note| note.name != "command")
+                .map(|note| (note.name.to_owned(), note.meaning))
+                .collect();
             plan.note(with_fields(json!({ "text": text }), &fields), reason);
         }
     }
