@@ -103,9 +103,9 @@ fn no_answer_and_ctrl_c_write_nothing() {
         let mut setup = desk.setup();
         setup.says("Number [1]:");
         if exit == 7 {
-            setup.press("\x04")
+            setup.press("\x04");
         } else {
-            setup.signal("INT")
+            setup.signal("INT");
         }
         assert_eq!(setup.end().code(), Some(exit));
         assert!(setup.is_as_before());

@@ -133,7 +133,7 @@ impl Table {
             let family = family.map_err(|why| wrong(&raw.family, &why).hint("families are yerc, yrcx and toyo"))?;
             let model = raw.model.as_ref().map(|model| {
                 let parsed = model.as_ref().parse::<Model>();
-                parsed.map_err(|why| wrong(model, &why.to_string()).hint("models are fs100 and dx200"))
+                parsed.map_err(|why| wrong(model, &why).hint("models are fs100 and dx200"))
             });
             let model = model.transpose()?;
             let RawEntry { code, robot, text, cause, remedy, .. } = raw;

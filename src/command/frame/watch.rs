@@ -141,7 +141,7 @@ impl Watched {
 
 /// How things are at the beginning.
 fn began(now: &[Thing]) -> Vec<Change> {
-    let is_off = |value: &Value| matches!(value, Value::Bool(false)) || *value == Value::from(0);
+    let is_off = |value: &Value| *value == false || *value == 0;
     let is_told = |thing: &&Thing| now.len() <= MANY || thing.label.is_some() || !is_off(&thing.value);
     now.iter().filter(is_told).map(|thing| Change::new(thing, None, Some(thing))).collect()
 }
@@ -224,7 +224,9 @@ fn plain(value: &Value) -> String {
 impl Changes {
     fn new(watched: Watched, mut changes: Vec<Change>) -> Self {
         let now = Timestamp::now();
-        changes.iter_mut().for_each(|change| change.time = now);
+        for change in &mut changes {
+            change.time = now;
+        }
         let mut items: Vec<Value> = changes.iter_mut().filter_map(|change| change.item.take()).collect();
         // Bits of one port come with the same port.
         items.dedup();

@@ -57,7 +57,7 @@ impl Command for List {
         }
         let mut error = present(link).await?.map(Explained::of);
         if let Some(error) = &mut error {
-            error.explained = alarms::find(Origin::of(context.robot), &error.code.code.to_string())?;
+            error.explained = alarms::find(Origin::of(context.robot), &error.code.code)?;
         }
         Ok(Present { alarms: error.iter().cloned().collect(), error })
     }

@@ -65,7 +65,7 @@ impl Declaration for Yrcx {
     }
 
     async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-        check::check(robot, access, screen).await
+        Box::pin(check::check(robot, access, screen)).await
     }
 
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {

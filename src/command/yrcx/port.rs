@@ -200,16 +200,12 @@ one_row! {
     },
     done {
         let place = self.place.told();
-        match self.place.bit {
-            Some(_) => {
-                let words = format!("switched {place} {}", if self.value == 1 { "on" } else { "off" });
-                Done::new(place, self.value, words)
-            }
-            None => {
-                let words = format!("{place} = {} ({:08b})", self.value, self.value);
-                Done::new(place, self.value, words)
-            }
-        }
+        let words = if self.place.bit.is_some() {
+            format!("switched {place} {}", if self.value == 1 { "on" } else { "off" })
+        } else {
+            format!("{place} = {} ({:08b})", self.value, self.value)
+        };
+        Done::new(place, self.value, words)
     };
 }
 

@@ -38,7 +38,7 @@ thread_local! {
 }
 
 /// Keeps the input of `halt_error`, and makes nothing.
-fn tell<'a>(cv: Cv<'a, data::JustLut<Val>>) -> ValXs<'a, Val> {
+fn tell(cv: Cv<'_, data::JustLut<Val>>) -> ValXs<'_, Val> {
     TOLD.set(Some(cv.1));
     Box::new(std::iter::empty())
 }
