@@ -87,6 +87,7 @@ mod tests {
     /// Every verb that sets something, in the words of the contract.
     const SETTINGS: &[&str] = &[
         "toyo accel-table set 5=0.25",
+        "robots set cell3 timeout=5s",
         "toyo counter set 1=0",
         "toyo easy set 1=10,5,20",
         "toyo easy set 1 loop=5",

@@ -27,7 +27,6 @@ use super::target::Family;
 use crate::controller::yerc::Model;
 use crate::failure::{Failure, plain};
 use crate::files;
-use crate::output::view::Cell;
 
 /// Name of the file.
 const FILE_NAME: &str = "alarms.toml";
@@ -62,7 +61,7 @@ impl Explanation {
     }
 
     /// The same as a field for people, where there is one.
-    pub fn field(explained: Option<&Self>) -> Option<(&'static str, Cell)> {
+    pub fn field<C: From<String>>(explained: Option<&Self>) -> Option<(&'static str, C)> {
         explained.map(|explained| ("alarms.toml", explained.line().into()))
     }
 }
@@ -95,7 +94,10 @@ pub fn find(origin: Origin<'_>, code: &str) -> Result<Option<Explanation>, Failu
     let text = match files::text(&path, files::SETTINGS) {
         Ok(text) => text,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::usage(format!("{}: {}", path.display(), plain(&error)))),
+        Err(error) => {
+            return Err(Failure::usage(format!("{}: {}", path.display(), plain(&error)))
+                .hint("correct it, or move it away: armctl works without"));
+        }
     };
     Ok(Table::parse(&text, &path.display().to_string())?.find(origin, code))
 }
@@ -118,7 +120,7 @@ impl Table {
     fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |start: usize, what: &str| {
             let (line, column) = line_and_column(text, start);
-            Failure::usage(format!("{name}:{line}:{column}: {what}"))
+            Failure::usage(format!("{name}:{line}:{column}: {what}")).hint("`armctl help inventory` describes the file")
         };
         let file: RawFile = toml::from_str(text).map_err(|error| {
             let failure = at(error.span().unwrap_or_default().start, error.message());

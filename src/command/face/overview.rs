@@ -7,6 +7,8 @@ use super::sample::Alarm;
 use crate::command::Report;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
+use crate::settings::Robot;
+use crate::settings::alarms::{self, Origin};
 
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
@@ -47,7 +49,7 @@ pub struct Fault {
     pub faulted: Option<bool>,
     /// Its code as the controller writes it, such as `4315`, `12.600` or `28`; null without one, or where it was not told.
     pub fault_code: Option<String>,
-    /// What it says; null like the code.
+    /// What it says, or what `alarms.toml` has for the code; null like the code.
     pub fault_text: Option<String>,
 }
 
@@ -60,6 +62,16 @@ impl Fault {
             fault_code: first.map(|alarm| alarm.code.clone()).filter(|code| code != Alarm::UNREADABLE),
             fault_text: first.map(|alarm| alarm.text.clone()).filter(|text| !text.is_empty()),
         }
+    }
+
+    /// Takes the text that the operator's `alarms.toml` has for the code, if it has one.
+    pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
+        if let Some(code) = &self.fault_code
+            && let Some(explained) = alarms::find(Origin::of(robot), code)?
+        {
+            self.fault_text = Some(explained.text);
+        }
+        Ok(())
     }
 
     /// Code and text, as far as they are known.

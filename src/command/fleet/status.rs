@@ -87,7 +87,9 @@ impl Command for Overview {
             }
             found => found?,
         };
-        Ok(OverviewReport { family: context.robot.family.name(), ..report })
+        let mut report = OverviewReport { family: context.robot.family.name(), ..report };
+        report.fault.explain(context.robot)?;
+        Ok(report)
     }
 
     /// `32 robots, 30 answer, 1 alarm`.

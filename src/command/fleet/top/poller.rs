@@ -54,7 +54,7 @@ pub async fn follow(
         let failure = match opened {
             Err(failure) => Some(failure),
             Ok(mut poller) => {
-                let failure = look_on(index, &mut *poller, &mut pace, &updates).await;
+                let failure = look_on((index, &robot), &mut *poller, &mut pace, &updates).await;
                 // Nothing was changed: how the end of it went is nobody's concern.
                 let _closed = poller.close(&screen).await;
                 failure
@@ -70,7 +70,7 @@ pub async fn follow(
 
 /// Looks until something fails, or it is over.
 async fn look_on(
-    index: usize,
+    (index, robot): (usize, &Robot),
     poller: &mut dyn Watch,
     pace: &mut watch::Receiver<Pace>,
     updates: &mpsc::Sender<Update>,
@@ -85,7 +85,10 @@ async fn look_on(
             looked = poller.look(detail) => looked,
         };
         let told = match looked {
-            Ok(sample) => updates.send((index, Ok(sample))).await,
+            Ok(mut sample) => match sample.line.fault.explain(robot) {
+                Ok(()) => updates.send((index, Ok(sample))).await,
+                Err(failure) => return Some(failure),
+            },
             Err(failure) => return Some(failure),
         };
         if told.is_err() {

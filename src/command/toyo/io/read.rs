@@ -205,16 +205,23 @@ impl Command for Both {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Named, Failure> {
         let link = context.link;
-        let mut ports = Vec::new();
+        let (mut ports, mut not_known) = (Vec::new(), None);
         for (bank, is_wanted) in [(INPUTS, !self.out), (OUTPUTS, !self.r#in)] {
-            if is_wanted {
-                let read = bank.read(link, self.which.station, self.which.port).await?;
-                let named =
-                    |port: Port| NamedPort { bank: bank.word, watched: format!("{} {}", bank.word, port.name), port };
-                ports.extend(read.ports.into_iter().map(named));
+            if !is_wanted {
+                continue;
+            }
+            match bank.read(link, self.which.station, self.which.port).await {
+                Ok(read) => {
+                    let watched = |port: &Port| format!("{} {}", bank.word, port.name);
+                    let named = |port: Port| NamedPort { bank: bank.word, watched: watched(&port), port };
+                    ports.extend(read.ports.into_iter().map(named));
+                }
+                // A dry run shows what both ask.
+                Err(failure) if failure.kind == Kind::NotKnown => not_known = Some(failure),
+                Err(failure) => return Err(failure),
             }
         }
-        Ok(Named { ports })
+        not_known.map_or(Ok(Named { ports }), Err)
     }
 }
 
