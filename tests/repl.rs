@@ -51,7 +51,7 @@ fn the_prompt_tells_how_the_robot_is_and_lines_change_it() {
     repl.says("sim [simulated, servo off] yerc>");
     repl.press("job select NONE\r");
     repl.says("no such job");
-    repl.press("sta\ttus --jq .data.servo_on\r");
+    repl.press("sta\t--jq .data.servo_on\r");
     repl.says("false");
     repl.press("exit\r");
     assert_eq!(repl.end().code(), Some(0));

@@ -126,6 +126,7 @@ fn the_console_drives_what_no_command_can() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 127.0.0.1:0 --console");
     let mut console = served.process.stdin.take().unwrap();
+    assert!(served.said().starts_with("reach it:") && served.said().starts_with("end it:"));
     console.write_all(b"input 0/01/3 on\n").unwrap();
     assert!(served.said().contains("servo on"), "what is now");
     assert_eq!(served.data(folder.path(), "io in --port 1")["ports"][0]["raw"], "00000100");

@@ -80,13 +80,13 @@ impl Report for Serving {
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
+    if address.is_some_and(|address| !address.ip().is_loopback()) {
+        run.screen.note("warning: others on the network can reach this simulator");
+    }
     // Programs read where it is, and know how to end it.
     if !run.screen.is_json() {
         let console = if with_console { " or `quit`; `help` lists what this console takes" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
-    }
-    if address.is_some_and(|address| !address.ip().is_loopback()) {
-        run.screen.note("warning: others on the network can reach this simulator");
     }
     let mut console = with_console.then(|| BufReader::new(tokio::io::stdin()).lines());
     loop {

@@ -95,16 +95,25 @@ impl Rows {
 
     /// As CSV (RFC 4180), with a line of names or without.
     pub fn csv(&self, has_header: bool) -> String {
+        // What is null in one row may have fields in another, which are columns then.
+        let is_parent = |name: &str| {
+            let below = format!("{name}.");
+            self.columns.iter().any(|column| column.starts_with(&below))
+        };
+        let shown: Vec<bool> = self.columns.iter().map(|name| !is_parent(name)).collect();
+        let line_of = |cells: &[String]| -> Vec<String> {
+            cells.iter().zip(&shown).filter(|(_, is_shown)| **is_shown).map(|(cell, _)| cell.clone()).collect()
+        };
         let mut out = String::new();
         if has_header && !self.columns.is_empty() {
-            csv_line(&mut out, &self.columns);
+            csv_line(&mut out, &line_of(&self.columns));
         }
         for row in &self.rows {
             let mut line = vec![String::new(); self.columns.len()];
             for (column, text) in row {
                 line[*column].clone_from(text);
             }
-            csv_line(&mut out, &line);
+            csv_line(&mut out, &line_of(&line));
         }
         out
     }

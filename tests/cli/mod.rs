@@ -64,6 +64,7 @@ transcripts! {
     toyo_system
     usage
     variables
+    watches
     words
     yrcx
     yrcx_data

@@ -176,7 +176,7 @@ fn a_dry_run_goes_to_its_end() {
         frames(&desk, line).into_iter().map(told).collect::<Vec<_>>().join(", ")
     };
     let heads = [
-        ("status", "7200 0100 01"),
+        ("status", "7200 0100 01, 0a03 0100 01?"),
         ("position", "7500 0100 01, 7500 6500 01, 7400 0100 01?, 7400 6500 01?"),
         ("torque", "7700 0100 01, 7400 0100 01?"),
         (

@@ -72,7 +72,8 @@ fn taught_points_are_not_overwritten_unasked() {
     }
     assert_eq!(point(), before);
     let stored = desk.data("-r cell yrcx point set 1 --mm 1,2,3,4 --yes");
-    assert_eq!((&stored["written"], &stored["old"]), (&true.into(), &"100.000, 100.000, 0.000, 0.000 mm".into()));
+    let old = serde_json::json!([100.0, 100.0, 0.0, 0.0]);
+    assert_eq!((&stored["written"], &stored["old"]["position_mm"]), (&true.into(), &old));
     // What is there already, and what is new, wants no yes.
     let again = desk.run("-r cell yrcx point set 1 --mm 1,2,3,4");
     assert!(again.exit == Some(0) && again.stdout.contains("already; nothing was written"), "{again:?}");
