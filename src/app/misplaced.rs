@@ -56,7 +56,7 @@ fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
-    let (safe, dangerous): (Vec<Line>, Vec<Line>) =
+    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) =
         lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
     let mut of_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {
@@ -187,9 +187,9 @@ fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) 
 }
 
 /// A command line in which a word has its place, and what follows it there.
-struct Line(String, &'static str);
+struct Suggestion(String, &'static str);
 
-impl Line {
+impl Suggestion {
     fn new(line: impl Into<String>) -> Self {
         Self(line.into(), "")
     }
@@ -204,24 +204,25 @@ fn words_of(line: &str) -> Vec<&str> {
 }
 
 /// Command lines with the word in its place.
-fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Line> {
+fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
     let words = typed.words();
     if word.parse::<Family>().is_ok() {
         let others: Vec<&str> = words.iter().copied().filter(|other| *other != word).collect();
         let family = whole.find_subcommand(word);
         let exists =
             others.first().is_some_and(|first| family.is_some_and(|family| family.find_subcommand(first).is_some()));
-        return if exists { vec![Line::new(format!("{word} {}", others.join(" ")))] } else { Vec::new() };
+        return if exists { vec![Suggestion::new(format!("{word} {}", others.join(" ")))] } else { Vec::new() };
     }
     let family = words.iter().find_map(|word| word.parse::<Family>().ok());
     if family.is_some() && whole.find_subcommand(word).is_some() {
-        return vec![Line(word.to_owned(), ", which is for all families")];
+        return vec![Suggestion(word.to_owned(), ", which is for all families")];
     }
     let words: Vec<&str> = words.into_iter().filter(|word| word.parse::<Family>().is_err()).collect();
     let families = Family::ALL.into_iter().filter(|other| family.is_none_or(|family| family == *other));
     let families: Vec<&Command> = families.filter_map(|family| whole.find_subcommand(family.name())).collect();
-    let all =
-        |find: &dyn Fn(&Command) -> Vec<Line>| families.iter().flat_map(|family| find(family)).collect::<Vec<_>>();
+    let all = |find: &dyn Fn(&Command) -> Vec<Suggestion>| {
+        families.iter().flat_map(|family| find(family)).collect::<Vec<_>>()
+    };
     [
         all(&|family| turned(family, &words)),
         said_otherwise(&words, family),
@@ -234,41 +235,41 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Line> {
 }
 
 /// A verb before its noun.
-fn turned(family: &Command, words: &[&str]) -> Vec<Line> {
+fn turned(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [verb, noun, ..] = words else { return Vec::new() };
     let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
-    if exists { vec![Line::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
+    if exists { vec![Suggestion::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
 }
 
 /// Other words, from the table: the entry that has most of them.
-fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Line> {
+fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     let typed = |entry: &&(&str, &[&str])| words.starts_with(&entry.0.split(' ').collect::<Vec<_>>());
     let Some((_, ways)) = synonyms::LINES.iter().filter(typed).max_by_key(|(words, _)| words.len()) else {
         return Vec::new();
     };
     let of = |way: &str| way.split(' ').next().and_then(|word| word.parse::<Family>().ok());
     let fits = |way: &&&str| of(way).is_none_or(|other| family.is_none_or(|family| family == other));
-    ways.iter().filter(fits).map(|way| Line::new(*way)).collect()
+    ways.iter().filter(fits).map(|way| Suggestion::new(*way)).collect()
 }
 
 /// A noun with another word for its verb.
-fn other_verb(family: &Command, words: &[&str]) -> Vec<Line> {
+fn other_verb(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [noun, verb, ..] = words else { return Vec::new() };
     let Some(command) = family.find_subcommand(noun) else { return Vec::new() };
     let Some((_, verbs)) = synonyms::VERBS.iter().find(|(other, _)| other == verb) else { return Vec::new() };
     let found = verbs.iter().find(|verb| command.find_subcommand(verb).is_some());
-    found.map(|verb| Line::new(format!("{} {noun} {verb}", family.get_name()))).into_iter().collect()
+    found.map(|verb| Suggestion::new(format!("{} {noun} {verb}", family.get_name()))).into_iter().collect()
 }
 
 /// Where a word is a command of a family, or the verb of one of its nouns.
-fn below(family: &Command, word: &str) -> Vec<Line> {
+fn below(family: &Command, word: &str) -> Vec<Suggestion> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {
         let more = if command.has_subcommands() { " …" } else { "" };
-        return vec![Line::new(format!("{name} {word}{more}"))];
+        return vec![Suggestion::new(format!("{name} {word}{more}"))];
     }
     let nouns = family.get_subcommands().filter(|noun| noun.find_subcommand(word).is_some());
-    nouns.map(|noun| Line::new(format!("{name} {} {word}", noun.get_name()))).collect()
+    nouns.map(|noun| Suggestion::new(format!("{name} {} {word}", noun.get_name()))).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::busy;
 use crate::failure::{Failure, Kind};
 
-use self::worker::Trouble;
+use self::worker::FilterError;
 
 /// A filter that compiles.
 #[derive(Debug)]
@@ -47,11 +47,11 @@ impl Filter {
         });
         taken?;
         asked.map_err(|trouble| match trouble {
-            Trouble::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
+            FilterError::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
                 .hint("filters see the whole envelope: try '.data', or leave --jq away to see it"),
-            Trouble::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
+            FilterError::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
                 .hint("--json shows what the filter is given"),
-            Trouble::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
+            FilterError::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
         })
     }
 }
@@ -62,11 +62,11 @@ use worker::ask;
 
 /// In this process: that of tests is no armctl.
 #[cfg(test)]
-fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), Trouble> {
-    let program = program::Program::new(filter).map_err(Trouble::Mistake)?;
+fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
+    let program = program::Program::new(filter).map_err(FilterError::Mistake)?;
     let Some(input) = input else { return Ok(()) };
-    let input = serde_json::from_value(input.clone()).map_err(|error| Trouble::Failed(error.to_string()))?;
-    program.run(input, take).map_err(Trouble::from)
+    let input = serde_json::from_value(input.clone()).map_err(|error| FilterError::Failed(error.to_string()))?;
+    program.run(input, take).map_err(FilterError::from)
 }
 
 /// Where the process for filters writes its answers.

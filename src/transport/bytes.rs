@@ -62,7 +62,7 @@ impl WireError {
 
 /// The order of bytes in numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Order {
+pub enum ByteOrder {
     /// The highest first.
     #[default]
     Big,
@@ -75,16 +75,16 @@ pub enum Order {
 pub(crate) struct Reader<'a> {
     pub bytes: &'a [u8],
     pub at: usize,
-    pub order: Order,
+    pub order: ByteOrder,
 }
 
 impl<'a> Reader<'a> {
     pub const fn big(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, order: Order::Big }
+        Self { bytes, at: 0, order: ByteOrder::Big }
     }
 
     pub const fn little(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, order: Order::Little }
+        Self { bytes, at: 0, order: ByteOrder::Little }
     }
 
     pub const fn left(&self) -> usize {
@@ -114,12 +114,12 @@ impl<'a> Reader<'a> {
 
     pub fn u16(&mut self, field: &'static str) -> Result<u16, WireError> {
         let bytes = self.array(field)?;
-        Ok(if self.order == Order::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
+        Ok(if self.order == ByteOrder::Big { u16::from_be_bytes(bytes) } else { u16::from_le_bytes(bytes) })
     }
 
     pub fn u32(&mut self, field: &'static str) -> Result<u32, WireError> {
         let bytes = self.array(field)?;
-        Ok(if self.order == Order::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+        Ok(if self.order == ByteOrder::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
     }
 
     pub fn rest(&mut self) -> &'a [u8] {

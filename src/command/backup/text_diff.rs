@@ -28,12 +28,12 @@ pub struct Hunk {
     /// How many of its lines.
     pub new_lines: usize,
     /// Those of both.
-    pub lines: Vec<Line>,
+    pub lines: Vec<DiffLine>,
 }
 
 /// A line of either file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Line {
+pub struct DiffLine {
     /// Which file has it.
     pub change: Change,
     /// Without what ends it.
@@ -92,10 +92,10 @@ impl TextDifference {
                 ChangeTag::Delete => Change::Removed,
                 ChangeTag::Insert => Change::Added,
             };
-            Line { change, text: encoding.decode(text), ending }
+            DiffLine { change, text: encoding.decode(text), ending }
         };
         let hunk = |group: Vec<similar::DiffOp>| {
-            let lines: Vec<Line> =
+            let lines: Vec<DiffLine> =
                 group.iter().flat_map(|op| op.iter_changes(&old, &new)).map(|change| line(&change)).collect();
             let count = |without: Change| lines.iter().filter(|line| line.change != without).count();
             let (old_lines, new_lines) = (count(Change::Added), count(Change::Removed));
@@ -124,7 +124,7 @@ pub fn unified(old: &str, new: &str, hunks: &[Hunk]) -> Vec<Cell> {
         let Hunk { old_start, old_lines, new_start, new_lines, lines } = hunk;
         let head = format!("@@ -{old_start},{old_lines} +{new_start},{new_lines} @@");
         shown.push(Cell::from(head).tone(Tone::Warning));
-        for Line { change, text, ending } in lines {
+        for DiffLine { change, text, ending } in lines {
             let (sign, tone) = match change {
                 Change::Same => (' ', Tone::Plain),
                 Change::Removed => ('-', Tone::Bad),

@@ -11,7 +11,7 @@ use futures_util::StreamExt as _;
 use futures_util::stream;
 use tokio::time::timeout_at;
 
-use self::print::{Place, timed};
+use self::print::{ReportPosition, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use super::authority::{self, Authority};
@@ -193,7 +193,7 @@ impl Run {
             return self.watch(command, robot).await;
         }
         let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
-        let printed = self.print(robot, command.id(), &*report, Place::Alone);
+        let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
         match report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
             Some(failure) => {
@@ -281,7 +281,7 @@ impl Run {
     async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
-            let printed = self.print_many(command, robots, &outcomes, Place::First);
+            let printed = self.print_many(command, robots, &outcomes, ReportPosition::First);
             printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
             return self.verdict(&outcomes);
         }

@@ -17,13 +17,13 @@ use crate::settings::Robot;
 /// let a link drop.
 #[derive(Debug, Clone)]
 pub struct SessionManager {
-    orders: mpsc::UnboundedSender<Order>,
+    orders: mpsc::UnboundedSender<ManagerRequest>,
     /// Whether it has been told that links cannot be held here.
     told: Arc<AtomicBool>,
 }
 
 /// What the thread is told.
-pub enum Order {
+pub enum ManagerRequest {
     /// To hold the link to a robot, and to say by whom it is held.
     Hold {
         /// The robot.
@@ -39,7 +39,7 @@ pub enum Order {
     End(oneshot::Sender<()>),
 }
 
-impl fmt::Debug for Order {
+impl fmt::Debug for ManagerRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Order")
     }
@@ -61,19 +61,20 @@ pub enum By {
 
 impl SessionManager {
     /// For a thread that takes these orders.
-    pub fn new(orders: mpsc::UnboundedSender<Order>) -> Self {
+    pub fn new(orders: mpsc::UnboundedSender<ManagerRequest>) -> Self {
         Self { orders, told: Arc::default() }
     }
 
     /// Has all links let go; `false` if the thread has ended already.
     pub fn end(&self, done: oneshot::Sender<()>) -> bool {
-        self.orders.send(Order::End(done)).is_ok()
+        self.orders.send(ManagerRequest::End(done)).is_ok()
     }
 
     /// Makes sure that the link to a robot is held from now on, and says by whom.
     pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<By, Failure> {
         let (done, is_done) = oneshot::channel();
-        let order = Order::Hold { robot: Box::new(robot.clone()), access: access.clone(), screen: *screen, done };
+        let order =
+            ManagerRequest::Hold { robot: Box::new(robot.clone()), access: access.clone(), screen: *screen, done };
         let broken = || Failure::local("the thread that holds links has ended");
         self.orders.send(order).map_err(|_| broken())?;
         let by = interruptible(is_done).await?.map_err(|_| broken())??;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::{Cells, is_blank};
+use super::eeprom::{Cells, is_blank};
 use super::link::Link;
 use super::numbers::ask_all;
 use super::refusal;

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
-use super::position::Place;
+use super::position::Coordinates;
 use super::waiting::{Accepted, Work};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -46,7 +46,7 @@ impl Home {
 
 impl Command for Home {
     type Family = Toyo;
-    type Report = Homed;
+    type Report = HomeReport;
     const ID: &'static str = "toyo.home";
     const RISK: Risk = Risk::Motion;
 
@@ -57,30 +57,30 @@ impl Command for Home {
         }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Homed, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport, Failure> {
         let link = context.link;
         let (order, accepted) = self.order();
         link.ask(&order).await?;
         if self.no_wait {
-            return Ok(Homed { accepted: true, position: None, elapsed_ms: None });
+            return Ok(HomeReport { accepted: true, position: None, elapsed_ms: None });
         }
         let end = accepted.wait(link, context.screen).await?;
-        Ok(Homed { accepted: true, position: end.place, elapsed_ms: end.elapsed_ms })
+        Ok(HomeReport { accepted: true, position: end.place, elapsed_ms: end.elapsed_ms })
     }
 }
 
 /// Result of a return to the origin.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Homed {
+pub struct HomeReport {
     /// The controller took the order.
     accepted: bool,
     /// Where the axes stand; null if nobody waited.
-    position: Option<Place>,
+    position: Option<Coordinates>,
     /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
 }
 
-impl Report for Homed {
+impl Report for HomeReport {
     fn view(&self) -> View {
         let Some(place) = self.position else { return View::fields([("origin", "on the way".into())]) };
         View::fields([

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::THERE;
+use super::eeprom::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
 use super::values::NOT_IN_MANUAL;

@@ -12,7 +12,7 @@ use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::link::Toyo;
 use super::link::{Link, Moving, jog};
-use super::position::{Place, titled};
+use super::position::{Coordinates, titled};
 use super::refusal;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
 use crate::client::toyo::Letters;
@@ -103,7 +103,7 @@ struct Known {
 }
 
 impl Known {
-    fn of(&self, place: &Place) -> f64 {
+    fn of(&self, place: &Coordinates) -> f64 {
         [place.x_mm, place.y_mm, place.z_mm, place.r_mm][self.index]
     }
 }
@@ -221,7 +221,7 @@ impl Jog {
     }
 
     /// Moves until the time is over, or by all steps. Returns how many steps were done.
-    async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Place) -> Result<u8, Cut> {
+    async fn go(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
         let Some(time) = self.within else { return self.inch(link, live, axis, start).await };
         link.use_short_timeouts();
         let until = Instant::now() + time;
@@ -261,7 +261,7 @@ impl Jog {
     }
 
     /// Moves by small steps, each when the axis stands again.
-    async fn inch(&self, link: &mut Link, live: &Live, axis: &Known, start: Place) -> Result<u8, Cut> {
+    async fn inch(&self, link: &mut Link, live: &Live, axis: &Known, start: Coordinates) -> Result<u8, Cut> {
         let steps = self.steps.unwrap_or(1);
         let mut last = start;
         for step in 1..=steps {
@@ -277,7 +277,7 @@ impl Jog {
     }
 
     /// Moves by one small step; where the axis then stands.
-    async fn step(&self, link: &mut Link, axis: &Known, start: Place) -> Result<Place, Cut> {
+    async fn step(&self, link: &mut Link, axis: &Known, start: Coordinates) -> Result<Coordinates, Cut> {
         link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         let (mut last, began) = (start, Instant::now());
         loop {
@@ -300,7 +300,7 @@ impl Jog {
 }
 
 /// Whether something is executed, and where the axes are. A busy controller is asked again.
-async fn look(link: &mut Link) -> Result<(bool, Place), Cut> {
+async fn look(link: &mut Link) -> Result<(bool, Coordinates), Cut> {
     let mut refused = 0;
     loop {
         match try_look(link).await {
@@ -310,12 +310,12 @@ async fn look(link: &mut Link) -> Result<(bool, Place), Cut> {
     }
 }
 
-async fn try_look(link: &mut Link) -> Result<(bool, Place), Cut> {
+async fn try_look(link: &mut Link) -> Result<(bool, Coordinates), Cut> {
     let status = link.status_of(&[0]).await?;
     if status.has_error() {
         return Err(Cut::Error);
     }
-    Ok((status.executing(), Place::of(&link.place().await?)))
+    Ok((status.executing(), Coordinates::of(&link.place().await?)))
 }
 
 impl Command for Jog {
@@ -347,7 +347,7 @@ impl Command for Jog {
             self.plan(link);
             link.stop(Moving::Jog).await?;
         }
-        let start = Place::of(&link.ask(&position()).await?);
+        let start = Coordinates::of(&link.ask(&position()).await?);
         let live = Live::new(screen);
         let began = Instant::now();
         let gone = tokio::select! {
@@ -363,8 +363,9 @@ impl Command for Jog {
         }
         // Whatever has happened.
         let elapsed = began.elapsed();
-        let end =
-            Place::of(&link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?);
+        let end = Coordinates::of(
+            &link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?,
+        );
         live.end();
         match gone {
             Ok(steps) => Ok(Jogged::of(self, axis, (start, end), elapsed, steps)),
@@ -374,7 +375,7 @@ impl Command for Jog {
 }
 
 /// Why the motion was cut short, now that the axis stands.
-async fn cut_short(link: &mut Link, cut: Cut, place: &Place) -> Failure {
+async fn cut_short(link: &mut Link, cut: Cut, place: &Coordinates) -> Failure {
     let stopped = format!("the axis was stopped and stands at {}", place.in_a_line());
     match cut {
         Cut::Refused => refusal::explained(link, &jog("RS", None)).await,
@@ -443,13 +444,13 @@ pub struct Jogged {
     /// How far the axis moved; negative in minus direction.
     moved_mm: f64,
     /// Where the axes stood.
-    start: Place,
+    start: Coordinates,
     /// Where they stand.
-    end: Place,
+    end: Coordinates,
 }
 
 impl Jogged {
-    fn of(jog: &Jog, axis: Known, (start, end): (Place, Place), elapsed: Duration, steps: u8) -> Self {
+    fn of(jog: &Jog, axis: Known, (start, end): (Coordinates, Coordinates), elapsed: Duration, steps: u8) -> Self {
         let moved = axis.of(&end) - axis.of(&start);
         Self {
             axis_number: axis.index + 1,

@@ -13,10 +13,10 @@ use super::connect;
 use super::debts::{Debts, Left};
 use super::failure::failure;
 pub use super::failure::{misuse, wrong};
-use super::position::Place;
+use super::position::Coordinates;
 use super::refusal;
 use super::trace::Trace;
-use super::wear::Wear;
+use super::write_log::WriteLog;
 use crate::client::toyo::{Client, Error, Letters, Line, is_stop};
 pub use crate::client::toyo::{Moving, Refusal, jog};
 use crate::command::frame::dry_run::Plan;
@@ -48,7 +48,7 @@ pub struct Link {
     /// What others have left behind, as long as it is not told.
     left: Vec<Left>,
     /// Writes to the EEPROM.
-    pub(super) wear: Wear,
+    pub(super) write_log: WriteLog,
 }
 
 impl Family for Toyo {
@@ -65,7 +65,7 @@ impl Family for Toyo {
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
-        let place = Place::of(&link.stop(moving).await?);
+        let place = Coordinates::of(&link.stop(moving).await?);
         Ok(format!("the robot was stopped ({stop}); it stands at {}", place.in_a_line()))
     }
 
@@ -79,7 +79,7 @@ impl Family for Toyo {
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
         link.tell_what_is_left().await;
-        let Link { client, onlooker, label, mut wear, .. } = link;
+        let Link { client, onlooker, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
         // What goes on now was told.
         locked(&onlooker).debts.moving(None);
@@ -91,7 +91,7 @@ impl Family for Toyo {
         if !odd.is_empty() {
             screen.detail(1, &format!("on the line: {}", odd.join(", ")));
         }
-        if let Err(error) = wear.keep() {
+        if let Err(error) = write_log.keep() {
             screen.detail(1, &format!("what was written to the EEPROM was not noted: {error}"));
         }
         closed.map_err(|error| failure(&label, error)).and(locked(&onlooker).trace.finish())
@@ -103,7 +103,7 @@ impl Link {
     pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
         let (target, label) = (robot.target.value.to_string(), robot.label());
         let is_kept = !robot.target.value.is_simulated();
-        let wear = if is_kept { Wear::of(&target) } else { Wear::without_diary() };
+        let write_log = if is_kept { WriteLog::of(&target) } else { WriteLog::without_file() };
         let (debts, chosen) = if is_kept && !access.dry_run {
             (Debts::of(&target), Chosen::of(&target))
         } else {
@@ -115,7 +115,7 @@ impl Link {
         let onlooker = Onlooker { trace, debts, chosen, told, screen, label: label.clone() };
         let onlooker = Arc::new(Mutex::new(onlooker));
         client.watch(Watching(Arc::clone(&onlooker)));
-        Ok(Self { client, onlooker, screen, label, left, wear })
+        Ok(Self { client, onlooker, screen, label, left, write_log })
     }
 
     /// The line, for somebody else to use; `None` in a dry run.

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::link::Toyo;
-use super::position::Place;
+use super::position::Coordinates;
 use crate::command::{Command, Context};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
@@ -15,12 +15,12 @@ pub struct Offset {}
 
 impl Command for Offset {
     type Family = Toyo;
-    type Report = Place;
+    type Report = Coordinates;
     const ID: &'static str = "toyo.offset";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Place, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Coordinates, Failure> {
         let record = context.link.ask(&Request::bare(table::Command::Moff)).await?;
-        Ok(Place::of(&record))
+        Ok(Coordinates::of(&record))
     }
 }
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::Moving;
 use super::link::Toyo;
-use super::position::Place;
+use super::position::Coordinates;
 use super::waiting::becomes;
 use crate::command::frame::orders::{Done, Switch};
 use crate::command::{Command, Context, Report};
@@ -187,7 +187,7 @@ impl Command for Stop {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stopped, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
         let place = context.link.stop(moving).await?;
-        Ok(Stopped { position: Place::of(&place) })
+        Ok(Stopped { position: Coordinates::of(&place) })
     }
 }
 
@@ -195,7 +195,7 @@ impl Command for Stop {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stopped {
     /// Where the axes stand.
-    position: Place,
+    position: Coordinates,
 }
 
 impl Report for Stopped {

@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::{Cell, Cells};
+use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::{number, small};

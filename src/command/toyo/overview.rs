@@ -1,7 +1,7 @@
 //! A robot of the family in the line that `armctl status` prints.
 
 use super::link::Link;
-use super::position::Place;
+use super::position::Coordinates;
 use super::top::alarms;
 use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
 use crate::controller::toyo::request::Request;
@@ -12,12 +12,12 @@ use crate::failure::Failure;
 /// Asks for status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 1, 2, 3]).await?;
-    let place = Place::of(&link.ask(&Request::bare(Command::Mpst)).await?);
+    let place = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?);
     Ok(report(status, fault(status), Some(place)))
 }
 
 /// What the answers say.
-pub(super) fn report(status: Status, fault: Fault, place: Option<Place>) -> OverviewReport {
+pub(super) fn report(status: Status, fault: Fault, place: Option<Coordinates>) -> OverviewReport {
     OverviewReport {
         reachable: true,
         mode: status.run_mode().map(RunMode::name),

@@ -25,7 +25,7 @@ impl Command for Position {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.ask(&Request::bare(table::Command::Mpst)).await?;
-        Ok(Stands { place: Place::of(&record), axes: letters.all() })
+        Ok(Stands { place: Coordinates::of(&record), axes: letters.all() })
     }
 }
 
@@ -33,7 +33,7 @@ impl Command for Position {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stands {
     #[serde(flatten)]
-    place: Place,
+    place: Coordinates,
     /// The letters that the teach pendant shows for axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the
     /// coordinates in this order.
     axes: [String; 4],
@@ -41,7 +41,7 @@ pub struct Stands {
 
 impl Report for Stands {
     fn view(&self) -> View {
-        let Place { x_mm, y_mm, z_mm, r_mm } = self.place;
+        let Coordinates { x_mm, y_mm, z_mm, r_mm } = self.place;
         let axes = self.axes.iter().zip([x_mm, y_mm, z_mm, r_mm]).enumerate();
         let fields = axes.map(|(index, (letter, mm))| (heading(index, letter), Cell::number(format!("{mm:.2}"))));
         View { sections: vec![Section::Fields(fields.collect())] }
@@ -71,7 +71,7 @@ pub fn titled(index: usize, letter: &str) -> String {
 
 /// Coordinates of the four axes, which are X, Y, Z and R on the line whatever their letters are (the manual gives no unit; ambiguity R13).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct Place {
+pub struct Coordinates {
     /// Axis 1.
     pub x_mm: f64,
     /// Axis 2.
@@ -82,7 +82,7 @@ pub struct Place {
     pub r_mm: f64,
 }
 
-impl Place {
+impl Coordinates {
     /// The fields `x`, `y`, `z` and `r` of a record; 0 for those it does not have.
     pub fn of(record: &Record) -> Self {
         let mm = |name| f64::from(record.number(name).unwrap_or(0)) / 100.0;
@@ -108,7 +108,7 @@ impl Place {
     }
 }
 
-impl Report for Place {
+impl Report for Coordinates {
     fn view(&self) -> View {
         let mm = |value: f64| Cell::number(format!("{value:.2}"));
         View::fields([

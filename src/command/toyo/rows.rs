@@ -7,12 +7,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::Cells;
+use super::eeprom::Cells;
 use super::items::{self, Item, read_each};
 use super::link;
 use super::link::Toyo;
 use super::numbers::{Numbers, number};
-use super::stores::{self, Store, Work, parameter_cell, parameter_sketch};
+use super::stores::{self, Store, StoreTask, parameter_cell, parameter_sketch};
 use super::values::{Changes, in_a_line, shown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -163,7 +163,7 @@ fn table<K: Kind>() -> &'static Parameter {
     Parameter::named(K::TABLE).expect("every kind of table is in the table of parameters")
 }
 
-const WORK: Work = Work { doing: "storing rows", noun: "row", things: ["a row", "rows"], resumes: false };
+const WORK: StoreTask = StoreTask { doing: "storing rows", noun: "row", things: ["a row", "rows"], resumes: false };
 
 /// The number of a row.
 pub fn row_field(table: &'static Parameter) -> &'static Field {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
-use super::position::{Place, titled};
+use super::position::{Coordinates, titled};
 use super::program::steps;
 use super::waiting::{Accepted, End, Work, step};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
@@ -167,20 +167,20 @@ impl Command for Point {
 
 impl Point {
     /// Where the point is; nothing where the controller refuses to tell.
-    async fn place(&self, link: &mut Link) -> Result<Option<Place>, Failure> {
+    async fn place(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
         let request =
             Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
-        Ok(link.try_ask(&request).await?.ok().map(|record| Place::of(&record)))
+        Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record)))
     }
 
     /// What the question says: each axis with where it is and where it goes.
-    async fn change(&self, link: &mut Link, there: Option<Place>) -> Result<Change, Failure> {
+    async fn change(&self, link: &mut Link, there: Option<Coordinates>) -> Result<Change, Failure> {
         let letters = link.letters().await?;
-        let here = Place::of(&link.ask(&Request::bare(table::Command::Mpst)).await?);
+        let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?);
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
         let mut way = 0.0;
-        for (at, (old, new)) in here.mm().into_iter().zip(there.iter().flat_map(Place::mm)).enumerate() {
+        for (at, (old, new)) in here.mm().into_iter().zip(there.iter().flat_map(Coordinates::mm)).enumerate() {
             let letter = letters.of(at);
             if ["X", "Y", "Z"].contains(&letter) {
                 way = f64::hypot(way, new - old);
@@ -267,7 +267,7 @@ async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<b
     Ok(record.text("text") == Some("STOP"))
 }
 
-fn stopped(last: Option<&(i32, String)>, place: Option<Place>) -> Failure {
+fn stopped(last: Option<&(i32, String)>, place: Option<Coordinates>) -> Failure {
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
     let place = place.map(|place| format!("; it stands at {}", place.in_a_line())).unwrap_or_default();
     Failure::new(Kind::ConditionNotMet, format!("{DONE}, but somebody stopped it{step}{place}"))
@@ -292,7 +292,7 @@ pub struct Ran {
     /// The instruction of that step.
     instruction: Option<String>,
     /// Where the axes stand; null if nobody waited.
-    position: Option<Place>,
+    position: Option<Coordinates>,
     /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
 }

@@ -1,6 +1,6 @@
 //! Many cells of the EEPROM in a row, with an exact account of what was done when one of them fails.
 
-use super::cells::{Cell, Cells};
+use super::eeprom::{Cell, Cells};
 use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
@@ -15,7 +15,7 @@ use crate::output::Screen;
 
 /// Work on many cells, in words.
 #[derive(Debug, Clone, Copy)]
-pub struct Work {
+pub struct StoreTask {
     /// As progress tells it: `storing points`.
     pub doing: &'static str,
     /// What stands before a key in messages, for several with an s: `point`; nothing where a key says enough.
@@ -36,12 +36,12 @@ pub struct Store {
     /// Only some controllers have it: that another one refuses it stops nothing.
     pub is_optional: bool,
     /// What it holds.
-    pub found: Found,
+    pub found: CellState,
 }
 
 /// What a cell holds.
 #[derive(Debug, Clone)]
-pub enum Found {
+pub enum CellState {
     /// It was not asked.
     NotAsked,
     /// It was asked in a dry run.
@@ -52,7 +52,7 @@ pub enum Found {
     This(Record),
 }
 
-impl From<Option<Record>> for Found {
+impl From<Option<Record>> for CellState {
     fn from(found: Option<Record>) -> Self {
         found.map_or(Self::NotKnown, Self::This)
     }
@@ -64,7 +64,7 @@ pub type Replaced = [String; 3];
 impl Store {
     /// Something that every controller has.
     pub fn new(key: impl Into<String>, cell: Cell) -> Self {
-        Self { key: key.into(), cell, is_optional: false, found: Found::NotAsked }
+        Self { key: key.into(), cell, is_optional: false, found: CellState::NotAsked }
     }
 
     /// With what it holds; `None` in a dry run.
@@ -75,12 +75,12 @@ impl Store {
 
     /// Whether it is known to hold something else.
     pub fn differs(&self) -> bool {
-        matches!(&self.found, Found::This(found) if !self.cell.is(found))
+        matches!(&self.found, CellState::This(found) if !self.cell.is(found))
     }
 
     /// What is replaced, if it holds something else that somebody wrote.
-    fn replaced(&self, work: Work) -> Option<Replaced> {
-        let Self { key, cell, found: Found::This(found), .. } = self else { return None };
+    fn replaced(&self, work: StoreTask) -> Option<Replaced> {
+        let Self { key, cell, found: CellState::This(found), .. } = self else { return None };
         if cell.is(found) || cell.is_blank(found) {
             return None;
         }
@@ -109,12 +109,12 @@ fn difference(cell: &Cell, found: &Record) -> [String; 2] {
 }
 
 /// What is replaced that somebody wrote.
-pub fn replaced(work: Work, stores: &[Store]) -> Vec<Replaced> {
+pub fn replaced(work: StoreTask, stores: &[Store]) -> Vec<Replaced> {
     stores.iter().filter_map(|store| store.replaced(work)).collect()
 }
 
 /// What is replaced, for a person to confirm; `of` says where: ` of task 1`.
-pub fn replacing(work: Work, stores: &[Store], of: &str) -> Change {
+pub fn replacing(work: StoreTask, stores: &[Store], of: &str) -> Change {
     overwriting(work.things, &replaced(work, stores), of)
 }
 
@@ -130,10 +130,10 @@ pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -
 
 /// Reads what cells hold that were not asked yet. Nothing is written meanwhile, and a failure says so.
 pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Result<(), Failure> {
-    let count = stores.iter().filter(|store| matches!(store.found, Found::NotAsked)).count();
+    let count = stores.iter().filter(|store| matches!(store.found, CellState::NotAsked)).count();
     let mut progress = (count > 1).then(|| screen.items_progress("reading what is there", count as u64));
     let looked = interruptible(async {
-        for store in stores.iter_mut().filter(|store| matches!(store.found, Found::NotAsked)) {
+        for store in stores.iter_mut().filter(|store| matches!(store.found, CellState::NotAsked)) {
             store.found = found(link, store).await?;
             if let Some(progress) = &mut progress {
                 progress.advance(1);
@@ -150,15 +150,15 @@ pub fn unwritten(failure: Failure) -> Failure {
     Failure { message, ..failure }
 }
 
-async fn found(link: &mut Link, store: &Store) -> Result<Found, Failure> {
+async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {
     if link.is_dry() {
         plan_twice(link, &store.cell.read);
-        return Ok(Found::NotKnown);
+        return Ok(CellState::NotKnown);
     }
     if store.is_optional {
-        return Ok(link.read_if_there(&store.cell.read).await?.map_or(Found::NotThere, Found::This));
+        return Ok(link.read_if_there(&store.cell.read).await?.map_or(CellState::NotThere, CellState::This));
     }
-    Ok(Found::This(link.ask(&store.cell.read).await?))
+    Ok(CellState::This(link.ask(&store.cell.read).await?))
 }
 
 /// The block that writes a parameter, or a row of a table; `?` stands for values that are kept.
@@ -170,7 +170,7 @@ pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Optio
 /// Result of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Fate {
+pub enum StoreResult {
     /// Written and read back.
     Written,
     /// Held that value already.
@@ -221,11 +221,11 @@ impl Link {
 pub async fn store_all(
     link: &mut Link,
     screen: &Screen,
-    work: Work,
+    work: StoreTask,
     stores: &[Store],
     left_out: usize,
-) -> Result<Vec<Fate>, Failure> {
-    let mut fates = vec![Fate::LeftOut; left_out.min(stores.len())];
+) -> Result<Vec<StoreResult>, Failure> {
+    let mut fates = vec![StoreResult::LeftOut; left_out.min(stores.len())];
     let rest = &stores[fates.len()..];
     if link.is_dry() || rest.len() == 1 {
         for store in rest {
@@ -251,30 +251,30 @@ pub async fn store_all(
 }
 
 /// What fates come to.
-pub fn sum(fates: &[Fate]) -> Cells {
+pub fn sum(fates: &[StoreResult]) -> Cells {
     let count = |fate| u32::try_from(fates.iter().filter(|other| **other == fate).count()).unwrap_or(u32::MAX);
-    Cells { cells_written: count(Fate::Written), cells_unchanged: count(Fate::Unchanged) }
+    Cells { cells_written: count(StoreResult::Written), cells_unchanged: count(StoreResult::Unchanged) }
 }
 
-async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<Fate, Failure> {
+async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<StoreResult, Failure> {
     let Store { cell, .. } = store;
-    let found = if let Found::NotAsked = store.found { found(link, store).await? } else { store.found.clone() };
+    let found = if let CellState::NotAsked = store.found { found(link, store).await? } else { store.found.clone() };
     Ok(match found {
-        Found::NotThere => Fate::NotThere,
-        Found::This(found) if cell.is(&found) => Fate::Unchanged,
-        Found::NotKnown => {
+        CellState::NotThere => StoreResult::NotThere,
+        CellState::This(found) if cell.is(&found) => StoreResult::Unchanged,
+        CellState::NotKnown => {
             link.plan_overwriting(&cell.read, &cell.write.text()).await?;
-            Fate::Written
+            StoreResult::Written
         }
-        Found::This(_) | Found::NotAsked => {
+        CellState::This(_) | CellState::NotAsked => {
             link.overwrite(screen, cell, &mut Cells::default()).await?;
-            Fate::Written
+            StoreResult::Written
         }
     })
 }
 
 /// The failure, and what became of each cell; it came up at the one behind the last fate.
-fn account(failure: Failure, work: Work, stores: &[Store], fates: &[Fate]) -> Failure {
+fn account(failure: Failure, work: StoreTask, stores: &[Store], fates: &[StoreResult]) -> Failure {
     let (done, rest) = stores.split_at(fates.len().min(stores.len()));
     let next = rest.first();
     // Only these are known to have changed nothing.
@@ -303,7 +303,7 @@ fn account(failure: Failure, work: Work, stores: &[Store], fates: &[Fate]) -> Fa
 }
 
 /// The first and the last of some.
-fn span(work: Work, stores: &[Store]) -> String {
+fn span(work: StoreTask, stores: &[Store]) -> String {
     let named = |plural: &str, keys: String| match work.noun {
         "" => keys,
         noun => format!("{noun}{plural} {keys}"),
@@ -319,7 +319,8 @@ fn span(work: Work, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
+    const WORK: StoreTask =
+        StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();
@@ -332,16 +333,16 @@ mod tests {
 
     #[test]
     fn a_failure_says_what_became_of_each() {
-        let told = |kind, fates: &[Fate]| {
+        let told = |kind, fates: &[StoreResult]| {
             let Failure { message, hint, .. } = account(Failure::new(kind, "no."), WORK, &stores(), fates);
             format!("{message} | {}", hint.unwrap_or_default())
         };
         assert_eq!(
-            told(Kind::Refused, &[Fate::Written, Fate::Unchanged]),
+            told(Kind::Refused, &[StoreResult::Written, StoreResult::Unchanged]),
             "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | --resume=3 goes on there"
         );
         assert_eq!(
-            told(Kind::OutcomeUnknown, &[Fate::Written]),
+            told(Kind::OutcomeUnknown, &[StoreResult::Written]),
             "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
              --resume=2 goes on there"
         );

@@ -4,7 +4,7 @@
 use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::{fault, report};
-use super::position::Place;
+use super::position::Coordinates;
 use crate::command::face::declared;
 use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
 use crate::command::{Access, Family as _};
@@ -43,7 +43,7 @@ impl declared::Poller for Poller {
             (Detail::Summary, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
-        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Place::of(&record));
+        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Coordinates::of(&record));
         let whole = match detail {
             Detail::Summary => None,
             Detail::Full => Some(self.whole(status, place).await?),
@@ -57,7 +57,7 @@ impl declared::Poller for Poller {
 }
 
 impl Poller {
-    async fn whole(&mut self, status: Status, place: Option<Place>) -> Result<Whole, Failure> {
+    async fn whole(&mut self, status: Status, place: Option<Coordinates>) -> Result<Whole, Failure> {
         let limits = match self.limits {
             Some(limits) => limits,
             None => *self.limits.insert(limits(&mut self.link).await?),
@@ -124,7 +124,7 @@ fn indicators(status: Status) -> Vec<Indicator> {
     ]
 }
 
-fn axes(place: Place, letters: [String; 4], limits: Limits) -> Vec<Axis> {
+fn axes(place: Coordinates, letters: [String; 4], limits: Limits) -> Vec<Axis> {
     let positions = [place.x_mm, place.y_mm, place.z_mm, place.r_mm];
     let axes = letters.into_iter().zip(positions).zip(limits);
     let axes = axes.map(|((name, position), limits)| Axis {

@@ -18,7 +18,7 @@ use crate::failure::Failure;
 
 /// A place for one value that an operator types.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct ValueSlot {
     /// `ax1`, `low`, `port`.
     pub name: String,
     /// Which fields of the layout it stands for.
@@ -53,7 +53,7 @@ pub struct Changes(Vec<Option<Value>>);
 pub use crate::controller::toyo::program::NOT_IN_MANUAL;
 
 /// The places of a layout.
-pub fn places(layout: &Layout) -> Vec<Place> {
+pub fn places(layout: &Layout) -> Vec<ValueSlot> {
     let mut places = Vec::new();
     let mut words = layout.text.split("{}");
     let mut index = 0;
@@ -64,12 +64,12 @@ pub fn places(layout: &Layout) -> Vec<Place> {
             // `PN1={}/{}/{}` has a name of its own.
             let label = before.rsplit(' ').next().and_then(|label| label.strip_suffix('='));
             let label = label.map_or("port".to_owned(), str::to_lowercase);
-            places.push(Place { name: label, fields: index..index + 3 });
+            places.push(ValueSlot { name: label, fields: index..index + 3 });
             words.next();
             words.next();
             index += 3;
         } else {
-            places.push(Place { name: field.name.to_owned(), fields: index..index + 1 });
+            places.push(ValueSlot { name: field.name.to_owned(), fields: index..index + 1 });
             index += 1;
         }
     }
@@ -108,7 +108,7 @@ pub fn line(shown: &[Shown], is_named: bool) -> String {
     texts.join(" ")
 }
 
-impl Place {
+impl ValueSlot {
     fn shown(&self, layout: &Layout, values: &[Value]) -> Shown {
         let pairs: Vec<(&Field, &Value)> =
             self.fields.clone().filter_map(|index| Some((layout.fields.get(index)?, values.get(index)?))).collect();
@@ -300,7 +300,7 @@ fn slug(text: &str) -> String {
 }
 
 /// How values are typed.
-fn usage(places: &[Place], layout: &Layout) -> String {
+fn usage(places: &[ValueSlot], layout: &Layout) -> String {
     match places {
         [place] => format!("its value is {}", place.expected(layout)),
         [first, ..] => {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use super::link::Link;
-use super::position::Place;
+use super::position::Coordinates;
 use super::program::steps;
 use super::refusal;
 pub(super) use crate::client::toyo::status_page;
@@ -61,7 +61,7 @@ pub(super) struct Accepted {
 #[derive(Debug)]
 pub(super) struct End {
     /// Where the axes stand; `None` where nothing moves.
-    pub place: Option<Place>,
+    pub place: Option<Coordinates>,
     /// From the acceptance to the end; `None` if it was over before the first look.
     pub elapsed_ms: Option<u64>,
     /// Whether it stands at a stop, and can go on.
@@ -88,7 +88,7 @@ impl Accepted {
             match self.look(link, &mut teller, looks.is_multiple_of(STEP_EVERY)).await {
                 Ok((status, record)) => {
                     refused = 0;
-                    let place = record.as_ref().map(Place::of);
+                    let place = record.as_ref().map(Coordinates::of);
                     match watch.look(began.elapsed(), status, record) {
                         // Until it was seen, the status may be that of before.
                         Look::Running if !watch.seen => {}
@@ -151,15 +151,15 @@ impl Accepted {
     }
 
     /// What kept it from its end.
-    async fn failed(self, link: &mut Link, trouble: Trouble, place: Option<Place>) -> Failure {
+    async fn failed(self, link: &mut Link, trouble: WaitFailure, place: Option<Coordinates>) -> Failure {
         let place = place.map(|place| format!("; it stands at {}", place.in_a_line())).unwrap_or_default();
         let tell = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{place}", self.done));
         match trouble {
-            Trouble::Error => present_error(link, &tell).await,
-            Trouble::NoOrigin => tell("it ended without the origin").hint(
+            WaitFailure::Error => present_error(link, &tell).await,
+            WaitFailure::NoOrigin => tell("it ended without the origin").hint(
                 "somebody or something stopped it without an error: look at the machine, then repeat `toyo home`",
             ),
-            Trouble::NotBegun => tell("it was not seen to begin")
+            WaitFailure::NotBegun => tell("it was not seen to begin")
                 .hint("it may still begin: keep clear, and look at `toyo status` and the teach pendant"),
         }
     }
@@ -190,12 +190,12 @@ pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failu
 }
 
 /// Where axes that are being stopped come to rest; where they were seen last if they cannot be asked.
-async fn resting_place(link: &mut Link, seen: Option<Place>) -> Option<Place> {
+async fn resting_place(link: &mut Link, seen: Option<Coordinates>) -> Option<Coordinates> {
     let mut last = seen?;
     for _ in 0..LOOKS_TO_REST {
         tokio::time::sleep(LOOK_EVERY).await;
         let Ok(record) = link.place().await else { break };
-        let here = Place::of(&record);
+        let here = Coordinates::of(&record);
         let is_at_rest = here == last;
         last = here;
         if is_at_rest {
@@ -259,7 +259,7 @@ impl Teller {
         Self { doing, progress, screen: *screen, inputs: 0, step, halted: None }
     }
 
-    fn tell(&mut self, status: Status, place: Option<Place>) {
+    fn tell(&mut self, status: Status, place: Option<Coordinates>) {
         let halted = match (status.paused(), status.waits_for_input()) {
             (true, _) => Some("paused"),
             (_, true) => Some("waiting for an input"),
@@ -292,12 +292,12 @@ enum Look {
     /// It has ended.
     Ended,
     /// It did not get to its end.
-    Failed(Trouble),
+    Failed(WaitFailure),
 }
 
 /// What keeps work from its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Trouble {
+enum WaitFailure {
     /// An error is present.
     Error,
     /// A return to origin is over, and the origin is not known.
@@ -317,7 +317,7 @@ impl Watch {
         let moves = self.last.is_some() && self.last != place;
         self.last = place;
         if status.has_error() {
-            return Look::Failed(Trouble::Error);
+            return Look::Failed(WaitFailure::Error);
         }
         let busy = match self.work {
             Work::Card => status.card_reading() || status.card_writing(),
@@ -331,8 +331,8 @@ impl Watch {
         let is_over = self.seen || elapsed >= BEGIN_WITHIN;
         match (self.work, self.seen) {
             _ if !is_over => Look::Running,
-            (Work::Home, true) if !status.homed() => Look::Failed(Trouble::NoOrigin),
-            (Work::Home, false) if !status.homed() => Look::Failed(Trouble::NotBegun),
+            (Work::Home, true) if !status.homed() => Look::Failed(WaitFailure::NoOrigin),
+            (Work::Home, false) if !status.homed() => Look::Failed(WaitFailure::NotBegun),
             _ => Look::Ended,
         }
     }
@@ -383,7 +383,10 @@ mod tests {
         let idle = page0(IDLE);
         assert_eq!(looks(Work::Program, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
         assert_eq!(looks(Work::Home, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
-        assert_eq!(looks(Work::Home, [(0, page0(0x20), 0), (1000, page0(0x20), 0)]), Look::Failed(Trouble::NotBegun));
+        assert_eq!(
+            looks(Work::Home, [(0, page0(0x20), 0), (1000, page0(0x20), 0)]),
+            Look::Failed(WaitFailure::NotBegun)
+        );
     }
 
     #[test]
@@ -397,14 +400,14 @@ mod tests {
     fn a_return_to_origin_ends_with_the_origin() {
         let homing = page0(0x0A);
         assert_eq!(looks(Work::Home, [(0, homing, 0), (100, page0(0x30), 1), (200, page0(0x30), 1)]), Look::Ended);
-        assert_eq!(looks(Work::Home, [(0, homing, 0), (100, page0(0x20), 0)]), Look::Failed(Trouble::NoOrigin));
+        assert_eq!(looks(Work::Home, [(0, homing, 0), (100, page0(0x20), 0)]), Look::Failed(WaitFailure::NoOrigin));
     }
 
     #[test]
     fn an_error_ends_the_waiting() {
         assert_eq!(
             looks(Work::Program, [(0, page0(RUNS), 0), (100, page0(RUNS | 1), 0)]),
-            Look::Failed(Trouble::Error)
+            Look::Failed(WaitFailure::Error)
         );
     }
 

@@ -12,7 +12,7 @@ use super::chosen::Chosen;
 use super::each::{Denied, Outcome};
 use super::link::Link;
 use super::link::Yerc;
-use super::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
+use super::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::frame::dry_run::unknown;
@@ -366,7 +366,7 @@ enum Look {
     /// It has ended.
     Ended,
     /// Something stopped it.
-    Stopped(Trouble),
+    Stopped(StandstillCause),
     /// It was not seen running in time.
     NotSeen,
     /// It runs for longer than wanted.
@@ -380,9 +380,9 @@ impl Watch {
 
     fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
         self.seen |= status.running();
-        match Trouble::of(status) {
+        match StandstillCause::of(status) {
             // An error is a message on the pendant; a job may run on under it.
-            Some(Trouble::Error) if status.running() => {}
+            Some(StandstillCause::Error) if status.running() => {}
             Some(trouble) => return Look::Stopped(trouble),
             None if self.seen && !status.running() => return Look::Ended,
             None => {}
@@ -525,8 +525,8 @@ mod tests {
     fn what_stops_a_job_is_told() {
         let base = [StatusBit::ServoOn, StatusBit::Running];
         let look = |more: StatusBit| Watch::new(None).look(Duration::ZERO, status(&base).with(more, true));
-        assert_eq!(look(StatusBit::Alarm), Look::Stopped(Trouble::Alarm));
-        assert!(matches!(look(StatusBit::HoldExternal), Look::Stopped(Trouble::Hold(_))));
+        assert_eq!(look(StatusBit::Alarm), Look::Stopped(StandstillCause::Alarm));
+        assert!(matches!(look(StatusBit::HoldExternal), Look::Stopped(StandstillCause::Hold(_))));
         assert_eq!(look(StatusBit::Error), Look::Running);
     }
 

@@ -17,7 +17,7 @@ pub(super) const START_WITHIN: Duration = Duration::from_secs(3);
 
 /// A state of the controller in which nothing moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Trouble {
+pub(super) enum StandstillCause {
     /// An alarm is present.
     Alarm,
     /// An error is present.
@@ -37,7 +37,7 @@ const HOLDS: [(StatusBit, &str, &str); 3] = [
     (StatusBit::HoldCommand, "command", "`yerc hold off` releases it"),
 ];
 
-impl Trouble {
+impl StandstillCause {
     /// What a status says, the weightiest first; there was none of it when the controller accepted the order.
     pub(super) fn of(status: ControllerStatus) -> Option<Self> {
         let hold = HOLDS.iter().find(|row| status.has(row.0));
@@ -116,13 +116,14 @@ mod tests {
     #[test]
     fn the_weightiest_trouble_is_named() {
         let fine = ControllerStatus::default().with(StatusBit::ServoOn, true).with(StatusBit::Play, true);
-        let with = |bits: &[StatusBit]| Trouble::of(bits.iter().fold(fine, |status, bit| status.with(*bit, true)));
+        let with =
+            |bits: &[StatusBit]| StandstillCause::of(bits.iter().fold(fine, |status, bit| status.with(*bit, true)));
         assert_eq!(with(&[]), None);
         assert_eq!(with(&[StatusBit::Running, StatusBit::CommandRemote]), None);
-        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Alarm]), Some(Trouble::Alarm));
-        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Error]), Some(Trouble::Hold("command")));
-        assert_eq!(with(&[StatusBit::Teach]), Some(Trouble::Teach));
-        assert_eq!(Trouble::of(ControllerStatus::default()), Some(Trouble::ServoOff));
+        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Alarm]), Some(StandstillCause::Alarm));
+        assert_eq!(with(&[StatusBit::HoldCommand, StatusBit::Error]), Some(StandstillCause::Hold("command")));
+        assert_eq!(with(&[StatusBit::Teach]), Some(StandstillCause::Teach));
+        assert_eq!(StandstillCause::of(ControllerStatus::default()), Some(StandstillCause::ServoOff));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use clap::Args;
 use self::arguments::{
     By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, robot_pulses, split, station_pulses,
 };
-use self::going::{Goal, Going, Moved};
+use self::going::{Goal, Going, MotionReport};
 use self::question::Question;
 use super::link::Link;
 use super::link::Yerc;
@@ -157,7 +157,7 @@ macro_rules! motion {
 
         impl Command for $name {
             type Family = Yerc;
-            type Report = Moved;
+            type Report = MotionReport;
             const ID: &'static str = $id;
             const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
@@ -170,7 +170,7 @@ macro_rules! motion {
                 $question.in_a_line()
             }
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<Moved, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<MotionReport, Failure> {
                 let $this = self;
                 let $link = &*context.link;
                 let going = $going?;

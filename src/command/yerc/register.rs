@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
-use super::writes::{Order, write_all};
+use super::writes::{WriteOrder, write_all};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::{Command, Context, Report, commands};
@@ -120,7 +120,7 @@ impl Command for Set {
     }
 }
 
-impl Order for WriteRegisterStep {
+impl WriteOrder for WriteRegisterStep {
     type Item = u16;
 
     fn items(&self) -> Vec<u16> {

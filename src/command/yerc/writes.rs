@@ -7,7 +7,7 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
 /// A write and the names of what it writes.
-pub trait Order: Query<Answer = ()> {
+pub trait WriteOrder: Query<Answer = ()> {
     /// What it writes: a variable, a register, a group of signals.
     type Item: Clone;
 
@@ -20,7 +20,7 @@ pub trait Order: Query<Answer = ()> {
 
 /// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may
 /// have been, and what was not. So does Ctrl-C.
-pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
+pub async fn write_all<O: WriteOrder>(link: &mut Link, screen: &Screen, orders: &[O]) -> Result<(), Failure> {
     link.plan_all(orders)?;
     let mut done = 0;
     let progress = (orders.len() > 1).then(|| screen.spinner("writing"));
@@ -44,7 +44,7 @@ pub async fn write_all<O: Order>(link: &mut Link, screen: &Screen, orders: &[O])
 }
 
 /// The failure, and what became of each order; `done` of them were confirmed, the next one failed.
-fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
+fn account<O: WriteOrder>(failure: Failure, orders: &[O], done: usize) -> Failure {
     // Where nobody listens, nothing was done either.
     let refused = matches!(failure.kind, Kind::Refused | Kind::NoAnswer);
     if refused && orders.len() == 1 {
@@ -53,7 +53,7 @@ fn account<O: Order>(failure: Failure, orders: &[O], done: usize) -> Failure {
     let (written, rest) = orders.split_at(done.min(orders.len()));
     let unknown = if refused { 0 } else { 1.min(rest.len()) };
     let (unknown, rest) = rest.split_at(unknown);
-    let names = |orders: &[O]| O::listed(orders.iter().flat_map(Order::items).collect());
+    let names = |orders: &[O]| O::listed(orders.iter().flat_map(WriteOrder::items).collect());
     let mut parts = vec![failure.message.trim_end_matches('.').to_owned()];
     if written.is_empty() && unknown.is_empty() {
         parts.push("nothing was written".to_owned());

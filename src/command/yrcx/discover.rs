@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::buses::{self, Searches};
-use super::fieldbus::{Found, Scope};
+use super::fieldbus::{Device, Scope};
 use super::trace::Recorder;
 use crate::command::Access;
 use crate::failure::Failure;
@@ -31,9 +31,9 @@ pub struct FoundDevice {
     pub device: String,
 }
 
-impl From<Found> for FoundDevice {
-    fn from(found: Found) -> Self {
-        let Found { address, target, is_yrcx, device, identity } = found;
+impl From<Device> for FoundDevice {
+    fn from(found: Device) -> Self {
+        let Device { address, target, is_yrcx, device, identity } = found;
         Self { address, target, family: is_yrcx.then_some("yrcx"), identity, device }
     }
 }

@@ -118,7 +118,7 @@ pub trait Search {
     fn scope(&self) -> Scope;
 
     /// Asks who is there until `wait` is over.
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>>;
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>>;
 }
 
 /// What is to be searched of a fieldbus.
@@ -136,7 +136,7 @@ pub enum Scope {
 
 /// A device that answered. What it says of itself is untrusted.
 #[derive(Debug)]
-pub struct Found {
+pub struct Device {
     /// Where the answer came from.
     pub address: String,
     /// The URL for `-t`.

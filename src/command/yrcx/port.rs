@@ -37,7 +37,7 @@ const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. There are
 
 /// A port, or a signal of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Place {
+struct PortSignal {
     /// The number of its type.
     kind: i32,
     port: i32,
@@ -45,7 +45,7 @@ struct Place {
 }
 
 /// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
-fn place(text: &str) -> Result<Place, String> {
+fn place(text: &str) -> Result<PortSignal, String> {
     let wrong = || format!("'{text}' is not a valid port such as DO12 and no signal, such as DO2.1");
     let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
     let kind = single(table::Command::PortGet, Key::PortType, kind).map_err(|_| wrong())?;
@@ -63,17 +63,17 @@ fn place(text: &str) -> Result<Place, String> {
         let is_number = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
         if is_number { text.parse().map_err(|_| wrong()) } else { Err(wrong()) }
     };
-    let place = Place { kind, port: number(port)?, bit: bit.map(number).transpose()? };
+    let place = PortSignal { kind, port: number(port)?, bit: bit.map(number).transpose()? };
     place.order(table::Command::PortGet.order()).map(|_| place)
 }
 
-fn signal_or_port(text: &str) -> Result<Place, String> {
+fn signal_or_port(text: &str) -> Result<PortSignal, String> {
     let place = place(text)?;
     let draft = table::Command::PortSet.order().with(Key::Value, 0);
     place.order(draft).map(|_| place)
 }
 
-impl Place {
+impl PortSignal {
     /// Its port in a command of ports.
     fn order(self, draft: Draft) -> Result<Order, String> {
         if let Some(bit) = self.bit.filter(|bit| *bit > 7) {
@@ -108,7 +108,7 @@ impl Place {
 pub struct Get {
     /// Ports, or signals of them; DO2..DO5 is a range
     #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = Series::reader(place), add = complete::PORT)]
-    places: Vec<Series<Place>>,
+    places: Vec<Series<PortSignal>>,
 }
 
 impl Watchable for Get {
@@ -124,8 +124,8 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ports, Failure> {
         let Context { link, screen, .. } = context;
-        let places: Vec<Place> = Series::all(&self.places).copied().collect();
-        let order = |place: &Place| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
+        let places: Vec<PortSignal> = Series::all(&self.places).copied().collect();
+        let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading ports", &orders).await?;
         let names = || places.iter().map(|place| place.told());
@@ -187,14 +187,14 @@ one_row! {
     Set(self) "yrcx.port.set" -> Done {
         /// A port, or a signal of one
         #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
-        place: Place,
+        place: PortSignal,
         /// For a port 0 to 255, also as 0x07 or 0b00000111; for a signal on or off
         #[arg(value_name = "VALUE", value_parser = value)]
         value: u8,
     }
     gives if self.place.bit.is_some() { table::Command::PortSetBit } else { table::Command::PortSet },
     with draft => {
-        let Place { kind, port, bit } = self.place;
+        let PortSignal { kind, port, bit } = self.place;
         let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
         draft.with(Key::Value, i32::from(self.value))
     },

@@ -223,7 +223,7 @@ one_row! {
     with draft => self.which.put(draft),
     done as answer => {
         let int = |key| answer.values.int(key).unwrap_or_default();
-        let line = Line::of(int(Key::Line));
+        let line = ProgramLine::of(int(Key::Line));
         Execution {
             program: int(Key::Program),
             name: answer.values.text(Key::ProgramName).unwrap_or_default().to_owned(),
@@ -244,19 +244,19 @@ pub struct Execution {
     /// 1 to 64.
     priority: i32,
     #[serde(flatten)]
-    line: Line,
+    line: ProgramLine,
 }
 
 /// A line of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Line {
+pub struct ProgramLine {
     /// From 1.
     pub line: i32,
     /// Whether it is a line of the COMMON program.
     pub in_common: bool,
 }
 
-impl Line {
+impl ProgramLine {
     /// As the controller tells it: lines of COMMON from 10000 (4.6.4).
     pub fn of(number: i32) -> Self {
         if number > COMMON_LINES {
@@ -288,7 +288,7 @@ impl Report for Execution {
 mod tests {
     use serde_json::json;
 
-    use super::Line;
+    use super::ProgramLine;
     use crate::command::yrcx::testing::{example, intent, objection, read_example, read_in_turn, risk, words};
     use crate::controller::Risk;
 
@@ -356,6 +356,9 @@ mod tests {
 
     #[test]
     fn lines_of_common_are_told_as_such() {
-        assert_eq!((Line::of(10_005).told(), Line::of(10_000).told()), ("5 of COMMON".into(), "10000".into()));
+        assert_eq!(
+            (ProgramLine::of(10_005).told(), ProgramLine::of(10_000).told()),
+            ("5 of COMMON".into(), "10000".into())
+        );
     }
 }

@@ -60,7 +60,7 @@ enum Answer {
 
 /// Why there is no answer, or not all.
 #[derive(Debug)]
-pub enum Trouble {
+pub enum FilterError {
     /// The filter does not compile.
     Mistake(String),
     /// It has failed.
@@ -74,7 +74,7 @@ pub enum Trouble {
     },
 }
 
-impl From<Stop> for Trouble {
+impl From<Stop> for FilterError {
     fn from(stop: Stop) -> Self {
         match stop {
             Stop::Failed(why) => Self::Failed(why),
@@ -94,9 +94,9 @@ static WORKER: Mutex<Option<Worker>> = Mutex::new(None);
 
 /// Compiles a filter, and hands over every value that it makes of the input, if there is one, as it comes. `take` says
 /// whether more is wanted.
-pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> bool) -> Result<(), Trouble> {
+pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let asked = Asked { filter, input: input.map(|input| [input]) };
-    let failed = |error: &io::Error| Trouble::Failed(format!("it cannot be run: {}", crate::failure::plain(error)));
+    let failed = |error: &io::Error| FilterError::Failed(format!("it cannot be run: {}", crate::failure::plain(error)));
     let mut worker = WORKER.lock().unwrap_or_else(PoisonError::into_inner);
     let mut living = match worker.take().and_then(Worker::living) {
         Some(living) => living,
@@ -114,14 +114,14 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
             Ok(Some(last)) => {
                 *worker = Some(living);
                 return match last {
-                    Answer::Mistake(why) => Err(Trouble::Mistake(why)),
-                    Answer::Failed(why) => Err(Trouble::Failed(why)),
-                    Answer::Halted(exit, text) => Err(Trouble::Halted { exit, text }),
+                    Answer::Mistake(why) => Err(FilterError::Mistake(why)),
+                    Answer::Failed(why) => Err(FilterError::Failed(why)),
+                    Answer::Halted(exit, text) => Err(FilterError::Halted { exit, text }),
                     Answer::Done | Answer::Value(_) => Ok(()),
                 };
             }
             Ok(None) => {
-                return Err(Trouble::Failed("it needs too much memory, or calls itself too deep".to_owned()));
+                return Err(FilterError::Failed("it needs too much memory, or calls itself too deep".to_owned()));
             }
             Err(error) => return Err(failed(&error)),
         }

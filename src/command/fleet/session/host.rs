@@ -14,7 +14,7 @@ use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
 use crate::command::frame::attach::{key_of, no_place};
-use crate::command::frame::session_manager::{By, Order, SessionManager};
+use crate::command::frame::session_manager::{By, ManagerRequest, SessionManager};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -121,17 +121,17 @@ impl ManagerThread {
 }
 
 /// What the thread does.
-async fn work(mut orders: mpsc::UnboundedReceiver<Order>, say: Say) {
+async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
     let held = Rc::new(RefCell::new(BTreeSet::new()));
     let (end, ended) = watch::channel(false);
     let mut holdings = JoinSet::new();
     while let Some(order) = orders.recv().await {
         match order {
-            Order::Hold { robot, access, screen, done } => {
+            ManagerRequest::Hold { robot, access, screen, done } => {
                 let (held, say, ended) = (Rc::clone(&held), Arc::clone(&say), ended.clone());
                 holdings.spawn_local(hold(*robot, access, screen, done, held, say, ended));
             }
-            Order::End(done) => {
+            ManagerRequest::End(done) => {
                 end.send_replace(true);
                 while holdings.join_next().await.is_some() {}
                 // Whoever waited may have gone.

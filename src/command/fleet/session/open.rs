@@ -98,9 +98,9 @@ impl Open {
         let place = Place::make().map_err(|error| no_place(&error))?;
         let spot = place.spot(&key_of(robot));
         let log = background.then(|| spot.log());
-        let diary = Diary { screen: run.screen, label: robot.label(), file: log.clone() };
-        let diary = Rc::new(RefCell::new(diary));
-        let say = Rc::clone(&diary);
+        let log_file = SessionLog { screen: run.screen, label: robot.label(), file: log.clone() };
+        let log_file = Rc::new(RefCell::new(log_file));
+        let say = Rc::clone(&log_file);
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
         let opening = SessionHost::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
         let holding = match interruptible(opening).await?? {
@@ -108,7 +108,7 @@ impl Open {
             Attempt::Taken => return Err(taken(robot, &spot).await),
             Attempt::NoPlace(failure) => return Err(failure),
         };
-        diary.borrow_mut().say("the link is open");
+        log_file.borrow_mut().say("the link is open");
         let opened = Opened::here(robot, background, log.as_deref());
         Ok((holding, opened))
     }
@@ -135,7 +135,7 @@ async fn taken(robot: &Robot, spot: &Spot) -> Failure {
 }
 
 /// Where it is told what happens: on the terminal, or in a file.
-struct Diary {
+struct SessionLog {
     screen: Screen,
     label: String,
     file: Option<PathBuf>,
@@ -144,7 +144,7 @@ struct Diary {
 /// The file is begun anew at this size; the one before is kept.
 const LONGEST: u64 = 1 << 18;
 
-impl Diary {
+impl SessionLog {
     fn say(&mut self, text: &str) {
         let Some(path) = &self.file else {
             self.screen.note(&format!("{}: {text}", self.label));

@@ -4,7 +4,7 @@ use crate::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 /// What a key orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub enum KeyAction {
     /// So many lines up: robots in the list, axes on the screen of one.
     Up(usize),
     /// So many lines down.
@@ -51,46 +51,46 @@ pub enum Order {
 const PAGE: usize = 10;
 
 /// What a key orders; nothing if it means nothing. `is_typing`: it belongs to the filter.
-pub fn order(key: KeyEvent, is_typing: bool) -> Option<Order> {
+pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
     if key.modifiers.contains(KeyModifiers::CONTROL) {
         return match key.code {
-            KeyCode::Char('c') => Some(Order::Interrupt),
-            KeyCode::Char('z') => Some(Order::Suspend),
-            KeyCode::Char('l') => Some(Order::Refresh),
-            KeyCode::Char('h') if is_typing => Some(Order::Erase),
+            KeyCode::Char('c') => Some(KeyAction::Interrupt),
+            KeyCode::Char('z') => Some(KeyAction::Suspend),
+            KeyCode::Char('l') => Some(KeyAction::Refresh),
+            KeyCode::Char('h') if is_typing => Some(KeyAction::Erase),
             _ => None,
         };
     }
     if is_typing {
         return match key.code {
-            KeyCode::Enter => Some(Order::Keep),
-            KeyCode::Esc => Some(Order::Discard),
-            KeyCode::Backspace => Some(Order::Erase),
-            KeyCode::Char(character) => Some(Order::Type(character)),
+            KeyCode::Enter => Some(KeyAction::Keep),
+            KeyCode::Esc => Some(KeyAction::Discard),
+            KeyCode::Backspace => Some(KeyAction::Erase),
+            KeyCode::Char(character) => Some(KeyAction::Type(character)),
             _ => None,
         };
     }
     Some(match key.code {
-        KeyCode::Up | KeyCode::Char('k') => Order::Up(1),
-        KeyCode::Down | KeyCode::Char('j') => Order::Down(1),
-        KeyCode::PageUp => Order::Up(PAGE),
-        KeyCode::PageDown => Order::Down(PAGE),
-        KeyCode::Home | KeyCode::Char('g') => Order::Up(usize::MAX),
-        KeyCode::End | KeyCode::Char('G') => Order::Down(usize::MAX),
-        KeyCode::Left | KeyCode::Char('p') => Order::Previous,
-        KeyCode::Right | KeyCode::Char('n') => Order::Next,
-        KeyCode::Enter => Order::Open,
-        KeyCode::Esc | KeyCode::Backspace => Order::Back,
-        KeyCode::Char('s') => Order::Sort,
-        KeyCode::Char(' ') => Order::Pause,
-        KeyCode::Char('+' | '=') => Order::Faster,
-        KeyCode::Char('-' | '_') => Order::Slower,
-        KeyCode::Char('?' | 'h') => Order::Help,
-        KeyCode::Char('/') => Order::Filter,
-        KeyCode::Char('q' | 'Q') => Order::Quit,
+        KeyCode::Up | KeyCode::Char('k') => KeyAction::Up(1),
+        KeyCode::Down | KeyCode::Char('j') => KeyAction::Down(1),
+        KeyCode::PageUp => KeyAction::Up(PAGE),
+        KeyCode::PageDown => KeyAction::Down(PAGE),
+        KeyCode::Home | KeyCode::Char('g') => KeyAction::Up(usize::MAX),
+        KeyCode::End | KeyCode::Char('G') => KeyAction::Down(usize::MAX),
+        KeyCode::Left | KeyCode::Char('p') => KeyAction::Previous,
+        KeyCode::Right | KeyCode::Char('n') => KeyAction::Next,
+        KeyCode::Enter => KeyAction::Open,
+        KeyCode::Esc | KeyCode::Backspace => KeyAction::Back,
+        KeyCode::Char('s') => KeyAction::Sort,
+        KeyCode::Char(' ') => KeyAction::Pause,
+        KeyCode::Char('+' | '=') => KeyAction::Faster,
+        KeyCode::Char('-' | '_') => KeyAction::Slower,
+        KeyCode::Char('?' | 'h') => KeyAction::Help,
+        KeyCode::Char('/') => KeyAction::Filter,
+        KeyCode::Char('q' | 'Q') => KeyAction::Quit,
         _ => return None,
     })
 }
@@ -144,18 +144,18 @@ mod tests {
 
     #[test]
     fn letters_are_keys_or_a_filter() {
-        assert_eq!(order(pressed(KeyCode::Char('q')), false), Some(Order::Quit));
-        assert_eq!(order(pressed(KeyCode::Char('q')), true), Some(Order::Type('q')));
-        assert_eq!(order(pressed(KeyCode::Esc), false), Some(Order::Back));
-        assert_eq!(order(pressed(KeyCode::Esc), true), Some(Order::Discard));
+        assert_eq!(order(pressed(KeyCode::Char('q')), false), Some(KeyAction::Quit));
+        assert_eq!(order(pressed(KeyCode::Char('q')), true), Some(KeyAction::Type('q')));
+        assert_eq!(order(pressed(KeyCode::Esc), false), Some(KeyAction::Back));
+        assert_eq!(order(pressed(KeyCode::Esc), true), Some(KeyAction::Discard));
         assert_eq!(order(pressed(KeyCode::Char('x')), false), None);
     }
 
     #[test]
     fn control_keys_count_everywhere() {
         for is_typing in [false, true] {
-            assert_eq!(order(with_control('c'), is_typing), Some(Order::Interrupt));
-            assert_eq!(order(with_control('z'), is_typing), Some(Order::Suspend));
+            assert_eq!(order(with_control('c'), is_typing), Some(KeyAction::Interrupt));
+            assert_eq!(order(with_control('z'), is_typing), Some(KeyAction::Suspend));
             assert_eq!(order(with_control('q'), is_typing), None);
         }
     }

@@ -24,7 +24,7 @@ use futures_util::stream::FuturesUnordered;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
-use self::keys::{Order, order};
+use self::keys::{KeyAction, order};
 use self::model::Model;
 use self::poller::{Pace, Update, follow};
 use self::view::Palette;
@@ -196,10 +196,10 @@ impl View<'_> {
     fn heed(&mut self, event: &Event) -> Result<bool, Failure> {
         let Event::Key(key) = event else { return Ok(false) };
         match order(*key, self.model.is_typing) {
-            Some(Order::Quit) => return Ok(true),
-            Some(Order::Interrupt) => return Err(Failure::new(Kind::Interrupted, "Ctrl-C")),
-            Some(Order::Suspend) => self.terminal.suspend()?,
-            Some(Order::Refresh) => self.terminal.refresh()?,
+            Some(KeyAction::Quit) => return Ok(true),
+            Some(KeyAction::Interrupt) => return Err(Failure::new(Kind::Interrupted, "Ctrl-C")),
+            Some(KeyAction::Suspend) => self.terminal.suspend()?,
+            Some(KeyAction::Refresh) => self.terminal.refresh()?,
             Some(order) => {
                 self.model.obey(self.start.elapsed(), order);
                 let pace = pace_of(&self.model);

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::keys::Order;
+use super::keys::KeyAction;
 use super::track::Track;
 use crate::command::face::sample::Sample;
 use crate::failure::{Failure, Kind};
@@ -122,7 +122,7 @@ pub enum Contact {
 
 /// What wants to be looked at, the least of it first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Trouble {
+pub enum Severity {
     /// Nothing.
     None,
     /// It is held, or was not heard yet.
@@ -199,33 +199,33 @@ impl Model {
     }
 
     /// Does what a key orders. What is about the process and not about the picture is left to the caller.
-    pub fn obey(&mut self, now: Moment, order: Order) {
+    pub fn obey(&mut self, now: Moment, order: KeyAction) {
         // Whatever is pressed, whoever has read the help wants it gone.
         if std::mem::take(&mut self.has_help) {
             return;
         }
         match order {
-            Order::Up(steps) if self.is_open => self.axis = self.axis.saturating_sub(steps),
-            Order::Down(steps) if self.is_open => self.axis = self.axis.saturating_add(steps).min(self.last_axis()),
-            Order::Up(steps) => self.step(|at, _| at.saturating_sub(steps)),
-            Order::Down(steps) => self.step(|at, last| at.saturating_add(steps).min(last)),
-            Order::Previous => self.step(|at, _| at.saturating_sub(1)),
-            Order::Next => self.step(|at, last| (at + 1).min(last)),
-            Order::Open => self.is_open = !self.listed().is_empty(),
-            Order::Back if !self.is_open => self.filter.clear(),
-            Order::Back => self.is_open = false,
-            Order::Sort => self.sort = self.sort.next(),
-            Order::Pause if self.is_paused() => self.frozen = None,
-            Order::Pause => self.frozen = Some((now, self.robots.clone())),
-            Order::Faster => self.every = nearest(self.every, true),
-            Order::Slower => self.every = nearest(self.every, false),
-            Order::Help => self.has_help = true,
-            Order::Filter => (self.is_typing, self.is_open) = (true, false),
-            Order::Type(character) if self.filter.chars().count() < FILTER => self.filter.push(character),
-            Order::Erase => _ = self.filter.pop(),
-            Order::Keep => self.is_typing = false,
-            Order::Discard => (self.is_typing, self.filter) = (false, String::new()),
-            Order::Type(_) | Order::Quit | Order::Interrupt | Order::Suspend | Order::Refresh => {}
+            KeyAction::Up(steps) if self.is_open => self.axis = self.axis.saturating_sub(steps),
+            KeyAction::Down(steps) if self.is_open => self.axis = self.axis.saturating_add(steps).min(self.last_axis()),
+            KeyAction::Up(steps) => self.step(|at, _| at.saturating_sub(steps)),
+            KeyAction::Down(steps) => self.step(|at, last| at.saturating_add(steps).min(last)),
+            KeyAction::Previous => self.step(|at, _| at.saturating_sub(1)),
+            KeyAction::Next => self.step(|at, last| (at + 1).min(last)),
+            KeyAction::Open => self.is_open = !self.listed().is_empty(),
+            KeyAction::Back if !self.is_open => self.filter.clear(),
+            KeyAction::Back => self.is_open = false,
+            KeyAction::Sort => self.sort = self.sort.next(),
+            KeyAction::Pause if self.is_paused() => self.frozen = None,
+            KeyAction::Pause => self.frozen = Some((now, self.robots.clone())),
+            KeyAction::Faster => self.every = nearest(self.every, true),
+            KeyAction::Slower => self.every = nearest(self.every, false),
+            KeyAction::Help => self.has_help = true,
+            KeyAction::Filter => (self.is_typing, self.is_open) = (true, false),
+            KeyAction::Type(character) if self.filter.chars().count() < FILTER => self.filter.push(character),
+            KeyAction::Erase => _ = self.filter.pop(),
+            KeyAction::Keep => self.is_typing = false,
+            KeyAction::Discard => (self.is_typing, self.filter) = (false, String::new()),
+            KeyAction::Type(_) | KeyAction::Quit | KeyAction::Interrupt | KeyAction::Suspend | KeyAction::Refresh => {}
         }
         self.keep_cursor();
     }
@@ -322,15 +322,15 @@ impl Seen {
     }
 
     /// What wants to be looked at.
-    pub fn trouble(&self) -> Trouble {
+    pub fn trouble(&self) -> Severity {
         if let Contact::Fails(_) = self.contact {
-            return Trouble::Silent;
+            return Severity::Silent;
         }
-        let Some(line) = self.sample().map(|sample| &sample.line) else { return Trouble::Held };
+        let Some(line) = self.sample().map(|sample| &sample.line) else { return Severity::Held };
         match (line.fault.faulted == Some(true), line.held) {
-            (true, _) => Trouble::Alarm,
-            (_, Some(true)) => Trouble::Held,
-            _ => Trouble::None,
+            (true, _) => Severity::Alarm,
+            (_, Some(true)) => Severity::Held,
+            _ => Severity::None,
         }
     }
 
@@ -386,7 +386,7 @@ mod tests {
         alarmed.line.fault = Fault::new(true, None);
         model.take(NOW, 2, Ok(alarmed));
         assert_eq!(names(&model), ["cell1", "cell2", "cell3", "cell4"]);
-        model.obey(NOW, Order::Sort);
+        model.obey(NOW, KeyAction::Sort);
         assert_eq!(names(&model), ["cell2", "cell3", "cell4", "cell1"]);
         assert_eq!(model.robots()[1].alarm(), ("no answer".to_owned(), Tone::Bad));
     }
@@ -394,17 +394,17 @@ mod tests {
     #[test]
     fn the_filter_keeps_the_cursor_in_the_list() {
         let mut model = Model::new(&fleet(12), EVERY);
-        model.obey(NOW, Order::Filter);
-        "L1".chars().for_each(|character| model.obey(NOW, Order::Type(character)));
+        model.obey(NOW, KeyAction::Filter);
+        "L1".chars().for_each(|character| model.obey(NOW, KeyAction::Type(character)));
         assert_eq!(names(&model), ["cell1", "cell10", "cell11", "cell12"]);
-        model.obey(NOW, Order::Type('2'));
+        model.obey(NOW, KeyAction::Type('2'));
         assert_eq!((names(&model), model.cursor), (vec!["cell12"], 11));
-        model.obey(NOW, Order::Type('x'));
+        model.obey(NOW, KeyAction::Type('x'));
         assert!(names(&model).is_empty());
-        model.obey(NOW, Order::Keep);
-        model.obey(NOW, Order::Open);
+        model.obey(NOW, KeyAction::Keep);
+        model.obey(NOW, KeyAction::Open);
         assert!(!model.is_open, "there is none to open");
-        model.obey(NOW, Order::Back);
+        model.obey(NOW, KeyAction::Back);
         assert_eq!((model.listed().len(), model.cursor), (12, 11));
     }
 
@@ -412,12 +412,12 @@ mod tests {
     fn a_pause_shows_what_was_and_loses_nothing() {
         let mut model = Model::new(&fleet(1), EVERY);
         model.take(NOW, 0, Ok(sample(1.0)));
-        model.obey(NOW, Order::Pause);
+        model.obey(NOW, KeyAction::Pause);
         let later = NOW + EVERY;
         model.take(later, 0, Ok(sample(2.0)));
         assert_eq!(model.robots()[0].tracks[0].positions.len(), 1);
         assert_eq!(model.moment(later), NOW);
-        model.obey(later, Order::Pause);
+        model.obey(later, KeyAction::Pause);
         assert_eq!(model.robots()[0].tracks[0].positions.len(), 2);
         assert_eq!(model.moment(later), later);
     }
@@ -426,11 +426,11 @@ mod tests {
     fn only_the_open_robot_is_asked_for_everything() {
         let mut model = Model::new(&fleet(2), EVERY);
         assert_eq!(model.open(), None);
-        model.obey(NOW, Order::Open);
+        model.obey(NOW, KeyAction::Open);
         assert_eq!(model.open(), Some(0));
-        model.obey(NOW, Order::Next);
+        model.obey(NOW, KeyAction::Next);
         assert_eq!(model.open(), Some(1));
-        model.obey(NOW, Order::Back);
+        model.obey(NOW, KeyAction::Back);
         assert_eq!(model.open(), None);
         assert_eq!(Model::new(&fleet(1), EVERY).open(), Some(0), "a single one needs no list");
     }
@@ -438,11 +438,11 @@ mod tests {
     #[test]
     fn intervals_go_up_and_down_in_steps() {
         let mut model = Model::new(&fleet(1), Duration::from_millis(300));
-        model.obey(NOW, Order::Faster);
+        model.obey(NOW, KeyAction::Faster);
         assert_eq!(model.every, Duration::from_millis(200));
-        (0..9).for_each(|_| model.obey(NOW, Order::Faster));
+        (0..9).for_each(|_| model.obey(NOW, KeyAction::Faster));
         assert_eq!(model.every, Duration::from_millis(100));
-        (0..9).for_each(|_| model.obey(NOW, Order::Slower));
+        (0..9).for_each(|_| model.obey(NOW, KeyAction::Slower));
         assert_eq!(model.every, Duration::from_secs(30));
     }
 
@@ -462,18 +462,25 @@ mod tests {
     #[test]
     fn cursors_stay_where_there_is_something() {
         let mut model = Model::new(&fleet(3), EVERY);
-        model.obey(NOW, Order::Down(99));
+        model.obey(NOW, KeyAction::Down(99));
         assert_eq!(model.cursor, 2);
-        model.obey(NOW, Order::Up(99));
+        model.obey(NOW, KeyAction::Up(99));
         assert_eq!(model.cursor, 0);
         model.take(NOW, 0, Ok(sample(0.0)));
-        model.obey(NOW, Order::Open);
-        model.obey(NOW, Order::Down(99));
+        model.obey(NOW, KeyAction::Open);
+        model.obey(NOW, KeyAction::Down(99));
         assert_eq!(model.axis, model.robots()[0].tracks.len() - 1);
-        model.obey(NOW, Order::Next);
+        model.obey(NOW, KeyAction::Next);
         assert_eq!((model.cursor, model.axis), (1, 0));
         let mut empty = Model::new(&[], EVERY);
-        for order in [Order::Down(1), Order::Up(1), Order::Next, Order::Previous, Order::Open, Order::Back] {
+        for order in [
+            KeyAction::Down(1),
+            KeyAction::Up(1),
+            KeyAction::Next,
+            KeyAction::Previous,
+            KeyAction::Open,
+            KeyAction::Back,
+        ] {
             empty.obey(NOW, order);
         }
         assert!(empty.chosen().is_none());

@@ -15,7 +15,7 @@ use crate::settings::Robot;
 
 /// Where a report stands among others.
 #[derive(Debug, Clone, Copy)]
-pub enum Place<'a> {
+pub enum ReportPosition<'a> {
     /// The only one.
     Alone,
     /// The first of a watch.
@@ -44,7 +44,7 @@ impl Run {
     pub fn local(&self, id: &str, report: &dyn AnyReport) -> Result<(), RunError> {
         let failure = report.failure();
         if self.is_for_people() {
-            self.show_one(report, Place::Alone)?;
+            self.show_one(report, ReportPosition::Alone)?;
         } else {
             let envelope = Envelope::local(id, report.data()?);
             let envelope = Envelope { ok: failure.is_none(), error: failure.clone().map(Into::into), ..envelope };
@@ -59,7 +59,7 @@ impl Run {
         command: &dyn AnyCommand,
         robots: &[Robot],
         outcomes: &[Outcome],
-        place: Place<'_>,
+        place: ReportPosition<'_>,
     ) -> Result<Vec<Envelope>, Failure> {
         let envelopes = robots.iter().zip(outcomes).map(|(robot, outcome)| {
             enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
@@ -111,14 +111,13 @@ impl Run {
     }
 
     /// Tables of the same columns become one, with the robot in front; other views stand below each other.
-    fn show_many(&self, views: &[(&Robot, View)], place: Place<'_>) -> Result<(), Failure> {
+    fn show_many(&self, views: &[(&Robot, View)], place: ReportPosition<'_>) -> Result<(), Failure> {
         let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
             Some(table) => self.show(&View::table(table), place),
-            None => views
-                .iter()
-                .enumerate()
-                .try_for_each(|(index, (robot, view))| self.show(view, Place::Among { robot, first: index == 0 })),
+            None => views.iter().enumerate().try_for_each(|(index, (robot, view))| {
+                self.show(view, ReportPosition::Among { robot, first: index == 0 })
+            }),
         }
     }
 
@@ -132,13 +131,13 @@ impl Run {
         robot: &Robot,
         id: &str,
         report: &dyn AnyReport,
-        place: Place<'_>,
+        place: ReportPosition<'_>,
     ) -> Result<(), Failure> {
         if self.is_for_people() {
             return self.show_one(report, place);
         }
         let envelope = enveloped(robot, id, Ok(report))?;
-        let is_stream = self.screen.format == Format::Jsonl || !matches!(place, Place::Alone);
+        let is_stream = self.screen.format == Format::Jsonl || !matches!(place, ReportPosition::Alone);
         self.emit(if is_stream { timed(envelope) } else { envelope })
     }
 
@@ -149,14 +148,14 @@ impl Run {
 
     /// Begins a round of a watch: what it shows replaces the round before, on a terminal that can; what is told one after
     /// the other stays.
-    pub(super) fn round(&self, is_first: bool, stays: bool) -> Place<'static> {
+    pub(super) fn round(&self, is_first: bool, stays: bool) -> ReportPosition<'static> {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
         }
         match (is_first, stays) {
-            (true, _) => Place::First,
-            (false, true) => Place::Line,
-            (false, false) => Place::Next,
+            (true, _) => ReportPosition::First,
+            (false, true) => ReportPosition::Line,
+            (false, false) => ReportPosition::Next,
         }
     }
 
@@ -187,7 +186,7 @@ impl Run {
         })
     }
 
-    fn show_one(&self, report: &dyn AnyReport, place: Place<'_>) -> Result<(), Failure> {
+    fn show_one(&self, report: &dyn AnyReport, place: ReportPosition<'_>) -> Result<(), Failure> {
         match self.screen.format {
             Format::Csv => self.show_csv(&[(None, report)], place),
             _ => self.show(&report.view(), place),
@@ -195,8 +194,8 @@ impl Run {
     }
 
     /// Writes the fields of reports as CSV; later rounds of a watch below the columns of the first.
-    fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: Place<'_>) -> Result<(), Failure> {
-        let is_later = matches!(place, Place::Next | Place::Line);
+    fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
+        let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
         let known = if is_later { self.redraw.columns.take() } else { Vec::new() };
         let count = known.len();
         let mut rows = Rows::under(known);
@@ -214,14 +213,14 @@ impl Run {
         self.screen.data(&rows.csv(has_header))
     }
 
-    fn show(&self, view: &View, place: Place<'_>) -> Result<(), Failure> {
+    fn show(&self, view: &View, place: ReportPosition<'_>) -> Result<(), Failure> {
         let screen = &self.screen;
         let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
-            Place::Alone | Place::First | Place::Line => text,
-            Place::Next if self.redraw.is_on() => text,
-            Place::Next => format!("\n{text}"),
-            Place::Among { robot, first } => {
+            ReportPosition::Alone | ReportPosition::First | ReportPosition::Line => text,
+            ReportPosition::Next if self.redraw.is_on() => text,
+            ReportPosition::Next => format!("\n{text}"),
+            ReportPosition::Among { robot, first } => {
                 format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
             }
         };

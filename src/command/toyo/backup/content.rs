@@ -6,11 +6,11 @@ use super::manifest::Controller;
 use super::parts::Part;
 use crate::client::toyo::letters_request;
 use crate::command::backup::manifest::LeftOut;
-use crate::command::toyo::cells::Cell;
+use crate::command::toyo::eeprom::Cell;
 use crate::command::toyo::items::{Answers, read_each};
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::{steps, text};
-use crate::command::toyo::stores::{Store, Work};
+use crate::command::toyo::stores::{Store, StoreTask};
 use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{easy, files, numbers, palletizing, param, point, tasks};
 use crate::controller::toyo::bulk::{Setting, easy as easy_text, pallets, parameters, points};
@@ -159,7 +159,7 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
 }
 
 async fn parameters_text(link: &mut Link, screen: &Screen) -> Result<Text, Failure> {
-    let kept = param::Kept::read(link, screen).await?;
+    let kept = param::DumpReport::read(link, screen).await?;
     let text = kept.text();
     let refused = kept.refused.into_iter().map(|key| LeftOut { key, why: "the controller refuses it".to_owned() });
     let unfit = kept.unfit.into_iter().map(|param::Unfit { key, value, why, .. }| LeftOut {
@@ -263,7 +263,7 @@ impl Content {
     }
 
     /// The work in words.
-    pub fn work(&self) -> Work {
+    pub fn work(&self) -> StoreTask {
         let (doing, noun, things) = match self {
             Self::Parameters(_) => ("storing parameters", "", ["a parameter", "parameters"]),
             Self::Points(_) => ("storing points", "point", ["a point", "points"]),
@@ -271,7 +271,7 @@ impl Content {
             Self::Palletizing(..) => ("storing records", "", ["a record", "records"]),
             Self::Easy(_) => ("storing easy programs", "program", ["a program", "programs"]),
         };
-        Work { doing, noun, things, resumes: false }
+        StoreTask { doing, noun, things, resumes: false }
     }
 
     /// The steps that it needs room for: up to the last that is no NOP.

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::command::backup::manifest::{LeftOut, State};
 use crate::command::backup::{self, Item};
-use crate::command::toyo::cells::Cells;
+use crate::command::toyo::eeprom::Cells;
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone};

@@ -18,11 +18,11 @@ use crate::command::backup::{
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::own_folder;
-use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
-use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
+use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask};
 use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{param, tasks};
 use crate::command::{Command, Context, Report};
@@ -66,14 +66,14 @@ struct Job {
     content: Content,
 }
 
-const MACHINE: Work = Work {
+const MACHINE: StoreTask = StoreTask {
     doing: "storing machine parameters",
     noun: "",
     things: ["a machine or special parameter", "machine and special parameters"],
     resumes: false,
 };
-const SPEED: Work =
-    Work { doing: "storing the override", noun: "", things: ["the override", "overrides"], resumes: false };
+const SPEED: StoreTask =
+    StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"], resumes: false };
 /// Values that a question shows one by one; more are counted by parts.
 const SHOWN: usize = 10;
 
@@ -337,7 +337,7 @@ async fn look_at_one(link: &mut Link, screen: &Screen, job: &Job, found: &Contro
 
 /// What is replaced, for a person to confirm: a few values one by one, many by parts.
 fn replacing(machine: &[Store], looked: &[Looked<'_>], speed: &[Store]) -> Change {
-    let of = |part: String, work: Work, stores: &[Store]| (part, work.things, stores::replaced(work, stores));
+    let of = |part: String, work: StoreTask, stores: &[Store]| (part, work.things, stores::replaced(work, stores));
     let mut parts = vec![of("machine".to_owned(), MACHINE, machine)];
     parts.extend(looked.iter().map(|Looked { job, stores, .. }| of(job.part.to_string(), job.content.work(), stores)));
     parts.push(of("override".to_owned(), SPEED, speed));
@@ -378,7 +378,7 @@ fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
         write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
         wanted: wanted.map_err(|error| wrong(&error))?,
     };
-    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: Found::NotAsked }))
+    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: CellState::NotAsked }))
 }
 
 /// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
@@ -450,11 +450,11 @@ async fn must_be_there(link: &mut Link, step: u16, text: &str) -> Result<(), Fai
 async fn store_all(
     link: &mut Link,
     screen: &Screen,
-    work: Work,
+    work: StoreTask,
     stores: &[Store],
 ) -> Result<(Cells, Vec<LeftOut>), Failure> {
     let fates = stores::store_all(link, screen, work, stores, 0).await?;
-    let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == Fate::NotThere);
+    let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == StoreResult::NotThere);
     let why = "the controller does not have it";
     let absent = absent.map(|(store, _)| LeftOut { key: store.key.clone(), why: why.to_owned() });
     Ok((stores::sum(&fates), absent.collect()))

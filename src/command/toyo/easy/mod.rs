@@ -7,7 +7,7 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::Cell;
+use super::eeprom::Cell;
 use super::items::Item;
 use super::link::wrong;
 use super::programs::{Copy, Kind, Select};

@@ -17,13 +17,13 @@ pub struct Progress {}
 
 impl Command for Progress {
     type Family = Toyo;
-    type Report = Far;
+    type Report = ProgressReport;
     const ID: &'static str = "toyo.easy.progress";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Far, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport, Failure> {
         let answer = context.link.ask(&Request::bare(table::Command::Resd)).await?;
         let number = |name| answer.number(name).unwrap_or_default();
-        Ok(Far {
+        Ok(ProgressReport {
             program: number("program"),
             step: number("step"),
             sequential_step: number("sequential"),
@@ -35,7 +35,7 @@ impl Command for Progress {
 
 /// Where an easy program is.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Far {
+pub struct ProgressReport {
     /// 1 to 8.
     program: i32,
     /// Step of the easy program that is executed.
@@ -48,7 +48,7 @@ pub struct Far {
     loops: i32,
 }
 
-impl Report for Far {
+impl Report for ProgressReport {
     fn view(&self) -> View {
         View::fields([
             ("program", self.program.into()),

@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Program, cell, field, read, sketch, values};
-use crate::command::toyo::cells::Cells;
+use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::number;
-use crate::command::toyo::stores::{self, Store, Work};
+use crate::command::toyo::stores::{self, Store, StoreTask};
 use crate::command::toyo::values::Changes;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -28,7 +28,7 @@ pub struct Set {
     values: Vec<String>,
 }
 
-const WORK: Work = Work {
+const WORK: StoreTask = StoreTask {
     doing: "storing an easy program",
     noun: "program",
     things: ["an easy program", "easy programs"],

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::{Group, SHEETS, VALUES, field, reads, sheet};
 use crate::command::frame::dry_run::unknown;
-use crate::command::toyo::cells::{Cells, THERE};
+use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{ask_all, number};
-use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
+use crate::command::toyo::stores::{self, Store, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{assignment, word};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -40,7 +40,7 @@ pub struct Set {
 /// What shall become of the values of a sheet.
 type Changes = Vec<Option<Value>>;
 
-const WORK: Work = Work { doing: "storing sheets", noun: "", things: ["a sheet", "sheets"], resumes: false };
+const WORK: StoreTask = StoreTask { doing: "storing sheets", noun: "", things: ["a sheet", "sheets"], resumes: false };
 
 impl Command for Set {
     type Family = Toyo;

@@ -7,7 +7,7 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cells::Cell;
+use super::eeprom::Cell;
 use super::items::in_a_word;
 use super::link::wrong;
 use super::numbers;

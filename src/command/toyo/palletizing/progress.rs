@@ -18,17 +18,17 @@ pub struct Progress {}
 
 impl Command for Progress {
     type Family = Toyo;
-    type Report = Far;
+    type Report = ProgressReport;
     const ID: &'static str = "toyo.palletizing.progress";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Far, Failure> {
-        Ok(Far::of(&context.link.ask(&Request::bare(table::Command::Rpld)).await?))
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<ProgressReport, Failure> {
+        Ok(ProgressReport::of(&context.link.ask(&Request::bare(table::Command::Rpld)).await?))
     }
 }
 
 /// Where a palletizing program is.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Far {
+pub struct ProgressReport {
     /// 1 to 16.
     program: i32,
     /// Which side is a matrix: `M-1`, `1-M` or `M-M`.
@@ -56,7 +56,7 @@ pub struct Pieces {
     pieces: i32,
 }
 
-impl Far {
+impl ProgressReport {
     fn of(record: &Record) -> Self {
         let number = |name| record.number(name).unwrap_or_default();
         let meaning = |name| {
@@ -77,7 +77,7 @@ impl Far {
     }
 }
 
-impl Report for Far {
+impl Report for ProgressReport {
     fn view(&self) -> View {
         let pieces = |index: usize| {
             let Pieces { done, pieces } = self.directions[index];

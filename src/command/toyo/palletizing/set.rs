@@ -7,12 +7,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
-use crate::command::toyo::cells::Cells;
 use crate::command::toyo::complete;
+use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::files;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::wrong;
-use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
+use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask};
 use crate::command::toyo::values::Changes;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -51,7 +51,8 @@ pub struct Set {
     from: Option<PathBuf>,
 }
 
-const WORK: Work = Work { doing: "storing records", noun: "", things: ["a record", "records"], resumes: false };
+const WORK: StoreTask =
+    StoreTask { doing: "storing records", noun: "", things: ["a record", "records"], resumes: false };
 
 impl Command for Set {
     type Family = Toyo;
@@ -64,13 +65,13 @@ impl Command for Set {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
         let records = match (&self.from, self.record) {
-            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, Found::NotAsked)).collect(),
+            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, CellState::NotAsked)).collect(),
             (None, Some(record)) => {
                 let changes = Changes::read(record.name, &record.layout, &self.values)?;
                 let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
                 let sketch = |values: &[Option<Value>]| super::sketch(self.program, record, values);
                 let (values, found) = changes.completed(link, &read, sketch).await?;
-                vec![((record, values), Found::from(found))]
+                vec![((record, values), CellState::from(found))]
             }
             (None, None) => Vec::new(),
         };
@@ -115,7 +116,7 @@ pub struct Stored {
 pub struct StoredRecord {
     #[serde(flatten)]
     entry: Entry,
-    result: Fate,
+    result: StoreResult,
 }
 
 impl Report for Stored {
@@ -123,7 +124,7 @@ impl Report for Stored {
         let mut table = Entry::table(&[]);
         table.columns.push("result");
         for StoredRecord { entry, result } in &self.records {
-            let result = if *result == Fate::Written { "written" } else { "unchanged" };
+            let result = if *result == StoreResult::Written { "written" } else { "unchanged" };
             let row = Entry::table(std::slice::from_ref(entry)).rows.concat();
             table.rows.push([row, vec![result.into()]].concat());
         }

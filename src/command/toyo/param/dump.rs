@@ -49,7 +49,7 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, several, .. } = context;
         let target = files::target(self.file.as_deref(), self.force, several)?;
-        let kept = Kept::read(link, screen).await?;
+        let kept = DumpReport::read(link, screen).await?;
         let now = Timestamp::now();
         let taken_at = now.round(jiff::Unit::Second).unwrap_or(now).to_string();
         let text = format!(
@@ -58,7 +58,7 @@ impl Command for Dump {
             kept.text(),
         );
         let file = target.map(|target| files::write(&target, &text)).transpose()?;
-        let Kept { settings, refused, unfit, failed } = kept;
+        let DumpReport { settings, refused, unfit, failed } = kept;
         let text = file.is_none().then_some(text);
         Ok(Dumped { saved: settings.len(), refused, unfit, failed, taken_at, file, text })
     }
@@ -75,7 +75,7 @@ fn keys() -> Vec<Key> {
 
 /// What was read.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct DumpReport {
     /// What may be written back.
     pub settings: Vec<Setting>,
     /// What the controller refuses, mostly because it does not have it.
@@ -108,7 +108,7 @@ pub struct Unfit {
     pub why: String,
 }
 
-impl Kept {
+impl DumpReport {
     /// Reads all parameters, and all tables but that of points. A dry run notes them and ends.
     pub async fn read(link: &mut Link, screen: &Screen) -> Result<Self, Failure> {
         let keys = keys();

@@ -8,7 +8,7 @@ mod machine;
 mod restore;
 mod set;
 
-pub use dump::{Failed, Kept, Unfit};
+pub use dump::{DumpReport, Failed, Unfit};
 pub use machine::consequence_of;
 pub use restore::store;
 

@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::dump::key_text;
 use super::machine;
 use super::set::POWER_CYCLE;
-use crate::command::toyo::cells::{Cell, Cells};
+use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::stores::{self, Fate, Found, Store, Work};
+use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask};
 use crate::command::toyo::{files, link};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -68,7 +68,8 @@ const ORDER: [(Part, Group); 5] = [
 /// What is written if nobody says which.
 const USUAL: [Part; 3] = [Part::Mode, Part::Axis, Part::Table];
 
-const WORK: Work = Work { doing: "storing parameters", noun: "", things: ["a parameter", "parameters"], resumes: true };
+const WORK: StoreTask =
+    StoreTask { doing: "storing parameters", noun: "", things: ["a parameter", "parameters"], resumes: true };
 
 impl Command for Restore {
     type Family = Toyo;
@@ -103,7 +104,7 @@ impl Command for Restore {
         stores::look(link, screen, wanted).await?;
         let (mut change, mut changed) = (stores::replacing(WORK, wanted, ""), Vec::new());
         for (setting, store) in chosen[left_out..].iter().zip(wanted) {
-            let found = if let Found::This(found) = &store.found { Some(found) } else { None };
+            let found = if let CellState::This(found) = &store.found { Some(found) } else { None };
             for warning in machine::warnings(setting.parameter, found, &setting.values) {
                 screen.note(&warning);
             }
@@ -118,7 +119,7 @@ impl Command for Restore {
         let fates = stores::store_all(link, screen, WORK, &stores, left_out).await?;
         let is_machine = |setting: &Setting| setting.parameter.group() == Group::Machine;
         let needs_power_cycle =
-            chosen.iter().zip(&fates).any(|(setting, fate)| is_machine(setting) && *fate == Fate::Written);
+            chosen.iter().zip(&fates).any(|(setting, fate)| is_machine(setting) && *fate == StoreResult::Written);
         let parameters = chosen.iter().zip(&stores).zip(&fates).map(|((setting, store), fate)| Row {
             key: store.key.clone(),
             name: setting.parameter.name,
@@ -174,11 +175,11 @@ pub struct Row {
     key: String,
     /// `soft-limit-plus`.
     name: &'static str,
-    result: Fate,
+    result: StoreResult,
 }
 
 impl Restored {
-    fn of(&self, fate: Fate) -> Vec<&str> {
+    fn of(&self, fate: StoreResult) -> Vec<&str> {
         self.parameters.iter().filter(|row| row.result == fate).map(|row| &row.key[..]).collect()
     }
 }
@@ -186,7 +187,7 @@ impl Restored {
 impl Report for Restored {
     fn view(&self) -> View {
         let mut lines = Vec::new();
-        for (words, fate) in [("written", Fate::Written), ("not on this controller", Fate::NotThere)] {
+        for (words, fate) in [("written", StoreResult::Written), ("not on this controller", StoreResult::NotThere)] {
             let keys = self.of(fate);
             if !keys.is_empty() {
                 lines.push(format!("{words}: {}", keys.join(", ")));
@@ -200,7 +201,7 @@ impl Report for Restored {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let absent = self.of(Fate::NotThere);
+        let absent = self.of(StoreResult::NotThere);
         if absent.is_empty() {
             return None;
         }

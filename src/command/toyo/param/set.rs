@@ -5,11 +5,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{machine, parse_name};
-use crate::command::toyo::cells::Cells;
 use crate::command::toyo::complete;
+use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::stores::{self, Store, Work, parameter_cell, parameter_sketch};
+use crate::command::toyo::stores::{self, Store, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{self, Changes, Shown};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -39,8 +39,8 @@ pub struct Set {
     values: Vec<String>,
 }
 
-const WORK: Work =
-    Work { doing: "storing a parameter", noun: "", things: ["a parameter", "parameters"], resumes: false };
+const WORK: StoreTask =
+    StoreTask { doing: "storing a parameter", noun: "", things: ["a parameter", "parameters"], resumes: false };
 
 impl Command for Set {
     type Family = Toyo;

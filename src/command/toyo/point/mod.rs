@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::items::{Answers, Item, read_each};
 use super::link::{self, Link};
 use super::numbers::Numbers;
-use super::position::{Place, heading};
+use super::position::{Coordinates, heading};
 use super::tasks;
 use crate::command::commands;
 use crate::controller::toyo::bulk::points::table;
@@ -45,12 +45,12 @@ pub struct Row {
     /// Its row, from 1.
     point: i32,
     #[serde(flatten)]
-    place: Place,
+    place: Coordinates,
 }
 
 impl Row {
     fn of(record: &Record) -> Self {
-        Self { point: record.number("row").unwrap_or_default(), place: Place::of(record) }
+        Self { point: record.number("row").unwrap_or_default(), place: Coordinates::of(record) }
     }
 
     /// With the columns of a CSV file that `point set --from` reads.
@@ -59,7 +59,7 @@ impl Row {
         let mut table = Table::new(&["point", x, y, z, r], "no points");
         let mm = |value: f64| Cell::number(format!("{value:.2}"));
         for row in rows {
-            row.show(&mut table, |Self { point, place: Place { x_mm, y_mm, z_mm, r_mm } }| {
+            row.show(&mut table, |Self { point, place: Coordinates { x_mm, y_mm, z_mm, r_mm } }| {
                 vec![(*point).into(), mm(*x_mm), mm(*y_mm), mm(*z_mm), mm(*r_mm)]
             });
         }

@@ -9,11 +9,11 @@ use serde::Serialize;
 use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
 use crate::command::frame::authority::Authority;
-use crate::command::toyo::cells::Cells;
+use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, runs};
-use crate::command::toyo::stores::{self, Fate, Store, Work, parameter_cell, parameter_sketch};
+use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{files, link, tasks};
 use crate::command::{Command, Context, Report};
@@ -54,7 +54,8 @@ pub struct Set {
     resume: Option<String>,
 }
 
-const WORK: Work = Work { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
+const WORK: StoreTask =
+    StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
     type Family = Toyo;
@@ -142,11 +143,11 @@ pub struct Stored {
 pub struct StoredRow {
     #[serde(flatten)]
     row: Row,
-    result: Fate,
+    result: StoreResult,
 }
 
 impl Stored {
-    fn new(task: u8, stores: &[Store], fates: &[Fate]) -> Self {
+    fn new(task: u8, stores: &[Store], fates: &[StoreResult]) -> Self {
         let rows =
             stores.iter().zip(fates).map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted), result: *fate });
         Self { task, points: rows.collect(), cells: stores::sum(fates) }
@@ -155,7 +156,7 @@ impl Stored {
 
 impl Report for Stored {
     fn view(&self) -> View {
-        let of = |fate: Fate| {
+        let of = |fate: StoreResult| {
             let rows = self.points.iter().filter(move |row| row.result == fate);
             runs(&rows.map(|row| row.row.point).collect::<Vec<_>>())
         };
@@ -163,9 +164,11 @@ impl Report for Stored {
         if let [StoredRow { row, .. }] = &self.points[..] {
             lines.push(format!("point {} of task {}: {} (mm)", row.point, self.task, row.place.in_a_line()));
         } else {
-            for (words, fate) in
-                [("written", Fate::Written), ("unchanged", Fate::Unchanged), ("left out", Fate::LeftOut)]
-            {
+            for (words, fate) in [
+                ("written", StoreResult::Written),
+                ("unchanged", StoreResult::Unchanged),
+                ("left out", StoreResult::LeftOut),
+            ] {
                 let rows = of(fate);
                 if !rows.is_empty() {
                     lines.push(format!("points of task {} {words}: {rows}", self.task));

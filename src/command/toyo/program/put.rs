@@ -14,7 +14,7 @@ use super::text;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::toyo::cells::{Cells, THERE};
+use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::stores::{Replaced, overwriting};

@@ -35,11 +35,11 @@ pub struct Search {
 
 impl Command for Search {
     type Family = Toyo;
-    type Report = Found;
+    type Report = TagReport;
     const ID: &'static str = "toyo.program.search";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Found, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<TagReport, Failure> {
         let link = context.link;
         if link.is_dry() {
             tasks::choose(link, self.task).await?;
@@ -59,7 +59,7 @@ impl Search {
         Request::of(table::Command::Sstg, [Value::Number(self.number.into())])
     }
 
-    async fn search(&self, link: &mut Link) -> Result<Found, Failure> {
+    async fn search(&self, link: &mut Link) -> Result<TagReport, Failure> {
         let task = tasks::choose(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {
@@ -84,20 +84,20 @@ impl Search {
             content.layout() == Op::Tag.row().layout && content.number("tag") == Some(self.number.into())
         });
         let step = answer.number("step").filter(|_| is_tag);
-        Ok(Found { task, tag: self.number, step })
+        Ok(TagReport { task, tag: self.number, step })
     }
 }
 
 /// A tag that is there.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Found {
+pub struct TagReport {
     task: u8,
     tag: u16,
     /// Its step; null if the controller did not go there (ambiguity C21).
     step: Option<i32>,
 }
 
-impl Report for Found {
+impl Report for TagReport {
     fn view(&self) -> View {
         let Self { task, tag, step } = self;
         View::text(match step {

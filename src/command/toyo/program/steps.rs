@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::command::toyo::cells::Cell;
+use crate::command::toyo::eeprom::Cell;
 use crate::command::toyo::items::{Answers, read_until};
 use crate::command::toyo::link::{Link, Refusal, misuse};
 use crate::controller::toyo::field::Value;

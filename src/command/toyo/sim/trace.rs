@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
-use crate::command::toyo::position::Place;
+use crate::command::toyo::position::Coordinates;
 use crate::command::toyo::status::ErrorCode;
 use crate::controller::toyo::errors;
 use crate::controller::toyo::program::Program;
@@ -65,7 +65,7 @@ pub struct Trace {
     /// Time of the program until then.
     elapsed_s: f64,
     /// Where the axes were then.
-    position: Place,
+    position: Coordinates,
     /// Output ports of which a bit was on then.
     outputs: Vec<Port>,
     /// The steps at which tasks were then; of one that has ended, none.
@@ -114,7 +114,7 @@ struct Row {
     /// The port of outputs that changed.
     port: Option<Port>,
     #[serde(flatten)]
-    place: Place,
+    place: Coordinates,
 }
 
 impl Recorder {
@@ -170,7 +170,7 @@ impl Recorder {
             end: end.name(),
             error: if let End::Error(code) = end { Some(ErrorCode::of(code)) } else { None },
             elapsed_s: at.as_secs_f64(),
-            position: Place::at(state.position),
+            position: Coordinates::at(state.position),
             outputs: ports.map(|((station, port), bits)| Port::new(*station, *port, *bits)).collect(),
             failure: end.failure(at, &steps),
             steps,
@@ -295,7 +295,7 @@ impl Port {
 
 impl Row {
     fn new(at: Duration, position: [f64; 4], event: &'static str, what: String) -> Self {
-        Self { time_s: at.as_secs_f64(), event, what, at: None, port: None, place: Place::at(position) }
+        Self { time_s: at.as_secs_f64(), event, what, at: None, port: None, place: Coordinates::at(position) }
     }
 }
 
@@ -317,7 +317,7 @@ impl Trace {
 }
 
 /// A column, and what stands there.
-type Axis = (&'static str, fn(&Place) -> f64);
+type Axis = (&'static str, fn(&Coordinates) -> f64);
 
 impl Report for Trace {
     /// Axes that stay at 0 have no column, nor has the task where there is one only.
@@ -325,7 +325,7 @@ impl Report for Trace {
         let axes: [Axis; 4] =
             [("x (mm)", |p| p.x_mm), ("y (mm)", |p| p.y_mm), ("z (mm)", |p| p.z_mm), ("r (mm)", |p| p.r_mm)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));
-        let moves = |of: fn(&Place) -> f64| self.trace.iter().any(|row| of(&row.place) != 0.0);
+        let moves = |of: fn(&Coordinates) -> f64| self.trace.iter().any(|row| of(&row.place) != 0.0);
         let axes: Vec<_> = axes.into_iter().filter(|(name, of)| *name == "x (mm)" || moves(*of)).collect();
         let mut columns = vec!["time (s)"];
         columns.extend(has_tasks.then_some("task"));

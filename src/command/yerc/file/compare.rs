@@ -30,11 +30,11 @@ pub struct Comparer<'a> {
 /// The lines of a job without `///DATE`, which a controller writes anew when it stores a job.
 #[derive(Debug, Default)]
 pub struct WithoutDate {
-    at: Place,
+    at: LineState,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum Place {
+enum LineState {
     /// Before a line.
     #[default]
     Start,
@@ -52,23 +52,23 @@ impl WithoutDate {
         let mut kept = Vec::with_capacity(piece.len());
         for &byte in piece {
             let begun = match self.at {
-                Place::Start => Some(0),
-                Place::Begun(count) => Some(count),
-                Place::Kept | Place::Dropped => None,
+                LineState::Start => Some(0),
+                LineState::Begun(count) => Some(count),
+                LineState::Kept | LineState::Dropped => None,
             };
             if let Some(count) = begun {
                 if DATE.get(count) == Some(&byte) {
-                    self.at = if count + 1 == DATE.len() { Place::Dropped } else { Place::Begun(count + 1) };
+                    self.at = if count + 1 == DATE.len() { LineState::Dropped } else { LineState::Begun(count + 1) };
                     continue;
                 }
                 kept.extend_from_slice(DATE.get(..count).unwrap_or_default());
-                self.at = Place::Kept;
+                self.at = LineState::Kept;
             }
-            if self.at == Place::Kept {
+            if self.at == LineState::Kept {
                 kept.push(byte);
             }
             if byte == b'\n' {
-                self.at = Place::Start;
+                self.at = LineState::Start;
             }
         }
         kept
@@ -77,8 +77,8 @@ impl WithoutDate {
     /// What stays at the end.
     pub fn rest(&mut self) -> &'static [u8] {
         match std::mem::take(&mut self.at) {
-            Place::Begun(count) => DATE.get(..count).unwrap_or_default(),
-            Place::Start | Place::Kept | Place::Dropped => &[],
+            LineState::Begun(count) => DATE.get(..count).unwrap_or_default(),
+            LineState::Start | LineState::Kept | LineState::Dropped => &[],
         }
     }
 

@@ -11,7 +11,7 @@ use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
 use crate::command::backup::text_diff;
-use crate::command::backup::text_diff::{Change, Ending, Line, MOST_TEXT, TextDifference};
+use crate::command::backup::text_diff::{Change, DiffLine, Ending, MOST_TEXT, TextDifference};
 use crate::command::frame::local::{local_name, own_folder};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
@@ -110,7 +110,7 @@ struct Hunk {
     /// First line in the local file, from 1; 0 if there is none.
     local_start: usize,
     local_lines: usize,
-    lines: Vec<Line>,
+    lines: Vec<DiffLine>,
 }
 
 impl From<text_diff::Hunk> for Hunk {

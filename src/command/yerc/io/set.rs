@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::parts::{Parts, plan_in_parts, read_in_parts};
-use super::super::writes::{Order, write_all};
+use super::super::writes::{WriteOrder, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::dry_run::{Reason, unknown};
@@ -172,7 +172,7 @@ fn plan(link: &mut Link, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Re
     Ok(unknown())
 }
 
-impl Order for WriteIoStep {
+impl WriteOrder for WriteIoStep {
     type Item = u16;
 
     fn items(&self) -> Vec<u16> {

@@ -9,7 +9,7 @@ use tokio::time::Instant;
 use super::question::{Question, moved_meanwhile};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::yerc::link::{Link, Refusal, Yerc};
-use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, Trouble, lost, plan_alarm};
+use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
 use crate::command::{Context, Report};
@@ -119,7 +119,11 @@ fn within(unit: Unit, one: i32, other: i32, others: i64, degrees: i64) -> bool {
 
 impl<Q: Query<Answer = ()>> Going<Q> {
     /// Has the motion confirmed, orders it and, unless told otherwise, waits for its end.
-    pub(super) async fn run(self, context: Context<'_, Yerc>, question: &Question<'_>) -> Result<Moved, Failure> {
+    pub(super) async fn run(
+        self,
+        context: Context<'_, Yerc>,
+        question: &Question<'_>,
+    ) -> Result<MotionReport, Failure> {
         let Context { link, screen, authority, .. } = context;
         let Self { order, group, mut goal, unnamed, no_wait } = self;
         let coordinates = goal.coordinates();
@@ -148,7 +152,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             plan_looks(link, group, coordinates)?;
         }
         let mut moved =
-            Moved { accepted: true, group: group.to_string(), at_target: None, reached: None, elapsed_ms: None };
+            MotionReport { accepted: true, group: group.to_string(), at_target: None, reached: None, elapsed_ms: None };
         let Some(start) = start else { return Ok(moved) };
 
         let done = format!("the motion of {group} was accepted");
@@ -291,7 +295,7 @@ enum Look {
     /// It has ended.
     Ended,
     /// Something stopped it.
-    Stopped(Trouble),
+    Stopped(StandstillCause),
     /// Nothing moved in time.
     NotBegun,
 }
@@ -309,7 +313,7 @@ impl Watch {
         let is_still = !status.running() && self.looked && stands(&self.last, &here);
         self.looked = true;
         self.last = here;
-        if let Some(trouble) = Trouble::of(status) {
+        if let Some(trouble) = StandstillCause::of(status) {
             return Look::Stopped(trouble);
         }
         match (is_still, self.seen || at_target == Some(true)) {
@@ -327,7 +331,7 @@ fn stands(one: &Position, other: &Position) -> bool {
 
 /// Result of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Moved {
+pub struct MotionReport {
     /// The controller took the order.
     accepted: bool,
     /// Who moved.
@@ -340,7 +344,7 @@ pub struct Moved {
     elapsed_ms: Option<u64>,
 }
 
-impl Report for Moved {
+impl Report for MotionReport {
     fn view(&self) -> View {
         let motion = match (&self.reached, self.at_target) {
             (None, _) => Cell::from("accepted"),
@@ -441,9 +445,9 @@ mod tests {
     fn alarm_and_hold_end_the_waiting() {
         let mut watch = Watch::new(at(HOME));
         let alarmed = status(true).with(StatusBit::Alarm, true);
-        assert_eq!(watch.look(after(0), alarmed, at(HOME), None), Look::Stopped(Trouble::Alarm));
+        assert_eq!(watch.look(after(0), alarmed, at(HOME), None), Look::Stopped(StandstillCause::Alarm));
         let held = status(false).with(StatusBit::HoldPendant, true);
-        assert_eq!(watch.look(after(100), held, at(HOME), None), Look::Stopped(Trouble::Hold("pendant")));
+        assert_eq!(watch.look(after(100), held, at(HOME), None), Look::Stopped(StandstillCause::Hold("pendant")));
     }
 
     #[test]

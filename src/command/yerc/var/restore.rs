@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::super::orders::usage;
-use super::super::writes::{Order, write_all};
+use super::super::writes::{WriteOrder, write_all};
 use super::dump::{FORMAT, VERSION};
 use super::entry::{Entry, Reading, is_undefined};
 use super::read::{Answers, read_whatever};
@@ -199,7 +199,7 @@ impl Dump {
     }
 }
 
-impl Order for WriteStep {
+impl WriteOrder for WriteStep {
     type Item = Reference;
 
     fn items(&self) -> Vec<Reference> {

@@ -10,7 +10,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::super::orders::usage;
-use super::super::writes::{Order, write_all};
+use super::super::writes::{WriteOrder, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
@@ -283,7 +283,7 @@ impl Query for Change {
     }
 }
 
-impl Order for Change {
+impl WriteOrder for Change {
     type Item = Reference;
 
     fn items(&self) -> Vec<Reference> {

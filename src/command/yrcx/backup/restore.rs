@@ -49,7 +49,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     }
     check_origin(link, &manifest.controller, *force).await?;
     let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
-    let mut found = Found::default();
+    let mut found = Comparison::default();
     let total = jobs.len();
     for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
         screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
@@ -106,7 +106,7 @@ fn pending(part: Part) -> Item {
 
 /// What the controller has, beside what the backup has.
 #[derive(Default)]
-struct Found {
+struct Comparison {
     /// Of each part, which stores are to be written.
     differ: Vec<Vec<usize>>,
     /// What is overwritten: which, old and new.
@@ -115,7 +115,7 @@ struct Found {
     added: usize,
 }
 
-impl Found {
+impl Comparison {
     /// Reads what a part has a value for.
     async fn compare(
         &mut self,
@@ -166,7 +166,7 @@ async fn write_all(
     link: &mut Link,
     screen: &Screen,
     jobs: &[Job],
-    found: &Found,
+    found: &Comparison,
     items: &mut [Item],
 ) -> Result<(), Failure> {
     let total = jobs.len();

@@ -33,14 +33,14 @@ by_number! {
     /// Shifts.
     Shifts,
     /// Which shift.
-    shift of Way: |values| Way { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() },
+    shift of ShiftReport: |values| ShiftReport { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() },
     columns ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"],
     cells |way| way.shift_mm.map(mm);
 }
 
 /// A shift.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Way {
+struct ShiftReport {
     /// Of axes 1 to 4; degrees of what turns.
     shift_mm: [f64; 4],
 }

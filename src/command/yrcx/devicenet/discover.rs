@@ -8,7 +8,7 @@ use futures_util::future::LocalBoxFuture;
 
 use super::board::{MAKER, Node};
 use super::connect::adapter;
-use crate::command::yrcx::fieldbus::{self, Found, Scope, bus_of, fields};
+use crate::command::yrcx::fieldbus::{self, Device, Scope, bus_of, fields};
 use crate::command::yrcx::link_error::not_open;
 use crate::failure::Failure;
 use crate::settings::target::Bus;
@@ -41,7 +41,7 @@ impl fieldbus::Search for Search {
         if self.adapters.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
         async move {
             let mut all = Vec::new();
             for (url, bus) in &self.adapters {
@@ -59,9 +59,9 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_node(url: &str, node: &Node) -> Result<Found, Failure> {
+fn found_node(url: &str, node: &Node) -> Result<Device, Failure> {
     let sign = if url.contains('?') { '&' } else { '?' };
-    Ok(Found {
+    Ok(Device {
         address: format!("{url} MAC {}", node.mac),
         target: format!("{url}{sign}mac={}", node.mac),
         is_yrcx: node.vendor == MAKER,

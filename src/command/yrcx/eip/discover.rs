@@ -8,7 +8,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::{Identity, MAKER};
-use crate::command::yrcx::fieldbus::{self, Found, Scope, fields};
+use crate::command::yrcx::fieldbus::{self, Device, Scope, fields};
 use crate::failure::{Failure, Kind, plain};
 use crate::settings::target::eip::SCHEME;
 use crate::transport::eip::PORT;
@@ -44,7 +44,7 @@ impl fieldbus::Search for Search {
         }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
         async move {
             let mut targets = [&self.targets[..], &self.broadcast].concat();
             if targets.is_empty() {
@@ -61,7 +61,7 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_board(found: discovery::Found) -> Result<Found, Failure> {
+fn found_board(found: discovery::Found) -> Result<Device, Failure> {
     let (host, port) = (found.address.ip(), found.address.port());
     let scheme = SCHEME.name;
     let target = if port == PORT { format!("{scheme}://{host}") } else { format!("{scheme}://{host}:{port}") };
@@ -71,7 +71,7 @@ fn found_board(found: discovery::Found) -> Result<Found, Failure> {
     let owner = if *owned { ", owned by a master" } else { "" };
     let device = format!("{name}, vendor {vendor}, product {product}, revision {revision}, {serial}{owner}");
     let address = SocketAddr::from(found.address).to_string();
-    Ok(Found { address, target, is_yrcx, device, identity: fields(&identity)? })
+    Ok(Device { address, target, is_yrcx, device, identity: fields(&identity)? })
 }
 
 #[cfg(test)]

@@ -22,11 +22,11 @@ pub struct Probe {}
 
 impl Command for Probe {
     type Family = Yrcx;
-    type Report = Found;
+    type Report = ProbeReport;
     const ID: &'static str = "yrcx.eip.probe";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Found, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
         context.link.no_unit(NO_UNIT)?;
         context
             .link
@@ -34,20 +34,20 @@ impl Command for Probe {
         let board = board_of(context.link)?;
         let identity = board.identity().await?;
         let probed = board.probe(identity.as_ref()).await?;
-        Ok(Found { identity, probed })
+        Ok(ProbeReport { identity, probed })
     }
 }
 
 /// What a board has.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Found {
+pub struct ProbeReport {
     /// Null where it does not say.
     identity: Option<board::Identity>,
     #[serde(flatten)]
     probed: Probed,
 }
 
-impl Report for Found {
+impl Report for ProbeReport {
     fn view(&self) -> View {
         let mut view = match &self.identity {
             Some(identity) => View::default().and(Section::Fields(identity.fields())),

@@ -153,7 +153,7 @@ impl Command for Line {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Lines, Failure> {
         let of = |values: &Values, key| {
-            let line = values.int(key).filter(|line| *line != 0).map(program::Line::of);
+            let line = values.int(key).filter(|line| *line != 0).map(program::ProgramLine::of);
             TaskLine { line: line.map(|line| line.line), in_common: line.is_some_and(|line| line.in_common) }
         };
         let mut tasks = self.chosen.read(context, table::Command::TaskLines, of).await?;
@@ -180,7 +180,7 @@ struct TaskLine {
 impl Report for Lines {
     fn view(&self) -> View {
         let cells = |TaskLine { line, in_common }: &TaskLine| {
-            let told = line.map(|line| program::Line { line, in_common: *in_common }.told());
+            let told = line.map(|line| program::ProgramLine { line, in_common: *in_common }.told());
             [Cell::number(told.unwrap_or_else(|| "-".to_owned()))]
         };
         View::table(self.tasks.table(["task"], ["line"], "no tasks", |which| [which.task.into()], cells))

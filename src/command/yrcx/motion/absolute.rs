@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{Moved, go};
+use super::{MotionReport, go};
 use crate::command::yrcx::arguments::{Direction, Which};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::overwrite::confirmation;
@@ -49,7 +49,7 @@ impl AbsReset {
 
 impl Command for AbsReset {
     type Family = Yrcx;
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.abs-reset";
 
     fn risk(&self) -> Risk {
@@ -68,19 +68,19 @@ impl Command for AbsReset {
         confirmation(self.command())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
             let order = draft.build()?;
             let done = context.link.ask(&order).await?;
             let words = format!("reset the absolute position of {}", self.axis());
-            return Ok(Moved::new(words, &order, Some(&done), None));
+            return Ok(MotionReport::new(words, &order, Some(&done), None));
         };
         let order = draft.with(Key::Direction, direction.value()).build()?;
         let way = format!("{} {} to a reset position", self.axis(), direction.told());
         let done = go(context.link, context.screen, &order, self.no_wait, &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };
-        Ok(Moved::new(format!("{verb} {way}"), &order, done.as_ref(), None))
+        Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved, Target};
+use super::{Motion, MotionReport, Target};
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -84,7 +84,7 @@ pub struct Drive {
 }
 
 impl Motion for Drive {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.drive";
 
     fn command(&self) -> Command {
@@ -112,7 +112,7 @@ impl Motion for Drive {
         Target::one(&self.axis, to.as_ref(), to_pulse.as_ref())
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }
@@ -134,7 +134,7 @@ pub struct Drivei {
 }
 
 impl Motion for Drivei {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.drivei";
 
     fn command(&self) -> Command {
@@ -169,7 +169,7 @@ impl Motion for Drivei {
         Target::one(&self.axis, by.as_ref(), by_pulse.as_ref())
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

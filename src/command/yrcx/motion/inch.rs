@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{Motion, Moved};
+use super::{Motion, MotionReport};
 use crate::command::yrcx::arguments::{Direction, System};
 use crate::command::yrcx::position::Unit;
 
@@ -26,7 +26,7 @@ pub struct Inch {
 }
 
 impl Motion for Inch {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.inch";
     const VERB: [&'static str; 3] = ["inch", "inching", "inched"];
 
@@ -58,7 +58,7 @@ impl Motion for Inch {
         Some(self.system.unit())
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

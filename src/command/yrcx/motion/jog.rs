@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::{Live, Moved};
+use super::{Live, MotionReport};
 use crate::command::yrcx::arguments::{Direction, Ending, System, Which};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::position::Unit;
@@ -56,7 +56,7 @@ impl Jog {
 
 impl Command for Jog {
     type Family = Yrcx;
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.jog";
 
     fn risk(&self) -> Risk {
@@ -75,7 +75,7 @@ impl Command for Jog {
         self.within.is_none()
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
@@ -84,7 +84,7 @@ impl Command for Jog {
         let live = Live::new(link, context.screen, &format!("jogging {object}"));
         let done = link.jog(&order, self.within).await;
         live.end();
-        Ok(Moved::new(format!("jogged {object}"), &order, Some(&done?), Some(unit)))
+        Ok(MotionReport::new(format!("jogged {object}"), &order, Some(&done?), Some(unit)))
     }
 }
 

@@ -87,7 +87,7 @@ pub trait Motion: Args {
     }
 
     /// What came of it; `values` are those of the answer, if it has ended.
-    fn report(&self, moved: Moved, values: Option<&Values>) -> Self::Report;
+    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Self::Report;
 }
 
 /// A motion as a command.
@@ -139,8 +139,8 @@ impl<M: Motion> Command for Moving<M> {
         let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
         let has_done = format!("{moved} {object}");
         let words = if done.is_some() { has_done } else { doing };
-        let report = Moved::new(words, &order, done.as_ref(), self.unit());
-        let report = Moved { targets: self.motion.targets(), ..report };
+        let report = MotionReport::new(words, &order, done.as_ref(), self.unit());
+        let report = MotionReport { targets: self.motion.targets(), ..report };
         Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
     }
 }
@@ -218,7 +218,7 @@ impl Live {
 
 /// What came of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Moved {
+pub struct MotionReport {
     /// What kind of motion: `move-ptp`.
     motion: &'static str,
     /// Which robot; null where it is all.
@@ -280,7 +280,7 @@ impl Target {
     }
 }
 
-impl Moved {
+impl MotionReport {
     fn new(words: String, order: &Order, answer: Option<&Done>, unit: Option<Unit>) -> Self {
         let values = order.values();
         let field = |key| values.int(key);
@@ -312,7 +312,7 @@ impl Moved {
     }
 }
 
-impl Report for Moved {
+impl Report for MotionReport {
     fn view(&self) -> View {
         self.view_with("")
     }

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved, Target};
+use super::{Motion, MotionReport, Target};
 use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
@@ -47,7 +47,7 @@ pub struct Move {
 }
 
 impl Motion for Move {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.move";
 
     fn command(&self) -> Command {
@@ -111,7 +111,7 @@ impl Motion for Move {
         Target::of(&self.axes, &self.to, &self.to_pulse)
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

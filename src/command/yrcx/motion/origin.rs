@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{Moved, go};
+use super::{MotionReport, go};
 use crate::command::yrcx::arguments::Which;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
@@ -75,7 +75,7 @@ impl Origin {
 
 impl Command for Origin {
     type Family = Yrcx;
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.origin";
 
     fn risk(&self) -> Risk {
@@ -86,14 +86,14 @@ impl Command for Origin {
         format!("return {} to origin", self.told())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Moved, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).build()?;
         let doing = format!("returning {} to origin", self.told());
         let done = go(context.link, context.screen, &order, self.no_wait, &doing).await?;
         let has_done = format!("returned {} to origin", self.told());
-        Ok(Moved::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
+        Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }
 }
 

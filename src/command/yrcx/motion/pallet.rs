@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{Motion, Moved};
+use super::{Motion, MotionReport};
 use crate::command::yrcx::arguments::{Arch, Pace, Ramps};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -27,7 +27,7 @@ pub struct Pallet {
 }
 
 impl Motion for Pallet {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.pallet";
 
     fn command(&self) -> Command {
@@ -47,7 +47,7 @@ impl Motion for Pallet {
         format!("all axes, {}", self.pace.told())
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::drive::Destination;
-use super::{Motion, Moved};
+use super::{Motion, MotionReport};
 use crate::command::Report;
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
@@ -74,7 +74,7 @@ impl Motion for Push {
         format!("{}{}{}", self.pace.told(), force.unwrap_or_default(), time.unwrap_or_default())
     }
 
-    fn report(&self, moved: Moved, values: Option<&Values>) -> Pushed {
+    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Pushed {
         let push_result = values.and_then(|values| values.int(Key::PushResult));
         Pushed { moved, push_completed: push_result.map(|result| result == 1), push_result }
     }
@@ -84,7 +84,7 @@ impl Motion for Push {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Pushed {
     #[serde(flatten)]
-    moved: Moved,
+    moved: MotionReport,
     /// Whether it pushed until its time was over; null unless it has ended.
     push_completed: Option<bool>,
     /// The same as it travels: 1, or 0.

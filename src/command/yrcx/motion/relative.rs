@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, Moved, Target};
+use super::{Motion, MotionReport, Target};
 use crate::command::yrcx::arguments::{Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
@@ -53,7 +53,7 @@ pub struct Movei {
 }
 
 impl Motion for Movei {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.movei";
 
     fn command(&self) -> Command {
@@ -92,7 +92,7 @@ impl Motion for Movei {
         Target::of(&self.axes, &self.by, &self.by_pulse)
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

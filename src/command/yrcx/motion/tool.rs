@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{Motion, Moved};
+use super::{Motion, MotionReport};
 use crate::command::yrcx::arguments::{Axes, Pace, Ramps};
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -27,7 +27,7 @@ pub struct Movet {
 }
 
 impl Motion for Movet {
-    type Report = Moved;
+    type Report = MotionReport;
     const ID: &'static str = "yrcx.movet";
 
     fn command(&self) -> Command {
@@ -49,7 +49,7 @@ impl Motion for Movet {
         format!("{}, {}", self.axes.told(&[]), self.pace.told())
     }
 
-    fn report(&self, moved: Moved, _values: Option<&Values>) -> Moved {
+    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
         moved
     }
 }

@@ -7,7 +7,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::{Board, Station};
-use crate::command::yrcx::fieldbus::{self, Found, Scope, bus_of, fields};
+use crate::command::yrcx::fieldbus::{self, Device, Scope, bus_of, fields};
 use crate::failure::Failure;
 use crate::settings::target::profibus::SCHEME;
 use crate::transport::image::tap::Tap;
@@ -26,7 +26,7 @@ impl fieldbus::Search for Search {
         if self.profibus.is_some() { Scope::Devices } else { Scope::Nothing }
     }
 
-    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+    fn search(&self, _wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
         async move {
             let Some(line) = &self.profibus else { return Ok(Vec::new()) };
             let url = |station: u8| {
@@ -41,10 +41,10 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found(station: &Station, line: &str, target: String) -> Result<Found, Failure> {
+fn found(station: &Station, line: &str, target: String) -> Result<Device, Failure> {
     let ident = station.ident.as_deref().unwrap_or("-");
     let device = format!("{}, ident {ident}, {}", station.kind, station.diagnosis);
-    Ok(Found {
+    Ok(Device {
         address: format!("station {} on {line}", station.station),
         target,
         // No number tells the maker; the size of the images is all there is.

@@ -7,7 +7,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::station::Station;
-use crate::command::yrcx::fieldbus::{self, Found, Scope, fields};
+use crate::command::yrcx::fieldbus::{self, Device, Scope, fields};
 use crate::command::yrcx::link_error::not_open;
 use crate::failure::Failure;
 use crate::settings::target::profinet::SCHEME;
@@ -30,7 +30,7 @@ impl fieldbus::Search for Search {
         if self.interfaces.is_empty() { Scope::Nothing } else { Scope::Network }
     }
 
-    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Found>, Failure>> {
+    fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
         async move {
             let mut all = Vec::new();
             for name in &self.interfaces {
@@ -52,12 +52,12 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_station(station: &Station, interface: &str) -> Result<Found, Failure> {
+fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
     // A name that two have leads nowhere.
     let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has its name too"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };
     let name = if station.station.is_empty() { "no name" } else { &station.station };
-    Ok(Found {
+    Ok(Device {
         address: station.ip.clone().unwrap_or_else(|| station.mac.clone()),
         target: format!("{}://{place}@{interface}", SCHEME.name),
         // The number of the maker is not known: what the station is called is all there is.

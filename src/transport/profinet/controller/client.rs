@@ -7,7 +7,7 @@ use super::super::Now;
 use super::super::error::ProfinetError;
 use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, Reply, flag};
 use super::super::wire::status::Status;
-use super::super::wire::{Order, Uuid, WireError};
+use super::super::wire::{ByteOrder, Uuid, WireError};
 
 /// How long to wait for an answer.
 pub const PATIENCE: Duration = Duration::from_secs(2);
@@ -80,11 +80,11 @@ impl Client {
 
     /// Calls; what was asked before is forgotten. The same bytes go out `tries` times at most.
     pub fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) -> Vec<u8> {
-        let body = Call { room: rpc::ROOM, blocks }.emit(Order::Big);
+        let body = Call { room: rpc::ROOM, blocks }.emit(ByteOrder::Big);
         let header = Header {
             kind: Kind::REQUEST,
             flags: flag::IDEMPOTENT,
-            order: Order::Big,
+            order: ByteOrder::Big,
             object: self.object,
             interface: rpc::DEVICE,
             activity: self.activity,
@@ -141,7 +141,7 @@ impl Client {
             Kind::FAULT | Kind::REJECT => {
                 let bytes = datagram.body.first_chunk::<4>().copied().unwrap_or_default();
                 let status =
-                    if header.order == Order::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) };
+                    if header.order == ByteOrder::Big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) };
                 self.pending = None;
                 Some(Step::Done(Outcome::Rejected(status)))
             }
@@ -162,14 +162,14 @@ impl Client {
         if pending.fragments.len() <= usize::from(last) {
             return None;
         }
-        let (order, body) = pending.fragments.values().fold((Order::Big, Vec::new()), |(_, mut all), fragment| {
+        let (order, body) = pending.fragments.values().fold((ByteOrder::Big, Vec::new()), |(_, mut all), fragment| {
             all.extend_from_slice(fragment.get(1..).unwrap_or_default());
-            (if fragment.first() == Some(&1) { Order::Little } else { Order::Big }, all)
+            (if fragment.first() == Some(&1) { ByteOrder::Little } else { ByteOrder::Big }, all)
         });
         Some(self.answered(&body, order))
     }
 
-    fn answered(&mut self, body: &[u8], order: Order) -> Step {
+    fn answered(&mut self, body: &[u8], order: ByteOrder) -> Step {
         self.pending = None;
         Step::Done(match Reply::parse(body, order) {
             Ok(reply) => Outcome::Answer(reply.status, reply.blocks.to_vec()),
@@ -187,7 +187,7 @@ impl Pending {
             return None;
         }
         // Its order stands before it: all fragments of an answer have the same.
-        let mut bytes = vec![u8::from(header.order == Order::Little)];
+        let mut bytes = vec![u8::from(header.order == ByteOrder::Little)];
         bytes.extend_from_slice(datagram.body);
         self.fragments.insert(header.fragment, bytes);
         if header.flags & flag::LAST_FRAGMENT != 0 {
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn answers_of_earlier_calls_and_of_others_are_nothing() {
         let mut client = client();
-        let body = Reply { status: 0, room: 8, blocks: &[9] }.emit(Order::Big);
+        let body = Reply { status: 0, room: 8, blocks: &[9] }.emit(ByteOrder::Big);
         let old = client.call(Now::ZERO, operation::READ, &[], 1);
         let new = client.call(Now::ZERO, operation::READ, &[], 1);
         let late = answer(&old, 0, 0, &body);
@@ -249,7 +249,7 @@ mod tests {
     fn fragments_are_acknowledged_and_put_together_in_any_order() {
         let mut client = client();
         let call = client.call(Now::ZERO, operation::READ, &[], 1);
-        let body = Reply { status: 0, room: 4096, blocks: &(0..=255).collect::<Vec<u8>>() }.emit(Order::Big);
+        let body = Reply { status: 0, room: 4096, blocks: &(0..=255).collect::<Vec<u8>>() }.emit(ByteOrder::Big);
         let parts: Vec<_> = body.chunks(100).collect();
         let send = |at: usize| {
             let last = if at == parts.len() - 1 { flag::LAST_FRAGMENT } else { 0 };

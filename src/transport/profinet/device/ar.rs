@@ -12,7 +12,7 @@ use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
 use super::super::wire::frame::TAG_HIGH;
 use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, PORT, operation};
 use super::super::wire::status::Status;
-use super::super::wire::{Mac, Order, Uuid, block};
+use super::super::wire::{ByteOrder, Mac, Uuid, block};
 use super::alarms::{Alarms, Heard};
 use super::{Action, Application, Device, Event, Fault};
 
@@ -236,7 +236,7 @@ impl<A: Application> Device<A> {
         let header = Header {
             kind: Kind::REQUEST,
             flags: rpc::flag::IDEMPOTENT,
-            order: Order::Big,
+            order: ByteOrder::Big,
             object: ar.object,
             interface: rpc::CONTROLLER,
             activity: ar.activity,
@@ -248,7 +248,7 @@ impl<A: Application> Device<A> {
         let mut blocks = Control::call(BlockType::APPLICATION_READY, ar.uuid, ar.session_key).emit();
         let to = SocketAddrV4::new(*ar.peer.ip(), PORT);
         blocks.extend(self.difference().iter().flat_map(super::super::wire::connect::Response::emit));
-        let body = Call { room: 0x53C, blocks: &blocks }.emit(Order::Big);
+        let body = Call { room: 0x53C, blocks: &blocks }.emit(ByteOrder::Big);
         self.actions.push_back(Action::Datagram(to, Datagram { header, body: &body }.emit()));
     }
 

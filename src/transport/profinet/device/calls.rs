@@ -10,7 +10,7 @@ use super::super::wire::frame::id;
 use super::super::wire::record::{self, RealModule, Record, index};
 use super::super::wire::rpc::{self, Call, Datagram, Header, Reply, operation};
 use super::super::wire::status::Status;
-use super::super::wire::{Order, Uuid};
+use super::super::wire::{ByteOrder, Uuid};
 use super::alarms::Alarms;
 use super::ar::{Ar, Stage};
 use super::{Action, Application, Device, Event, Fault, MOST_ANSWERS, checks};
@@ -71,13 +71,13 @@ impl<A: Application> Device<A> {
             Err(status) => (status.0, &[][..]),
         };
         // In its own order, whatever the caller's is.
-        let mut body = Reply { status, room: call.room, blocks }.emit(Order::Big);
+        let mut body = Reply { status, room: call.room, blocks }.emit(ByteOrder::Big);
         if self.fault == Some(Fault::Garbage) {
             for byte in &mut body {
                 *byte = !*byte;
             }
         }
-        let header = Header { order: Order::Big, ..header.answer() };
+        let header = Header { order: ByteOrder::Big, ..header.answer() };
         let bytes = Datagram { header, body: &body }.emit();
         if self.answers.len() == MOST_ANSWERS {
             self.answers.pop_front();

@@ -8,7 +8,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::bytes::Reader;
-pub use crate::bytes::{Order, Problem, WireError};
+pub use crate::bytes::{ByteOrder, Problem, WireError};
 
 pub mod alarm;
 pub mod arp;
@@ -124,7 +124,7 @@ impl Reader<'_> {
 
     fn uuid(&mut self, field: &'static str) -> Result<Uuid, WireError> {
         let uuid = Uuid(self.array(field)?);
-        Ok(if self.order == Order::Big { uuid } else { uuid.swapped() })
+        Ok(if self.order == ByteOrder::Big { uuid } else { uuid.swapped() })
     }
 }
 
@@ -132,7 +132,7 @@ impl Reader<'_> {
 #[derive(Debug, Default)]
 struct Writer {
     bytes: Vec<u8>,
-    order: Order,
+    order: ByteOrder,
 }
 
 impl Writer {
@@ -141,15 +141,15 @@ impl Writer {
     }
 
     fn u16(&mut self, value: u16) {
-        self.bytes.extend(if self.order == Order::Big { value.to_be_bytes() } else { value.to_le_bytes() });
+        self.bytes.extend(if self.order == ByteOrder::Big { value.to_be_bytes() } else { value.to_le_bytes() });
     }
 
     fn u32(&mut self, value: u32) {
-        self.bytes.extend(if self.order == Order::Big { value.to_be_bytes() } else { value.to_le_bytes() });
+        self.bytes.extend(if self.order == ByteOrder::Big { value.to_be_bytes() } else { value.to_le_bytes() });
     }
 
     fn uuid(&mut self, uuid: Uuid) {
-        self.bytes.extend(if self.order == Order::Big { uuid.0 } else { uuid.swapped().0 });
+        self.bytes.extend(if self.order == ByteOrder::Big { uuid.0 } else { uuid.swapped().0 });
     }
 
     fn put(&mut self, bytes: &[u8]) {

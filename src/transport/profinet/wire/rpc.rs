@@ -1,6 +1,6 @@
 //! Connectionless RPC (DCE 1.1, version 4) on UDP port 34964, and the numbers of NDR before the blocks.
 
-use super::{Order, Reader, Uuid, WireError, Writer, count16, count32};
+use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
 
 /// UDP port of both ends.
 pub const PORT: u16 = 34964;
@@ -91,7 +91,7 @@ pub struct Header {
     /// See [`flag`].
     pub flags: u8,
     /// The order of bytes of header and NDR.
-    pub order: Order,
+    pub order: ByteOrder,
     /// Whom it is about.
     pub object: Uuid,
     /// Which set of operations.
@@ -132,8 +132,8 @@ impl<'a> Datagram<'a> {
         let flags = reader.u8("flags")?;
         reader.u8("flags 2")?;
         let order = match reader.u8("data representation")? >> 4 {
-            0 => Order::Big,
-            1 => Order::Little,
+            0 => ByteOrder::Big,
+            1 => ByteOrder::Little,
             other => return Err(reader.wrong("data representation", 1, other)),
         };
         reader.take(3, "data representation")?;
@@ -158,7 +158,7 @@ impl<'a> Datagram<'a> {
     pub fn emit(&self) -> Vec<u8> {
         let header = &self.header;
         let mut out = Writer { bytes: Vec::with_capacity(HEADER_LEN + self.body.len()), order: header.order };
-        let representation = if header.order == Order::Big { 0x00 } else { 0x10 };
+        let representation = if header.order == ByteOrder::Big { 0x00 } else { 0x10 };
         out.put(&[4, header.kind.0, header.flags, 0, representation, 0, 0, 0]);
         out.uuid(header.object);
         out.uuid(header.interface);
@@ -203,13 +203,13 @@ impl<'a> Call<'a> {
     ///
     /// # Errors
     /// When lengths are longer than what is there.
-    pub fn parse(body: &'a [u8], order: Order) -> Result<Self, WireError> {
+    pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let (room, blocks) = read_ndr(body, order)?;
         Ok(Self { room, blocks })
     }
 
     /// The bytes.
-    pub fn emit(&self, order: Order) -> Vec<u8> {
+    pub fn emit(&self, order: ByteOrder) -> Vec<u8> {
         write_ndr(self.room, self.room, self.blocks, order)
     }
 }
@@ -230,7 +230,7 @@ impl<'a> Reply<'a> {
     ///
     /// # Errors
     /// When lengths are longer than what is there.
-    pub fn parse(body: &'a [u8], order: Order) -> Result<Self, WireError> {
+    pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let mut reader = Reader::big(body);
         reader.order = order;
         let status = reader.u32("PNIOStatus")?;
@@ -245,12 +245,12 @@ impl<'a> Reply<'a> {
     }
 
     /// The bytes.
-    pub fn emit(&self, order: Order) -> Vec<u8> {
+    pub fn emit(&self, order: ByteOrder) -> Vec<u8> {
         write_ndr(self.status, self.room, self.blocks, order)
     }
 }
 
-fn read_ndr(body: &[u8], order: Order) -> Result<(u32, &[u8]), WireError> {
+fn read_ndr(body: &[u8], order: ByteOrder) -> Result<(u32, &[u8]), WireError> {
     let mut reader = Reader::big(body);
     reader.order = order;
     let first = reader.u32("ArgsMaximum")?;
@@ -265,7 +265,7 @@ fn read_ndr(body: &[u8], order: Order) -> Result<(u32, &[u8]), WireError> {
     Ok((first, blocks))
 }
 
-fn write_ndr(first: u32, room: u32, blocks: &[u8], order: Order) -> Vec<u8> {
+fn write_ndr(first: u32, room: u32, blocks: &[u8], order: ByteOrder) -> Vec<u8> {
     let mut out = Writer { bytes: Vec::with_capacity(NDR_LEN + blocks.len()), order };
     let length = count32(blocks.len());
     for number in [first, length, room, 0, length] {
@@ -280,7 +280,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    fn header(order: Order) -> Header {
+    fn header(order: ByteOrder) -> Header {
         Header {
             kind: Kind::REQUEST,
             flags: flag::IDEMPOTENT,
@@ -310,7 +310,7 @@ mod tests {
             "AAAAAAAA BBBB CCCC DDDD EEEEEEEEEEEE 00000000 01000000 00000000 0000 FFFF FFFF 9E01 0000 00 00",
             "00100000 8A010000 00100000 00000000 8A010000",
         ));
-        for (order, start) in [(Order::Big, big), (Order::Little, little)] {
+        for (order, start) in [(ByteOrder::Big, big), (ByteOrder::Little, little)] {
             let body = Call { room: ROOM, blocks: &BLOCKS }.emit(order);
             let datagram = Datagram { header: header(order), body: &body };
             let bytes = [start, BLOCKS.to_vec()].concat();
@@ -324,13 +324,13 @@ mod tests {
     /// Likewise: the answer.
     #[test]
     fn answers_begin_with_their_status() {
-        let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(Order::Big);
+        let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);
         assert_eq!(body[..20].to_vec(), hex("00000000 00000056 00001000 00000000 00000056"));
         let refusal = hex("DB810209");
-        let read = Reply::parse(&refusal, Order::Big).unwrap();
+        let read = Reply::parse(&refusal, ByteOrder::Big).unwrap();
         assert_eq!((read.status, read.blocks), (0xDB81_0209, &[][..]));
-        assert_eq!(Reply::parse(&hex("00000000"), Order::Big).unwrap_err().field, "MaximumCount");
+        assert_eq!(Reply::parse(&hex("00000000"), ByteOrder::Big).unwrap_err().field, "MaximumCount");
         let longer = hex("00000000 00000056 00001000 00000000 00000056 00");
-        assert_eq!(Reply::parse(&longer, Order::Big).unwrap_err().field, "blocks");
+        assert_eq!(Reply::parse(&longer, ByteOrder::Big).unwrap_err().field, "blocks");
     }
 }

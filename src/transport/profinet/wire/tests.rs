@@ -13,7 +13,7 @@ use super::dcp::Dcp;
 use super::frame::{ETHER_TYPE, Frame, TAG_HIGH, id};
 use super::record::{self, Im0, Parameter, RealModule, Record, index};
 use super::rpc::{self, Call, Datagram, Kind, Reply, operation};
-use super::{Mac, Order, Uuid};
+use super::{ByteOrder, Mac, Uuid};
 use crate::testing::hex;
 
 /// Lengths of Ethernet, IPv4 and UDP headers.
@@ -225,11 +225,11 @@ fn recorded(name: &str) -> Vec<u8> {
 fn a_real_controllers_connect_is_read_and_written_back() {
     let frame = recorded("connect_req");
     let datagram = Datagram::parse(&frame[UDP_PAYLOAD..]).unwrap();
-    assert_eq!((datagram.header.order, datagram.header.kind), (Order::Little, Kind::REQUEST));
+    assert_eq!((datagram.header.order, datagram.header.kind), (ByteOrder::Little, Kind::REQUEST));
     assert_eq!(datagram.header.interface, rpc::DEVICE);
     assert_eq!(datagram.header.object, rpc::object(1, 2, 0x493));
     assert_eq!(datagram.emit(), frame[UDP_PAYLOAD..], "byte for byte, in its order");
-    let call = Call::parse(datagram.body, Order::Little).unwrap();
+    let call = Call::parse(datagram.body, ByteOrder::Little).unwrap();
     let requests = Request::parse_all(call.blocks).unwrap();
     let counts = requests.iter().fold([0; 5], |mut counts, request| {
         counts[match request {
@@ -386,7 +386,7 @@ fn read_as_everything(bytes: &[u8]) {
     if let Ok(datagram) = Datagram::parse(bytes) {
         datagram.emit();
     }
-    for order in [Order::Big, Order::Little] {
+    for order in [ByteOrder::Big, ByteOrder::Little] {
         let _ = Call::parse(bytes, order);
         let _ = Reply::parse(bytes, order);
     }

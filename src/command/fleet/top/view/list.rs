@@ -5,7 +5,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::painter::{Painter, after, line_of, width};
 use super::{answer, pace};
-use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Sort, Trouble};
+use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Severity, Sort};
 use crate::output::view::Tone;
 
 /// A column of the list.
@@ -38,7 +38,7 @@ const LEVELS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█
 pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let robots = model.robots();
     let count = |trouble| robots.iter().filter(|seen| seen.trouble() == trouble).count();
-    let (silent, alarms) = (count(Trouble::Silent), count(Trouble::Alarm));
+    let (silent, alarms) = (count(Severity::Silent), count(Severity::Alarm));
     let waiting = robots.iter().filter(|seen| seen.contact == Contact::Waiting).count();
     let plural = if robots.len() == 1 { "" } else { "s" };
     let mut parts = vec![

@@ -6,7 +6,7 @@ use std::time::Duration;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::super::keys::Order;
+use super::super::keys::KeyAction;
 use super::super::model::{Model, Moment};
 use super::super::testing::{alarmed, fleet, sample, silence};
 use super::{Palette, render};
@@ -77,7 +77,7 @@ fn the_list_at_80_and_120_columns() {
 #[test]
 fn one_robot_at_80_and_120_columns() {
     let (mut model, now) = four();
-    model.obey(now, Order::Open);
+    model.obey(now, KeyAction::Open);
     is_as_before("robot-80x24.txt", &picture(&model, now, 80, 24, RICH));
     is_as_before("robot-120x40.txt", &picture(&model, now, 120, 40, RICH));
     is_as_before("robot-80x24-ascii.txt", &picture(&model, now, 80, 24, POOR));
@@ -86,26 +86,33 @@ fn one_robot_at_80_and_120_columns() {
 #[test]
 fn robots_in_trouble_on_their_screens() {
     let (mut model, now) = four();
-    model.obey(now, Order::Open);
-    model.obey(now, Order::Next);
+    model.obey(now, KeyAction::Open);
+    model.obey(now, KeyAction::Next);
     is_as_before("silent-80x24.txt", &picture(&model, now, 80, 24, RICH));
-    model.obey(now, Order::Next);
+    model.obey(now, KeyAction::Next);
     is_as_before("alarmed-80x24.txt", &picture(&model, now, 80, 24, RICH));
 }
 
 #[test]
 fn the_keys_are_explained() {
     let (mut model, now) = four();
-    model.obey(now, Order::Help);
+    model.obey(now, KeyAction::Help);
     is_as_before("help-80x24.txt", &picture(&model, now, 80, 24, RICH));
 }
 
 #[test]
 fn no_size_is_too_small_and_none_too_big() {
     let (mut model, now) = four();
-    for order in
-        [Order::Sort, Order::Open, Order::Next, Order::Next, Order::Next, Order::Help, Order::Pause, Order::Filter]
-    {
+    for order in [
+        KeyAction::Sort,
+        KeyAction::Open,
+        KeyAction::Next,
+        KeyAction::Next,
+        KeyAction::Next,
+        KeyAction::Help,
+        KeyAction::Pause,
+        KeyAction::Filter,
+    ] {
         model.obey(now, order);
         for (columns, lines) in (0..50).flat_map(|columns| (0..30).map(move |lines| (columns, lines))) {
             picture(&model, now, columns, lines, RICH);
@@ -120,7 +127,7 @@ fn no_size_is_too_small_and_none_too_big() {
 fn nothing_that_a_controller_says_steers_the_terminal() {
     let (mut model, now) = four();
     model.cursor = 2;
-    model.obey(now, Order::Open);
+    model.obey(now, KeyAction::Open);
     let shown = picture(&model, now, 120, 40, RICH);
     assert!(shown.contains("衝突\\x1b[2J検出"), "{shown}");
     assert!(!shown.contains('\x1b'));
@@ -129,7 +136,7 @@ fn nothing_that_a_controller_says_steers_the_terminal() {
 #[test]
 fn ascii_is_ascii() {
     let (mut model, now) = four();
-    for order in [Order::Refresh, Order::Open, Order::Help] {
+    for order in [KeyAction::Refresh, KeyAction::Open, KeyAction::Help] {
         model.obey(now, order);
         let shown = picture(&model, now, 120, 40, POOR);
         assert!(shown.is_ascii(), "{}", shown.lines().find(|line| !line.is_ascii()).unwrap());
@@ -140,7 +147,7 @@ fn ascii_is_ascii() {
 fn a_pause_is_seen() {
     let (mut model, now) = four();
     assert!(!picture(&model, now, 80, 24, RICH).contains("PAUSED"));
-    model.obey(now, Order::Pause);
+    model.obey(now, KeyAction::Pause);
     assert!(picture(&model, now, 80, 24, RICH).contains("PAUSED"));
 }
 

@@ -85,7 +85,7 @@ impl Link {
     /// As those of [`Link::store`].
     pub async fn overwrite(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
         self.ask(&cell.write).await?;
-        if let Some(warning) = self.wear.written(cell.read.text().trim_start_matches('@')) {
+        if let Some(warning) = self.write_log.written(cell.read.text().trim_start_matches('@')) {
             screen.note(&format!("warning: {warning}"));
         }
         let is_stored = self.holds(cell).await.map_err(|failure| {

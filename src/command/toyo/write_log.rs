@@ -1,7 +1,7 @@
 //! Writes of one cell of the EEPROM over and over: within a connection, and by a script that starts a command for each.
 //!
 //! A cell takes about a million rewrites (TO 2-1, note 2), which a loop of ten a second reaches in a day. So written
-//! cells go into a diary in the state folder of the user, which looks back ten minutes. It is an aid: where it cannot
+//! cells go into a log in the state folder of the user, which looks back ten minutes. It is an aid: where it cannot
 //! be kept, nothing is lost but the warning.
 
 use std::collections::HashMap;
@@ -18,17 +18,17 @@ use crate::files;
 const LOOP: u32 = 3;
 /// The same over several links, where somebody may be trying values.
 const LOOP_OF_COMMANDS: u32 = 10;
-/// How far the diary looks back.
+/// How far the log looks back.
 const WINDOW: Duration = Duration::from_secs(600);
-/// A diary that is longer is written anew, without what is too old.
+/// A log that is longer is written anew, without what is too old.
 const SIZE: u64 = 64 * 1024;
 /// What is larger is none that was written here.
 const MOST: u64 = 16 << 20;
 
 /// How often each cell was written.
 #[derive(Debug, Default)]
-pub struct Wear {
-    diary: Option<Diary>,
+pub struct WriteLog {
+    log: Option<LogFile>,
     /// By this link.
     own: HashMap<String, u32>,
     /// By others within the window; read when the first cell is written.
@@ -36,28 +36,28 @@ pub struct Wear {
 }
 
 #[derive(Debug)]
-struct Diary {
+struct LogFile {
     path: PathBuf,
     /// What the cells are of.
     robot: String,
 }
 
-impl Wear {
-    /// Counts for a robot; with a diary where the user has a state folder.
+impl WriteLog {
+    /// Counts for a robot; with a log where the user has a state folder.
     pub fn of(robot: &str) -> Self {
-        let diary = |folder: PathBuf| Diary { path: folder.join("eeprom-writes"), robot: robot.to_owned() };
-        Self { diary: state_folder().map(diary), ..Self::default() }
+        let log = |folder: PathBuf| LogFile { path: folder.join("eeprom-writes"), robot: robot.to_owned() };
+        Self { log: state_folder().map(log), ..Self::default() }
     }
 
     /// Counts for a link that lasts as long as what it writes to.
-    pub fn without_diary() -> Self {
+    pub fn without_file() -> Self {
         Self::default()
     }
 
     /// Counts a write of a cell. Says so if it is one of too many.
     pub fn written(&mut self, cell: &str) -> Option<String> {
-        let diary = self.diary.as_ref();
-        let others = self.others.get_or_insert_with(|| diary.map(|diary| diary.read(now())).unwrap_or_default());
+        let log = self.log.as_ref();
+        let others = self.others.get_or_insert_with(|| log.map(|log| log.read(now())).unwrap_or_default());
         let others = others.get(cell).copied().unwrap_or_default();
         let own = self.own.entry(cell.to_owned()).or_default();
         *own += 1;
@@ -72,14 +72,14 @@ impl Wear {
         Some(format!("{warning}; a cell of the EEPROM wears out after about a million"))
     }
 
-    /// Notes in the diary what this link wrote.
+    /// Notes in the log what this link wrote.
     ///
     /// # Errors
     /// When it cannot be written.
     pub fn keep(&mut self) -> std::io::Result<()> {
         let own = std::mem::take(&mut self.own);
-        match &self.diary {
-            Some(diary) if !own.is_empty() => diary.write(&own, now()),
+        match &self.log {
+            Some(log) if !own.is_empty() => log.write(&own, now()),
             _ => Ok(()),
         }
     }
@@ -90,13 +90,13 @@ fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
 }
 
-/// A line of the diary: when, how often, which robot, which cell.
+/// A line of the log: when, how often, which robot, which cell.
 fn entry(line: &str) -> Option<(u64, u32, &str, &str)> {
     let mut parts = line.splitn(4, '\t');
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?, parts.next()?))
 }
 
-impl Diary {
+impl LogFile {
     /// How often each cell of the robot was written lately.
     fn read(&self, now: u64) -> HashMap<String, u32> {
         let mut counts = HashMap::new();
@@ -137,7 +137,7 @@ impl Diary {
     }
 }
 
-/// The diary as text; one that is not there, or is none, is empty.
+/// The log as text; one that is not there, or is none, is empty.
 fn content(path: &Path) -> String {
     files::text(path, MOST).unwrap_or_default()
 }
@@ -152,43 +152,43 @@ fn fresh(text: &str, now: u64) -> impl Iterator<Item = &str> {
 mod tests {
     use super::*;
 
-    fn wear(folder: &Path, robot: &str) -> Wear {
+    fn writes(folder: &Path, robot: &str) -> WriteLog {
         let path = folder.join("armctl").join("eeprom-writes");
-        Wear { diary: Some(Diary { path, robot: robot.to_owned() }), ..Wear::default() }
+        WriteLog { log: Some(LogFile { path, robot: robot.to_owned() }), ..WriteLog::default() }
     }
 
     #[test]
     fn three_writes_of_one_cell_over_one_link_are_told_once() {
-        let mut wear = Wear::without_diary();
-        let told: Vec<bool> = (0..5).map(|_| wear.written("@RPAR P01").is_some()).collect();
+        let mut writes = WriteLog::without_file();
+        let told: Vec<bool> = (0..5).map(|_| writes.written("@RPAR P01").is_some()).collect();
         assert_eq!(told, [false, false, true, false, false]);
-        assert_eq!(wear.written("@RPAR P02"), None);
+        assert_eq!(writes.written("@RPAR P02"), None);
     }
 
     #[test]
     fn a_script_that_starts_a_command_for_each_write_is_told_from_the_tenth_on() {
         let folder = tempfile::tempdir().unwrap();
         for count in 1..=11 {
-            let mut other = wear(folder.path(), "press");
+            let mut other = writes(folder.path(), "press");
             assert_eq!(other.written("@RPNT 001"), None, "another robot's");
-            let mut wear = wear(folder.path(), "cell 1");
-            let told = wear.written("@RPNT 001");
+            let mut writes = writes(folder.path(), "cell 1");
+            let told = writes.written("@RPNT 001");
             assert_eq!(told.is_some(), count >= 10, "{told:?}");
-            wear.keep().unwrap();
+            writes.keep().unwrap();
         }
     }
 
     #[test]
-    fn what_is_too_old_or_no_entry_does_not_count_and_goes_when_the_diary_is_long() {
+    fn what_is_too_old_or_no_entry_does_not_count_and_goes_when_the_log_is_long() {
         let folder = tempfile::tempdir().unwrap();
-        let diary = wear(folder.path(), "cell").diary.unwrap();
+        let log = writes(folder.path(), "cell").log.unwrap();
         let cells = HashMap::from([("@RPNT 001".to_owned(), 4)]);
-        diary.write(&cells, 1_000).unwrap();
-        fs::OpenOptions::new().append(true).open(&diary.path).unwrap().write_all(b"nonsense\n\n\t\t\t\n").unwrap();
-        diary.write(&cells, 1_500).unwrap();
-        assert_eq!(diary.read(1_500), HashMap::from([("@RPNT 001".to_owned(), 8)]));
-        assert_eq!(diary.read(1_700), cells);
-        diary.shorten(1_700).unwrap();
-        assert_eq!(content(&diary.path), "1500\t4\tcell\t@RPNT 001\n");
+        log.write(&cells, 1_000).unwrap();
+        fs::OpenOptions::new().append(true).open(&log.path).unwrap().write_all(b"nonsense\n\n\t\t\t\n").unwrap();
+        log.write(&cells, 1_500).unwrap();
+        assert_eq!(log.read(1_500), HashMap::from([("@RPNT 001".to_owned(), 8)]));
+        assert_eq!(log.read(1_700), cells);
+        log.shorten(1_700).unwrap();
+        assert_eq!(content(&log.path), "1500\t4\tcell\t@RPNT 001\n");
     }
 }
