@@ -237,14 +237,22 @@ fn promise(line: &str) -> Result<(), String> {
     envelopes.try_for_each(|envelope| schemas::check(envelope).map_err(|why| format!("{why} in\n{line}")))
 }
 
-#[test]
-fn four_commands_lead_from_nothing_to_a_robot() {
+/// The commands of the first block below a heading of the README.
+fn first_block(heading: &str) -> Vec<String> {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
-    let (_, after) = readme.split_once("## From nothing to a robot").expect("a section that says how to start");
+    let (_, after) = readme.split_once(heading).expect("a section that says how to start");
     let block = after.split("```").nth(1).expect("the section has a block");
-    let typed = block.lines().skip(1).map(|line| line.split('#').next().unwrap_or_default().trim());
-    let commands: Vec<&str> = typed.filter(|line| !line.is_empty()).collect();
-    assert_eq!(commands, ["cargo install --locked --path .", "armctl setup", "armctl status", "armctl top"]);
+    let typed = block.lines().skip(1).map(|line| line.split('#').next().unwrap_or_default().trim().to_owned());
+    typed.filter(|line| !line.is_empty()).collect()
+}
+
+#[test]
+fn two_commands_try_it_and_four_lead_to_a_robot() {
+    assert_eq!(first_block("## Try it"), ["cargo run -- --sim yerc status", "cargo test"]);
+    assert_eq!(
+        first_block("## From nothing to a robot"),
+        ["cargo install --locked --path .", "armctl setup", "armctl status", "armctl top"]
+    );
 }
 
 fn root() -> PathBuf {
