@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use armctl::transport::profibus::port::{Port, Serial};
 use armctl::transport::profibus::rates::Rate;
 use armctl::transport::profibus::settings::Settings;
 use armctl::transport::profibus::slave::Slave;
-use armctl::transport::sim::Peer;
+use armctl::transport::sim::locked;
 use armctl::transport::stream_server::StreamServer;
 use profirust::phy::ProfibusPhy;
 use profirust::{Baudrate, dp, fdl};
@@ -59,10 +59,6 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
 struct Shared(Arc<Mutex<Slave<Echo>>>);
 
 impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Slave<Echo>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Exchanges a second within this time, once they have begun.
     fn speed(&self, time: Duration, mut turn: impl FnMut()) -> anyhow::Result<f64> {
         const BEGUN: u64 = 10;
@@ -70,7 +66,7 @@ impl Shared {
         let mut counted = |until: &dyn Fn(u64) -> bool| {
             loop {
                 turn();
-                let exchanges = self.lock().exchanges();
+                let exchanges = locked(&self.0).exchanges();
                 if until(exchanges) {
                     return exchanges;
                 }
@@ -82,24 +78,6 @@ impl Shared {
         let start = Instant::now();
         let last = counted(&|_| start.elapsed() >= time);
         Ok(f64::from(u32::try_from(last - first)?) / start.elapsed().as_secs_f64())
-    }
-}
-
-impl Peer for Shared {
-    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
-        self.lock().receive(now, channel, bytes);
-    }
-
-    fn damaged(&mut self, now: Duration, channel: usize) {
-        self.lock().receive(now, channel, &[0]);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
-        self.lock().transmit(now)
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.lock().wake()
     }
 }
 
@@ -116,7 +94,7 @@ fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyh
         StreamServer::pseudo_terminal(None, None)?
     };
     let (quit, mut quits) = oneshot::channel::<()>();
-    let mut peer = shared.clone();
+    let mut peer = Arc::clone(&shared.0);
     let thread = thread::spawn(move || {
         runtime.block_on(async {
             loop {

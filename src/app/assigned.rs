@@ -87,7 +87,6 @@ mod tests {
     /// Every verb that sets something, in the words of the contract.
     const SETTINGS: &[&str] = &[
         "toyo accel-table set 5=0.25",
-        "robots set cell3 timeout=5s",
         "toyo counter set 1=0",
         "toyo easy set 1=10,5,20",
         "toyo easy set 1 loop=5",
@@ -114,9 +113,10 @@ mod tests {
         "yrcx var set SGR1=-0.5",
     ];
 
-    /// Verbs that set the one thing they are about, or what has numbers and no name.
-    const NO_SETTINGS: [&str; 5] =
-        ["toyo coordinate set", "toyo override set", "toyo task set", "yrcx clock set", "yrcx eip set"];
+    /// Verbs that set the one thing they are about, what has numbers and no name, and settings of the inventory, which have a
+    /// test of their own.
+    const NO_SETTINGS: [&str; 6] =
+        ["robots set", "toyo coordinate set", "toyo override set", "toyo task set", "yrcx clock set", "yrcx eip set"];
 
     fn words(line: &str) -> Vec<OsString> {
         shlex::split(&format!("armctl {line}")).unwrap().into_iter().map(Into::into).collect()

@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use tokio::task::coop::consume_budget;
@@ -40,6 +41,30 @@ impl<P: Peer + ?Sized> Peer for Box<P> {
     fn wake(&self) -> Option<Duration> {
         (**self).wake()
     }
+}
+
+/// A peer on a thread, which others look at meanwhile.
+impl<P: Peer> Peer for Arc<Mutex<P>> {
+    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
+        locked(self).receive(now, channel, bytes);
+    }
+
+    fn damaged(&mut self, now: Duration, channel: usize) {
+        locked(self).damaged(now, channel);
+    }
+
+    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
+        locked(self).transmit(now)
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        locked(self).wake()
+    }
+}
+
+/// A shared peer, also after a panic of whoever had it last.
+pub fn locked<P>(peer: &Mutex<P>) -> MutexGuard<'_, P> {
+    peer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A peer behind a line that may be faulty, on tokio's clock (which tests can halt and turn).

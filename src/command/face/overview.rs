@@ -75,7 +75,7 @@ impl Fault {
     }
 
     /// Code and text, as far as they are known.
-    pub fn told(&self) -> Option<String> {
+    pub fn describe(&self) -> Option<String> {
         let parts = [&self.fault_code, &self.fault_text];
         let told = parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ");
         Some(told).filter(|told| !told.is_empty())
@@ -100,7 +100,7 @@ impl OverviewReport {
             return None;
         }
         let kind = if self.alarm == Some(true) { "alarm" } else { "error" };
-        Some(self.fault.told().unwrap_or_else(|| kind.to_owned()))
+        Some(self.fault.describe().unwrap_or_else(|| kind.to_owned()))
     }
 }
 

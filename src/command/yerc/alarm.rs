@@ -345,7 +345,7 @@ struct SubCode {
 
 impl SubCode {
     /// What the pendant shows, or the best that is known of it; nothing where there is none.
-    fn told(&self) -> Option<&str> {
+    fn describe(&self) -> Option<&str> {
         let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
         Some(text.unwrap_or(&self.shown)).filter(|told| !told.is_empty())
     }
@@ -387,7 +387,7 @@ impl AlarmEntry {
     }
 
     fn sample(&self) -> sample::Alarm {
-        let sub_code = self.sub_code.told().unwrap_or_default();
+        let sub_code = self.sub_code.describe().unwrap_or_default();
         let text = [self.name.as_str(), sub_code].join(" ").trim_end().to_owned();
         sample::Alarm { code: self.code.to_string(), text, remedy: String::new() }
     }
@@ -398,7 +398,7 @@ impl AlarmEntry {
         [
             Cell::from(self.code).tone(Tone::Bad),
             self.name.as_str().into(),
-            Cell::maybe(self.sub_code.told().map(Cell::from)),
+            Cell::maybe(self.sub_code.describe().map(Cell::from)),
             Cell::from(self.time.as_str()).whole(),
             Cell::maybe(self.board.as_deref().and_then(given)),
         ]

@@ -112,7 +112,7 @@ pub(super) fn mode(status: ControllerStatus) -> Option<&'static str> {
 
 impl Report for StatusReport {
     fn view(&self) -> View {
-        let told = self.fault.told().unwrap_or_else(|| "yes".to_owned());
+        let told = self.fault.describe().unwrap_or_else(|| "yes".to_owned());
         let bad = |on: bool, told: &str| if on { Cell::from(told).tone(Tone::Bad) } else { "no".into() };
         let remote = if self.command_remote { Tone::Good } else { Tone::Warning };
         let hold = if self.held { Cell::from(self.hold_sources.join(", ")).tone(Tone::Warning) } else { "no".into() };

@@ -84,7 +84,7 @@ impl Pace {
     }
 
     /// `at 50 %`.
-    pub fn told(&self) -> String {
+    pub fn describe(&self) -> String {
         match (&self.speed, &self.speed_of_max) {
             (Some(Speed::Percent(percent)), _) => format!("at {percent} %"),
             (Some(Speed::MmS(mm_s)), _) => format!("at {mm_s} mm/s"),
@@ -220,7 +220,7 @@ impl Axes {
     }
 
     /// `all axes`, `axes 3, 1 alone`; with the numbers that may name them.
-    pub fn told(&self, given: &[String]) -> String {
+    pub fn describe(&self, given: &[String]) -> String {
         let axes = match (&self.axes, self.pairs(given)) {
             (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
                 pairs.iter().map(|(axis, _)| axis.to_string()).collect::<Vec<_>>().join(", ")
@@ -288,7 +288,7 @@ impl Arch {
     }
 
     /// ` in an arch over axis 3 at 10.0 mm`; empty where there is none.
-    pub fn told(&self) -> String {
+    pub fn describe(&self) -> String {
         let Some(Peak { axis, position }) = &self.peak else { return String::new() };
         format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
     }
@@ -331,7 +331,7 @@ impl System {
     }
 
     /// ` in Cartesian coordinates`; empty for an axis by itself.
-    pub fn told(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         match self {
             Self::Pulse => "",
             Self::Cartesian => " in Cartesian coordinates",
@@ -358,7 +358,7 @@ impl Direction {
     }
 
     /// `in plus direction`.
-    pub fn told(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         match self {
             Self::Plus => "in plus direction",
             Self::Minus => "in minus direction",

@@ -101,7 +101,7 @@ impl Reading {
         Self {
             time: moment.map(|moment| moment.to_string()),
             date: date.as_ref().ok().map(ToString::to_string),
-            time_of_day: time.as_ref().ok().map(told),
+            time_of_day: time.as_ref().ok().map(describe),
             ahead_s: moment.map(|moment| moment.duration_since(now).as_secs()),
             errors: [("date", date.err()), ("time", time.err())]
                 .into_iter()
@@ -111,7 +111,7 @@ impl Reading {
     }
 }
 
-fn told(time: &Time) -> String {
+fn describe(time: &Time) -> String {
     time.strftime("%H:%M:%S").to_string()
 }
 
@@ -234,7 +234,7 @@ impl Command for Set {
             }
         }
         let date = date.filter(|_| errors.is_empty()).map(|date| date.to_string());
-        Ok(WasSet { date, time: time.as_ref().map(told), errors })
+        Ok(WasSet { date, time: time.as_ref().map(describe), errors })
     }
 }
 

@@ -158,7 +158,7 @@ one_row! {
     },
     with draft => draft.with_some(Key::Axes, self.axis.clone()),
     intent {
-        let servos = format!("{} of {}", self.told(), self.which.name());
+        let servos = format!("{} of {}", self.describe(), self.which.name());
         match self.state {
             ServoState::On => format!("switch {servos} on"),
             ServoState::Off => format!("switch {servos} off"),
@@ -171,7 +171,7 @@ one_row! {
             ServoState::Off => "off",
             ServoState::Free => "free",
         };
-        let done = Done::new("servo", state, format!("switched {} {state}", self.told()));
+        let done = Done::new("servo", state, format!("switched {} {state}", self.describe()));
         done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
@@ -232,7 +232,7 @@ enum ServoState {
 }
 
 impl Servo {
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         match &self.axis {
             Some(axis) => format!("the servo of axis {axis}"),
             None => "the servos of all axes".to_owned(),

@@ -103,7 +103,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) 
     let old = old.filter(|values| is_defined(order.command(), values));
     let (new, is_same) = wanted(link, order, old.as_ref()).await?;
     let before = old.as_ref().map_or(Json::Null, |values| data(order.command(), values));
-    let old = old.map(|values| told(order.command(), &values));
+    let old = old.map(|values| describe(order.command(), &values));
     let (new, after) = new;
     let change = match &old {
         Some(old) if !is_same => Change::new(format!("overwrite {noun}")).replaces(&what, old, &new),
@@ -229,7 +229,7 @@ async fn wanted(link: &mut Link, order: &Order, old: Option<&Values>) -> Result<
     Ok(match new {
         Ok(new) => {
             let is_same = old.is_some_and(|old| is_same(command, old, &new));
-            ((told(command, &new), data(command, &new)), is_same)
+            ((describe(command, &new), data(command, &new)), is_same)
         }
         Err(words) => ((words, Json::Null), false),
     })
@@ -303,7 +303,7 @@ fn owner(hand: &Values) -> i32 {
 }
 
 /// What a command defines, in words.
-fn told(command: Command, values: &Values) -> String {
+fn describe(command: Command, values: &Values) -> String {
     let number = |key| values.int(key).unwrap_or_default();
     match command {
         Command::CommentSet => format!("'{}'", values.text(Key::Comment).unwrap_or_default()),

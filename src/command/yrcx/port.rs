@@ -94,7 +94,7 @@ impl PortSignal {
         format!("{}{}", self.kind_name(), self.port)
     }
 
-    fn told(self) -> String {
+    fn describe(self) -> String {
         match self.bit {
             Some(bit) => format!("{}.{bit}", self.port_name()),
             None => self.port_name(),
@@ -128,7 +128,7 @@ impl Command for Get {
         let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading ports", &orders).await?;
-        let names = || places.iter().map(|place| place.told());
+        let names = || places.iter().map(|place| place.describe());
         let of = |at: usize, values: &Values| {
             let bit = places.get(at).and_then(|place| place.bit);
             State::of(bit, values.int(Key::Value).unwrap_or_default())
@@ -199,7 +199,7 @@ one_row! {
         draft.with(Key::Value, i32::from(self.value))
     },
     done {
-        let place = self.place.told();
+        let place = self.place.describe();
         let words = if self.place.bit.is_some() {
             format!("switched {place} {}", if self.value == 1 { "on" } else { "off" })
         } else {

@@ -76,7 +76,7 @@ fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Opti
         .with_some(Key::Task, task.cloned())
 }
 
-fn told(program: Option<&String>, name: Option<&String>, task: Option<&String>) -> String {
+fn describe(program: Option<&String>, name: Option<&String>, task: Option<&String>) -> String {
     match (program, name, task) {
         (Some(number), ..) => format!("program {number}"),
         (_, Some(name), _) => format!("program {name}"),
@@ -100,8 +100,8 @@ impl Which {
         put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
-    fn told(&self) -> String {
-        told(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    fn describe(&self) -> String {
+        describe(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 }
 
@@ -116,8 +116,8 @@ impl WhichOrAll {
         put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
-    fn told(&self) -> String {
-        told(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    fn describe(&self) -> String {
+        describe(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 }
 
@@ -151,7 +151,7 @@ one_row! {
         draft.with_some(Key::Task, self.task).with(Key::Priority, self.priority.as_str())
     },
     done {
-        let program = told(self.program.program.as_ref(), self.program.name.as_ref(), None);
+        let program = describe(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
         let words = format!("registered {program} in {task} with priority {}", self.priority);
         let done = Done::new("program_state", "registered", words);
@@ -184,11 +184,11 @@ macro_rules! starts {
                 }
 
                 fn intent(&self) -> String {
-                    format!($intent, self.which.told())
+                    format!($intent, self.which.describe())
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    let done = Done::new("program_state", $new, format!($done, self.which.told()));
+                    let done = Done::new("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(done))
                 }
             }
@@ -267,7 +267,7 @@ impl ProgramLine {
     }
 
     /// `19`, `5 of COMMON`.
-    pub fn told(self) -> String {
+    pub fn describe(self) -> String {
         format!("{}{}", self.line, if self.in_common { " of COMMON" } else { "" })
     }
 }
@@ -279,7 +279,7 @@ impl Report for Execution {
             ("name", self.name.as_str().into()),
             ("task", self.task.into()),
             ("priority", self.priority.into()),
-            ("line", self.line.told().into()),
+            ("line", self.line.describe().into()),
         ])
     }
 }
@@ -357,7 +357,7 @@ mod tests {
     #[test]
     fn lines_of_common_are_told_as_such() {
         assert_eq!(
-            (ProgramLine::of(10_005).told(), ProgramLine::of(10_000).told()),
+            (ProgramLine::of(10_005).describe(), ProgramLine::of(10_000).describe()),
             ("5 of COMMON".into(), "10000".into())
         );
     }

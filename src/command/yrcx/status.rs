@@ -176,7 +176,9 @@ impl Report for StatusReport {
             ("emergency stop", toned(self.emergency_stop, Tone::Bad)),
             (
                 "alarm",
-                self.fault.told().map_or_else(|| toned(self.alarm, Tone::Bad), |told| Cell::from(told).tone(Tone::Bad)),
+                self.fault
+                    .describe()
+                    .map_or_else(|| toned(self.alarm, Tone::Bad), |told| Cell::from(told).tone(Tone::Bad)),
             ),
             ("warning", toned(self.warning, Tone::Warning)),
             ("CPU OK", good(self.cpu_ok)),

@@ -184,7 +184,7 @@ impl Operand {
         Done::new(variable, new, words).with("operation", does).with("operand", operand)
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         match self {
             Self::Number(text) => text.clone(),
             Self::Variable(number) => name(*number),
@@ -223,7 +223,7 @@ macro_rules! changes {
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    let (variable, operand) = (name(self.variable), self.operand.told());
+                    let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
                     Ok(self.operand.done(variable, $does, words))
                 }

@@ -160,7 +160,7 @@ impl From<Coordinate> for PositionKind {
 
 impl Frame {
     /// For the question before the motion.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         let name = match self.coordinate {
             Coordinate::Base => "base coordinates".to_owned(),
             Coordinate::Robot => "robot coordinates".to_owned(),
@@ -185,7 +185,7 @@ pub(super) struct Forms {
 
 impl Forms {
     /// For the question before the motion.
-    pub(super) fn told(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         let extended = extended_words(self.extended_form);
         let plus = if extended.is_empty() { "" } else { "+" };
         format!("form {}{plus}{extended}", form_words(self.form))
@@ -386,7 +386,7 @@ pub(super) enum Part<'a, T> {
 }
 
 /// The target for the question before the motion.
-pub(super) fn told(
+pub(super) fn describe(
     kind: PositionKind,
     robot: Option<&[i32]>,
     base: Option<String>,

@@ -1,6 +1,6 @@
 //! What is asked before a motion: each axis with its value and unit, from where it stands as far as that can be compared.
 
-use super::arguments::{Speed, Values, base_told, told};
+use super::arguments::{Speed, Values, base_told, describe};
 use super::going::Goal;
 use crate::command::yerc::position::{axis_names, in_a_line};
 use crate::controller::units::{self, Unit};
@@ -33,7 +33,7 @@ impl Question<'_> {
     /// In a line: where nothing of the robot was read.
     pub(super) fn in_a_line(&self) -> String {
         let base = base_told(self.base.0, self.base.1);
-        let place = told(self.kind, self.robot.as_deref(), base, self.station);
+        let place = describe(self.kind, self.robot.as_deref(), base, self.station);
         let how = if self.how.is_empty() { String::new() } else { format!(" {}", self.how) };
         format!("{} {} {place}{how} at {}", self.what, self.preposition, self.speed)
     }

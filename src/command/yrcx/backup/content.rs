@@ -496,7 +496,7 @@ impl Store {
     }
 
     /// What was read, in words.
-    pub fn told(&self, values: &Values) -> String {
+    pub fn describe(&self, values: &Values) -> String {
         let fields = self.wanted.iter().filter_map(|(key, _)| {
             let value = values.value(*key)?;
             field(self.read.row().answer(), *key, values).map(|field| field.show(value))
@@ -506,7 +506,7 @@ impl Store {
 
     /// What would be written, in words.
     pub fn wanted(&self) -> String {
-        self.told(&self.wanted.iter().cloned().collect())
+        self.describe(&self.wanted.iter().cloned().collect())
     }
 }
 

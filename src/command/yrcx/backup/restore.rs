@@ -131,7 +131,11 @@ impl Comparison {
             match there {
                 Ok(values) if store.is_there(&values) => count(&mut item.unchanged),
                 Ok(values) => {
-                    self.replaced.push((format!("{} {}", part.kind(), store.key), store.told(&values), store.wanted()));
+                    self.replaced.push((
+                        format!("{} {}", part.kind(), store.key),
+                        store.describe(&values),
+                        store.wanted(),
+                    ));
                     differ.push(at);
                 }
                 Err(_) => {

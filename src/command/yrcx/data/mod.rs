@@ -32,7 +32,7 @@ impl Four {
         Key::AXES.into_iter().zip(&self.0).fold(draft, |draft, (key, text)| draft.with(key, text.as_str()))
     }
 
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         self.0.join(", ")
     }
 }

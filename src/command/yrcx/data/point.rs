@@ -99,7 +99,7 @@ one_row! {
     },
     done {
         let (unit, four) = self.coordinates();
-        let numbers = four.map(Four::told).unwrap_or_default();
+        let numbers = four.map(Four::describe).unwrap_or_default();
         let unit = if unit == "mm" { "mm" } else { "pulses" };
         let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
         format!("defined point {}: {numbers} {unit}{hand}", self.point)

@@ -57,7 +57,7 @@ one_row! {
     }
     gives table::Command::ShiftSet,
     with draft => self.mm.put(draft.with(Key::Shift, self.shift)),
-    done format!("defined shift {}: {} mm", self.shift, self.mm.told());
+    done format!("defined shift {}: {} mm", self.shift, self.mm.describe());
 }
 
 #[cfg(test)]

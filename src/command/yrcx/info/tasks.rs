@@ -180,7 +180,7 @@ struct TaskLine {
 impl Report for Lines {
     fn view(&self) -> View {
         let cells = |TaskLine { line, in_common }: &TaskLine| {
-            let told = line.map(|line| program::ProgramLine { line, in_common: *in_common }.told());
+            let told = line.map(|line| program::ProgramLine { line, in_common: *in_common }.describe());
             [Cell::number(told.unwrap_or_else(|| "-".to_owned()))]
         };
         View::table(self.tasks.table(["task"], ["line"], "no tasks", |which| [which.task.into()], cells))

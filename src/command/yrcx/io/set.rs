@@ -51,12 +51,12 @@ fn change(text: &str) -> Result<Change, String> {
 impl Change {
     fn done(self) -> Done {
         match self {
-            Self::Signal { signal, on } => Done::new(signal.to_string(), on, self.told()),
-            Self::Word { register, value } => Done::new(register.to_string(), value, self.told()),
+            Self::Signal { signal, on } => Done::new(signal.to_string(), on, self.describe()),
+            Self::Word { register, value } => Done::new(register.to_string(), value, self.describe()),
         }
     }
 
-    fn told(self) -> String {
+    fn describe(self) -> String {
         match self {
             Self::Signal { signal, on } => format!("{} {}", signal.named(), if on { "on" } else { "off" }),
             Self::Word { register, value } => format!("{register} = {value}"),
@@ -97,7 +97,7 @@ impl Command for Set {
     }
 
     fn intent(&self) -> String {
-        format!("switch {}", told(&self.changes))
+        format!("switch {}", describe(&self.changes))
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<AllDone, Failure> {
@@ -106,17 +106,20 @@ impl Command for Set {
             let before = &self.changes[..done];
             Change::carry_out(together, context.link).await.map_err(|failure| match before {
                 [] => failure,
-                _ => Failure { message: format!("{}; switched before: {}", failure.message, told(before)), ..failure },
+                _ => Failure {
+                    message: format!("{}; switched before: {}", failure.message, describe(before)),
+                    ..failure
+                },
             })?;
             done += together.len();
         }
         let items = self.changes.iter().map(|change| change.done()).collect();
-        Ok(AllDone::new(items, format!("switched {}", told(&self.changes))))
+        Ok(AllDone::new(items, format!("switched {}", describe(&self.changes))))
     }
 }
 
-fn told(changes: &[Change]) -> String {
-    changes.iter().map(|change| change.told()).collect::<Vec<_>>().join(", ")
+fn describe(changes: &[Change]) -> String {
+    changes.iter().map(|change| change.describe()).collect::<Vec<_>>().join(", ")
 }
 
 /// Switches an input of the controller on and off again.

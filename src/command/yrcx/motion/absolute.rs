@@ -59,7 +59,7 @@ impl Command for AbsReset {
     fn intent(&self) -> String {
         let axis = self.axis();
         match self.direction {
-            Some(direction) => format!("move {axis} {} to the nearest reset position", direction.told()),
+            Some(direction) => format!("move {axis} {} to the nearest reset position", direction.describe()),
             None => format!("make the place where {axis} stands its reset position, and so decide where its origin is"),
         }
     }
@@ -77,7 +77,7 @@ impl Command for AbsReset {
             return Ok(MotionReport::new(words, &order, Some(&done), None));
         };
         let order = draft.with(Key::Direction, direction.value()).build()?;
-        let way = format!("{} {} to a reset position", self.axis(), direction.told());
+        let way = format!("{} {} to a reset position", self.axis(), direction.describe());
         let done = go(context.link, context.screen, &order, self.no_wait, &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };
         Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))

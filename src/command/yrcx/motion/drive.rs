@@ -42,8 +42,8 @@ impl Destination {
     }
 
     /// `point 100`, `5.000 mm`.
-    pub fn told(&self) -> String {
-        told("point", [&self.point, &self.to, &self.to_pulse].map(Option::as_deref))
+    pub fn describe(&self) -> String {
+        describe("point", [&self.point, &self.to, &self.to_pulse].map(Option::as_deref))
     }
 }
 
@@ -63,7 +63,7 @@ struct Distance {
 }
 
 /// The one that is given of a point, mm and pulses.
-fn told(name: &str, given: [Option<&str>; 3]) -> String {
+fn describe(name: &str, given: [Option<&str>; 3]) -> String {
     match given {
         [Some(point), ..] => format!("{name} {point}"),
         [_, Some(mm), _] => format!("{mm} mm"),
@@ -100,11 +100,11 @@ impl Motion for Drive {
     }
 
     fn target(&self) -> String {
-        format!("to {}", self.destination.told())
+        format!("to {}", self.destination.describe())
     }
 
     fn manner(&self) -> String {
-        self.pace.told()
+        self.pace.describe()
     }
 
     fn targets(&self) -> Vec<Target> {
@@ -157,11 +157,11 @@ impl Motion for Drivei {
 
     fn target(&self) -> String {
         let Distance { point, by, by_pulse } = &self.distance;
-        format!("by {}", told("the distance of point", [point, by, by_pulse].map(Option::as_deref)))
+        format!("by {}", describe("the distance of point", [point, by, by_pulse].map(Option::as_deref)))
     }
 
     fn manner(&self) -> String {
-        self.pace.told()
+        self.pace.describe()
     }
 
     fn targets(&self) -> Vec<Target> {

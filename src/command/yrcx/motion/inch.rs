@@ -47,7 +47,7 @@ impl Motion for Inch {
     }
 
     fn target(&self) -> String {
-        format!("{}{}", self.direction.told(), self.system.told())
+        format!("{}{}", self.direction.describe(), self.system.describe())
     }
 
     fn manner(&self) -> String {

@@ -49,8 +49,8 @@ impl Jog {
     }
 
     /// Completes "jog axis 1 …".
-    fn told(&self) -> String {
-        format!("{}{}", self.direction.told(), self.system.told())
+    fn describe(&self) -> String {
+        format!("{}{}", self.direction.describe(), self.system.describe())
     }
 }
 
@@ -68,7 +68,7 @@ impl Command for Jog {
             Some(time) => format!("for {}", duration::display(time)),
             None => "until Ctrl-C".to_owned(),
         };
-        format!("jog axis {} of {} {} ({until}, at the manual speed)", self.axis, self.which.name(), self.told())
+        format!("jog axis {} of {} {} ({until}, at the manual speed)", self.axis, self.which.name(), self.describe())
     }
 
     fn moves_until_stopped(&self) -> bool {
@@ -80,7 +80,7 @@ impl Command for Jog {
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).build()?;
-        let object = format!("axis {} {}", self.axis, self.told());
+        let object = format!("axis {} {}", self.axis, self.describe());
         let live = Live::new(link, context.screen, &format!("jogging {object}"));
         let done = link.jog(&order, self.within).await;
         live.end();

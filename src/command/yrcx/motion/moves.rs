@@ -86,13 +86,13 @@ impl Motion for Move {
         let way = match self.command() {
             Command::MoveLinear => " in a straight line".to_owned(),
             Command::MoveCircular => " in an arc".to_owned(),
-            _ => self.arch.told(),
+            _ => self.arch.describe(),
         };
         format!("{place}{way}")
     }
 
     fn manner(&self) -> String {
-        let axes = self.axes.told(if self.to.is_empty() { &self.to_pulse } else { &self.to });
+        let axes = self.axes.describe(if self.to.is_empty() { &self.to_pulse } else { &self.to });
         let along = match (&self.stays()[..], self.axes.leaves_out(&self.point)) {
             ([], false) => "",
             ([], true) => ", though a SCARA may take axes 1 and 2 to the point",
@@ -100,7 +100,7 @@ impl Motion for Move {
             ([2], _) => ", axis 2 where it is",
             _ => ", axes 1 and 2 where they are",
         };
-        format!("{axes}{along}, {}", self.pace.told())
+        format!("{axes}{along}, {}", self.pace.describe())
     }
 
     fn stays(&self) -> Vec<usize> {

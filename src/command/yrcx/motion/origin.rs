@@ -59,7 +59,7 @@ impl Origin {
     }
 
     /// `axis 1 of robot 1`.
-    fn told(&self) -> String {
+    fn describe(&self) -> String {
         if let Some(axis) = &self.axis {
             return format!("axis {axis} of {}", self.which.name());
         }
@@ -83,16 +83,16 @@ impl Command for Origin {
     }
 
     fn intent(&self) -> String {
-        format!("return {} to origin", self.told())
+        format!("return {} to origin", self.describe())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).build()?;
-        let doing = format!("returning {} to origin", self.told());
+        let doing = format!("returning {} to origin", self.describe());
         let done = go(context.link, context.screen, &order, self.no_wait, &doing).await?;
-        let has_done = format!("returned {} to origin", self.told());
+        let has_done = format!("returned {} to origin", self.describe());
         Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }
 }

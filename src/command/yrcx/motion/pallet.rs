@@ -40,11 +40,11 @@ impl Motion for Pallet {
     }
 
     fn target(&self) -> String {
-        format!("to place {} of pallet {}{}", self.position, self.pallet, self.arch.told())
+        format!("to place {} of pallet {}{}", self.position, self.pallet, self.arch.describe())
     }
 
     fn manner(&self) -> String {
-        format!("all axes, {}", self.pace.told())
+        format!("all axes, {}", self.pace.describe())
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {

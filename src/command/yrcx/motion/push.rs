@@ -64,14 +64,14 @@ impl Motion for Push {
     }
 
     fn target(&self) -> String {
-        format!("towards {}", self.destination.told())
+        format!("towards {}", self.destination.describe())
     }
 
     fn manner(&self) -> String {
         let force = self.force.as_ref().map(|force| format!(", with {force} % of the rated torque"));
         let time =
             self.time.map(|ms| format!(", for {}", duration::display(Duration::from_millis(ms.unsigned_abs().into()))));
-        format!("{}{}{}", self.pace.told(), force.unwrap_or_default(), time.unwrap_or_default())
+        format!("{}{}{}", self.pace.describe(), force.unwrap_or_default(), time.unwrap_or_default())
     }
 
     fn report(&self, moved: MotionReport, values: Option<&Values>) -> Pushed {

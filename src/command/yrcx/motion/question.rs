@@ -35,7 +35,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
         Unit::Pulse => Command::PositionPulse,
     };
     let here = read(link, here, &[]).await?.and_then(|values| values.axes());
-    authority.confirm(&goal.told(change, here)).await?;
+    authority.confirm(&goal.describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
         _ => Err(outdated("the point was changed since the question; nothing was moved")),
@@ -76,7 +76,7 @@ async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<
 
 impl Goal {
     /// A line for each axis that is sent somewhere, and how far that is.
-    fn told(&self, change: Change, here: Option<[i32; 4]>) -> Change {
+    fn describe(&self, change: Change, here: Option<[i32; 4]>) -> Change {
         let shown = |steps: i32| if self.unit == Unit::Mm { mm(steps) } else { steps.to_string() };
         let told = self.axes.iter().enumerate().filter_map(|(at, new)| Some((at, (*new)?)));
         let change = told.fold(change, |change, (at, new)| {

@@ -84,8 +84,8 @@ impl Motion for Movei {
     }
 
     fn manner(&self) -> String {
-        let axes = self.axes.told(if self.by.is_empty() { &self.by_pulse } else { &self.by });
-        format!("{axes}, {}", self.pace.told())
+        let axes = self.axes.describe(if self.by.is_empty() { &self.by_pulse } else { &self.by });
+        format!("{axes}, {}", self.pace.describe())
     }
 
     fn targets(&self) -> Vec<Target> {

@@ -46,7 +46,7 @@ impl Motion for Movet {
     }
 
     fn manner(&self) -> String {
-        format!("{}, {}", self.axes.told(&[]), self.pace.told())
+        format!("{}, {}", self.axes.describe(&[]), self.pace.describe())
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {

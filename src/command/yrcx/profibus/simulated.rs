@@ -1,7 +1,7 @@
 //! The simulated controller as a slave of PROFIBUS, behind a pseudo-terminal.
 
 use std::io;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::settings::target::profibus::SCHEME;
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::profibus::rates::{RATES, Rate};
 use crate::transport::profibus::slave::{Setup, Slave, SlaveFault};
-use crate::transport::sim::Peer;
+use crate::transport::sim::locked;
 use crate::transport::stream_server::StreamServer;
 
 /// What a simulator is unless it is told otherwise. The ident number is a stand-in: the maker's is not public.
@@ -64,7 +64,7 @@ pub fn mischief(text: &str) -> Result<SlaveFault, String> {
 /// A slave that is served as long as this lives.
 #[derive(Debug)]
 pub struct Server {
-    slave: Shared,
+    slave: Arc<Mutex<Slave<Simulated>>>,
     port: String,
     options: Options,
     clock: tokio::time::Instant,
@@ -86,14 +86,14 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     };
     let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
     slave.misbehave(options.mischief);
-    let slave = Shared(Arc::new(Mutex::new(slave)));
+    let slave = Arc::new(Mutex::new(slave));
     let runtime = Builder::new_current_thread().enable_all().build().map_err(failed)?;
     let (mut server, port) = {
         let _guard = runtime.enter();
         StreamServer::pseudo_terminal(Some(options.rate.pace()), options.faults.clone()).map_err(failed)?
     };
     let (quit, mut quits) = oneshot::channel();
-    let mut peer = slave.clone();
+    let mut peer = Arc::clone(&slave);
     let clock = tokio::time::Instant::now();
     let serve = move || {
         runtime.block_on(async {
@@ -128,7 +128,7 @@ impl Server {
 
     /// Does something with the slave.
     pub fn with<T>(&self, act: impl FnOnce(&mut Slave<Simulated>, Duration) -> T) -> T {
-        act(&mut self.slave.lock(), self.clock.elapsed())
+        act(&mut locked(&self.slave), self.clock.elapsed())
     }
 }
 
@@ -142,34 +142,5 @@ impl Drop for Server {
             // A thread that panicked has said so already.
             let _ = thread.join();
         }
-    }
-}
-
-/// A slave that a thread serves while others look at it.
-#[derive(Debug, Clone)]
-struct Shared(Arc<Mutex<Slave<Simulated>>>);
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, Slave<Simulated>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Peer for Shared {
-    fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
-        self.lock().receive(now, channel, bytes);
-    }
-
-    fn damaged(&mut self, now: Duration, channel: usize) {
-        // A character with the wrong parity reads as NUL, as from a driver.
-        self.lock().receive(now, channel, &[0]);
-    }
-
-    fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)> {
-        self.lock().transmit(now)
-    }
-
-    fn wake(&self) -> Option<Duration> {
-        self.lock().wake()
     }
 }
