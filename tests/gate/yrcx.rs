@@ -45,6 +45,7 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
         terminal.press("y\n");
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
     }
+    assert_eq!(desk.run("session close cell").exit, Some(0));
 }
 
 #[test]
