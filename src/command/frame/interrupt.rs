@@ -5,10 +5,12 @@
 //! get round to hearing it, because it computes.
 
 use std::future::Future;
+use std::pin::pin;
 use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use futures_util::FutureExt;
 use tokio::sync::watch;
 use tokio::task::coop::unconstrained;
 
@@ -43,11 +45,19 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
     }
+    // Work that has used up its turn, because its peer answers at once, must not use up this one's as well.
+    let how = unconstrained(wait(asked, |_| true));
+    heard_first(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
+}
+
+/// What `work` comes to, or the request that ended it. The work itself may wait for the same request: it is asked once
+/// more when that has come, because the request is told from another thread, between any two questions.
+async fn heard_first<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
+    let mut work = pin!(work);
     tokio::select! {
         biased;
-        done = work => Ok(done),
-        // Work that has used up its turn, because its peer answers at once, must not use up this one's as well.
-        how = unconstrained(wait(asked, |_| true)) => Err(Failure::new(Kind::Interrupted, how)),
+        done = &mut work => Ok(done),
+        how = request => work.now_or_never().ok_or(how),
     }
 }
 
@@ -273,7 +283,28 @@ impl Signals {
 
 #[cfg(test)]
 mod tests {
+    use std::future::{pending, poll_fn};
+    use std::task::Poll;
+
     use super::*;
+
+    #[tokio::test]
+    async fn of_two_that_wait_for_a_request_the_inner_one_hears_it() {
+        let (ask, asked) = watch::channel(None);
+        let inner = heard_first(pending::<()>(), wait(asked.clone(), |_| true));
+        // The request comes behind the question to the work.
+        let outer = poll_fn(|_| {
+            ask.send_replace(Some(KEYS));
+            Poll::Ready("outer")
+        });
+        assert_eq!(heard_first(inner, outer).await, Ok(Err(KEYS)));
+    }
+
+    #[tokio::test]
+    async fn work_that_does_not_hear_a_request_is_ended_by_it() {
+        assert_eq!(heard_first(pending::<()>(), async { KEYS }).await, Err(KEYS));
+        assert_eq!(heard_first(async { 1 }, async { KEYS }).await, Ok(1));
+    }
 
     #[test]
     fn the_second_request_is_enough_but_not_an_echo_of_the_first() {
