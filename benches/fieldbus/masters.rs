@@ -87,23 +87,16 @@ fn rate() -> anyhow::Result<Rate> {
 
 /// Has a slave behind a pseudo-terminal while `master` uses it.
 fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyhow::Result<f64> {
-    let shared = Shared(Arc::new(Mutex::new(Slave::new(slave(rate()?), Echo::default()))));
+    let shared = Shared(Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate()?), Echo::default()))));
     let runtime = runtime()?;
     let (mut server, port) = {
         let _guard = runtime.enter();
         StreamServer::pseudo_terminal(None, None)?
     };
-    let (quit, mut quits) = oneshot::channel::<()>();
+    let (quit, quits) = oneshot::channel::<()>();
     let mut peer = Arc::clone(&shared.0);
     let thread = thread::spawn(move || {
-        runtime.block_on(async {
-            loop {
-                tokio::select! {
-                    turned = server.turn(&mut peer) => if turned.is_err() { return },
-                    _ = &mut quits => return,
-                }
-            }
-        });
+        runtime.block_on(server.run(&mut peer, quits));
         runtime.shutdown_background();
     });
     let figure = master(&shared, &port);

@@ -76,17 +76,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
 
     let (bitrate, slave) = (Bitrate::K500, Mac::new(5).context("a MAC")?);
     let identity = Identity { mac: Mac::new(1).context("a MAC")?, vendor: 0xFFFF, serial: 7 };
-    let setup = NodeSetup {
-        mac: slave,
-        bitrate,
-        vendor: 636,
-        device_type: 0,
-        product: 1,
-        revision: (1, 1),
-        serial: 1,
-        name: "YRCX".to_owned(),
-        size: u16::try_from(SIZE)?,
-    };
+    let setup = NodeSetup::stand_in(slave, bitrate, u16::try_from(SIZE)?);
     let images = Images {
         profiles: vec![Profile { name: "Normal", resting: resting() }],
         cycle: CYCLE,
@@ -154,7 +144,7 @@ pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
         let rate = Rate::from_name(name).context("a speed")?;
         let settings = Settings { cycle: Some(Duration::ZERO), ..Settings::new(5, rate, resting()) };
         let mut master = Master::new(Duration::ZERO, settings)?;
-        let mut slave = Slave::new(slave(rate), Echo::default());
+        let mut slave = Slave::new(Setup::stand_in(rate), Echo::default());
         let mut wire = Wire::new(Some(rate.pace()), None);
         let (mut now, mut start) = (Duration::ZERO, None);
         let exchanges = u64::from(effort.exchanges.min(500));
@@ -185,19 +175,6 @@ pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
         table.row(Row::new(of_cycle, millis(cycle)).beside(ratio, "the line", GOAL));
     }
     Ok(table)
-}
-
-/// A slave as the simulator is one.
-pub fn slave(rate: Rate) -> Setup {
-    Setup {
-        station: 5,
-        ident: 0x1234,
-        configuration: vec![0xC0, 0xD7, 0xD7],
-        input: SIZE,
-        output: SIZE,
-        parameters: vec![vec![], vec![0, 0, 0]],
-        rate,
-    }
 }
 
 pub fn millis(time: Duration) -> String {

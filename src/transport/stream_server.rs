@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::oneshot;
 use tokio::time::Instant;
 
 use super::fault::LineFaultSpec;
@@ -69,6 +70,16 @@ impl StreamServer {
     /// Time since the start, the clock of the peer.
     pub fn now(&self) -> Duration {
         self.start.elapsed()
+    }
+
+    /// Serves until somebody quits, or the end can serve no more.
+    pub async fn run(&mut self, peer: &mut impl Peer, mut quits: oneshot::Receiver<()>) {
+        loop {
+            tokio::select! {
+                turned = self.turn(peer) => if turned.is_err() { return },
+                _ = &mut quits => return,
+            }
+        }
     }
 
     /// Serves until something arrives or is due, and all that follows from it; call again and again.

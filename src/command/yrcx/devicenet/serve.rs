@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::simulated::{self, Controller, fault, faults, setup, size};
+use super::simulated::{self, Controller, fault, faults, size};
 #[cfg(unix)]
 use crate::command::serve::terminal_link::TerminalLink;
 use crate::command::serve::{address, cannot_listen};
@@ -14,7 +14,7 @@ use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::target::devicenet::SLCAN;
 use crate::transport::devicenet::can::Bitrate;
-use crate::transport::devicenet::device::DeviceFault;
+use crate::transport::devicenet::device::{DeviceFault, Setup};
 use crate::transport::devicenet::hub::{Hub, Listen};
 use crate::transport::devicenet::wire::Mac;
 use crate::transport::fault::FaultSpec;
@@ -56,7 +56,7 @@ fn bitrate(text: &str) -> Result<Bitrate, String> {
 
 impl Serve for ServeArgs {
     fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
-        let setup = setup(self.mac, size(simulator), self.bitrate);
+        let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
         let mut listen = vec![Listen::Tcp(self.slcan_bind)];
         #[cfg(unix)]
         if self.slcan_link.is_some() {

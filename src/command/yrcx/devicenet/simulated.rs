@@ -8,7 +8,6 @@ use anyhow::Context as _;
 
 use super::bus::BUS;
 use crate::command::yrcx::simulated::{self, Simulated, fault_by_name, start, wrongs};
-use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::Failure;
 use crate::settings::target::Sim;
@@ -28,7 +27,7 @@ pub(super) const MAC: u8 = 5;
 /// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
 pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let (faults, fault) = wrongs(sim, faults, fault)?;
-    let setup = setup(Mac::new(MAC).unwrap_or_default(), size(sim.bus), Bitrate::K500);
+    let setup = Setup::stand_in(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
     let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults, fault);
     Ok(served.context("the simulator on the loopback")?)
@@ -39,9 +38,9 @@ pub fn target(place: &str) -> String {
     format!("{}://{place}?mac={MAC}", SLCAN.name)
 }
 
-/// Bytes of the images of a simulator of this name.
-pub fn size(simulator: Option<&str>) -> usize {
-    if simulator == Some(COMPACT) { Image::SIGNAL_BYTES } else { Image::BYTES }
+/// Bytes of the images of a simulator of this name: the whole image, or its signals alone.
+pub fn size(simulator: Option<&str>) -> u16 {
+    if simulator == Some(COMPACT) { 4 } else { 48 }
 }
 
 /// Serves a controller as a slave.
@@ -60,21 +59,6 @@ pub fn serve(
         Device::on_line(setup, Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm))));
     device.misbehave(fault);
     Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
-}
-
-/// Identity of an older controller of the maker, as its EDS file has it.
-pub fn setup(mac: Mac, size: usize, bitrate: Bitrate) -> Setup {
-    Setup {
-        mac,
-        bitrate,
-        vendor: 636,
-        device_type: 0,
-        product: 1,
-        revision: (1, 1),
-        serial: 1,
-        name: "YRCX simulator of armctl".to_owned(),
-        size: u16::try_from(size).unwrap_or_default(),
-    }
 }
 
 /// Faults of frames on their way.

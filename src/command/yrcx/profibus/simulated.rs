@@ -10,7 +10,6 @@ use tokio::sync::oneshot;
 
 use super::bus::BUS;
 use crate::command::yrcx::simulated::{Simulated, fault_by_name, start, wrongs};
-use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::{Simulator, Start};
 use crate::failure::{Failure, plain};
 use crate::settings::target::Sim;
@@ -20,12 +19,6 @@ use crate::transport::profibus::rates::{RATES, Rate};
 use crate::transport::profibus::slave::{Setup, Slave, SlaveFault};
 use crate::transport::sim::locked;
 use crate::transport::stream_server::StreamServer;
-
-/// What a simulator is unless it is told otherwise. The ident number is a stand-in: the maker's is not public.
-const STATION: u8 = 5;
-const IDENT: u16 = 0x1234;
-/// One identifier: 24 words each way.
-const CONFIGURATION: [u8; 3] = [0xC0, 0xD7, 0xD7];
 
 /// How a slave is served.
 #[derive(Debug, Clone)]
@@ -45,7 +38,8 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rate = Rate::from_name("500k").unwrap_or(RATES[0]);
-        Self { station: STATION, ident: IDENT, rate, faults: None, mischief: None }
+        let Setup { station, ident, .. } = Setup::stand_in(rate);
+        Self { station, ident, rate, faults: None, mischief: None }
     }
 }
 
@@ -75,15 +69,7 @@ pub struct Server {
 /// Serves a controller as a slave behind a pseudo-terminal.
 pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     let failed = |error: io::Error| Failure::local(format!("cannot make a pseudo-terminal: {}", plain(&error)));
-    let setup = Setup {
-        station: options.station,
-        ident: options.ident,
-        configuration: CONFIGURATION.to_vec(),
-        input: Image::BYTES,
-        output: Image::BYTES,
-        parameters: vec![Vec::new(), vec![0; 3]],
-        rate: options.rate,
-    };
+    let setup = Setup { station: options.station, ident: options.ident, ..Setup::stand_in(options.rate) };
     let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
     slave.misbehave(options.mischief);
     let slave = Arc::new(Mutex::new(slave));
@@ -92,18 +78,11 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
         let _guard = runtime.enter();
         StreamServer::pseudo_terminal(Some(options.rate.pace()), options.faults.clone()).map_err(failed)?
     };
-    let (quit, mut quits) = oneshot::channel();
+    let (quit, quits) = oneshot::channel();
     let mut peer = Arc::clone(&slave);
     let clock = tokio::time::Instant::now();
     let serve = move || {
-        runtime.block_on(async {
-            loop {
-                tokio::select! {
-                    turned = server.turn(&mut peer) => if turned.is_err() { return },
-                    _ = &mut quits => return,
-                }
-            }
-        });
+        runtime.block_on(server.run(&mut peer, quits));
         // A read of the terminal may still wait.
         runtime.shutdown_background();
     };

@@ -46,6 +46,23 @@ pub struct Setup {
     pub size: u16,
 }
 
+impl Setup {
+    /// With the identity of an older controller of YAMAHA, as its EDS file has it.
+    pub fn stand_in(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
+        Self {
+            mac,
+            bitrate,
+            vendor: 636,
+            device_type: 0,
+            product: 1,
+            revision: (1, 1),
+            serial: 1,
+            name: "YRCX simulator of armctl".to_owned(),
+            size,
+        }
+    }
+}
+
 /// What a slave is for.
 pub trait Application: Send {
     /// A new image from the master.

@@ -54,17 +54,8 @@ impl Application for Mirror {
 }
 
 pub fn setup(number: u8, size: u16) -> Setup {
-    Setup {
-        mac: mac(number),
-        bitrate: Bitrate::K500,
-        vendor: 636,
-        device_type: 0,
-        product: 1,
-        revision: (1, 1),
-        serial: 0x00C0_FFEE,
-        name: "YRCX (sim)".to_owned(),
-        size,
-    }
+    let name = "YRCX (sim)".to_owned();
+    Setup { serial: 0x00C0_FFEE, name, ..Setup::stand_in(mac(number), Bitrate::K500, size) }
 }
 
 /// The resting image of that size: one that is not all zeros.

@@ -43,6 +43,21 @@ pub struct Setup {
     pub rate: Rate,
 }
 
+impl Setup {
+    /// 24 words each way at station 5. The ident number is a stand-in: that of the YRCX board is not public.
+    pub fn stand_in(rate: Rate) -> Self {
+        Self {
+            station: 5,
+            ident: 0x1234,
+            configuration: vec![0xC0, 0xD7, 0xD7],
+            input: 48,
+            output: 48,
+            parameters: vec![Vec::new(), vec![0; 3]],
+            rate,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     WaitParameters,

@@ -64,18 +64,6 @@ impl ImagePeer for Echo {
     }
 }
 
-fn setup(rate: Rate) -> Setup {
-    Setup {
-        station: 5,
-        ident: 0x1234,
-        configuration: vec![0xC0, 0xD7, 0xD7],
-        input: SIZE,
-        output: SIZE,
-        parameters: vec![vec![], vec![0, 0, 0]],
-        rate,
-    }
-}
-
 struct World {
     now: Now,
     master: Master,
@@ -96,7 +84,7 @@ impl World {
         Self {
             now: Now::ZERO,
             master: Master::new(Now::ZERO, settings).unwrap(),
-            slave: Slave::new(setup(rate), Echo::default()),
+            slave: Slave::new(Setup::stand_in(rate), Echo::default()),
             wire: Wire::new(Some(rate.pace()), faults),
             sent: Vec::new(),
             heard: Vec::new(),

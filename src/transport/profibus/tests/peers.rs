@@ -7,8 +7,8 @@ use profirust::time::Instant;
 use profirust::{Baudrate, dp, fdl};
 
 use super::super::rates::Rate;
-use super::super::slave::{Slave, SlaveFault};
-use super::{Echo, MS, SIZE, setup};
+use super::super::slave::{Setup, Slave, SlaveFault};
+use super::{Echo, MS, SIZE};
 use crate::line::Wire;
 
 /// A port of theirs on a line of ours.
@@ -83,7 +83,7 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
         .build_verified(&master);
     let mut station = fdl::FdlActiveStation::new(parameters);
     let rate = rate();
-    let mut slave = Slave::new(setup(rate), Echo::default());
+    let mut slave = Slave::new(Setup::stand_in(rate), Echo::default());
     slave.misbehave(fault);
     let wire = Wire::new(Some(rate.pace()), None);
     let mut phy = Phy { now: Duration::ZERO, sent_until: Duration::ZERO, wire, slave, received: Vec::new() };

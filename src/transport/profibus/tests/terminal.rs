@@ -14,8 +14,8 @@ use super::super::master::State;
 use super::super::port::{Port, Serial};
 use super::super::rates::Rate;
 use super::super::settings::Settings;
-use super::super::slave::Slave;
-use super::{Echo, MS, image, resting, setup};
+use super::super::slave::{Setup, Slave};
+use super::{Echo, MS, image, resting};
 use crate::sim::Peer as _;
 
 /// A slave behind a pseudo-terminal, on a thread, and the path of the other end.
@@ -33,7 +33,7 @@ impl Served {
         // It has a lock as long as it is open.
         drop(far);
         near.set_timeout(MS).unwrap();
-        let slave = Arc::new(Mutex::new(Slave::new(setup(rate), Echo::default())));
+        let slave = Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate), Echo::default())));
         let is_over = Arc::new(AtomicBool::new(false));
         let (on_thread, over) = (Arc::clone(&slave), Arc::clone(&is_over));
         let thread = std::thread::spawn(move || {
