@@ -12,7 +12,7 @@ use armctl::transport::profibus::driver::Connection;
 use armctl::transport::profibus::port::{Port, Serial};
 use armctl::transport::profibus::rates::Rate;
 use armctl::transport::profibus::settings::Settings;
-use armctl::transport::profibus::slave::Slave;
+use armctl::transport::profibus::slave::{Setup, Slave};
 use armctl::transport::sim::locked;
 use armctl::transport::stream_server::StreamServer;
 use profirust::phy::ProfibusPhy;
@@ -22,7 +22,7 @@ use tokio::sync::oneshot;
 use super::Effort;
 use super::common::table::{Goal, Row, Table};
 use super::common::{median, ratio, runtime};
-use super::virtual_time::{Echo, resting, slave};
+use super::virtual_time::{Echo, resting};
 
 /// How long a slave may take to begin an answer; the same for all of them.
 const SLOT: Duration = Duration::from_millis(8);
