@@ -15,6 +15,7 @@
 
 mod alarm;
 mod arguments;
+mod before;
 pub mod backup;
 pub mod buses;
 mod check;
