@@ -61,6 +61,7 @@ mod several;
 pub mod simulated;
 mod single;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

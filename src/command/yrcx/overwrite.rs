@@ -71,14 +71,28 @@ pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order) -> 
     if confirmation(order.command()) != Confirmation::WhenKnown {
         return link.ask(order).await;
     }
+    give_either(link, authority, order, order).await
+}
+
+/// The same of an order that overwrites something; `other` is it with other answers, to show what of it is known in a dry
+/// run.
+pub async fn give_either(
+    link: &mut Link,
+    authority: &Authority<'_>,
+    order: &Order,
+    other: &Order,
+) -> Result<Done, Failure> {
     let replaced = confirm(link, authority, order).await?;
     if replaced.is_there {
         return Ok(Done { replaced: Some(replaced), ..Done::default() });
     }
     if link.is_dry() {
-        let reason =
-            if may_be_there(order.command()) { Reason::default().depending_on(DIFFERS) } else { Reason::default() };
-        link.plan_depending(order, order, reason);
+        let reason = match order.command() {
+            _ if order != other => Reason::about("stores it").depending_on("the unit of the point"),
+            command if may_be_there(command) => Reason::default().depending_on(DIFFERS),
+            _ => Reason::default(),
+        };
+        link.plan_depending(order, other, reason);
         return Ok(Done::default());
     }
     let done = link.ask(order).await?;
@@ -179,7 +193,7 @@ fn which(order: &Order) -> (&'static str, Vec<(Key, Json)>) {
 }
 
 /// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
-async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+pub async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
         link.plan(order, about);
         return Ok(None);
