@@ -55,6 +55,14 @@ pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
     bounded(io::stdin().lock(), most)
 }
 
+/// The bytes of a regular file, or of stdin for `-`, up to so many.
+///
+/// # Errors
+/// As [`read`] and [`stdin`].
+pub fn input(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if path == Path::new("-") { stdin(most) } else { read(path, most) }
+}
+
 fn bounded(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;

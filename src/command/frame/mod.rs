@@ -23,6 +23,7 @@ pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod teach;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod trace;

@@ -44,6 +44,8 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("axes", Read, Read),
     ("position-error", Read, Read),
     ("torque", Read, Read),
+    // What a variable holds that was not taught is not overwritten.
+    ("teach P5", Destroy, Write),
     ("var get B0", Read, Read),
     ("var watch B0", Read, Read),
     ("var set B0=1 P1.tool=2", Write, Write),

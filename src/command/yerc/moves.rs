@@ -4,6 +4,8 @@ mod arguments;
 mod going;
 mod question;
 
+pub(super) use self::going::stands;
+pub(super) use self::question::{compared, moved_meanwhile};
 use clap::Args;
 
 use self::arguments::{

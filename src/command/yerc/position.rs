@@ -9,6 +9,7 @@ use serde::{Serialize, Serializer};
 use super::link::Link;
 use super::link::Yerc;
 use super::orders::usage;
+use super::var::{PositionData, held};
 use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
@@ -19,7 +20,7 @@ use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{self, Axes, ExtendedForm, Form, MAX_AXES, PositionKind};
 use crate::controller::yerc::query::{Coordinates, ReadPosition};
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, Section, Table, View};
 
 /// Where a group stands (FS and DX 3.3.6).
 #[derive(Debug, Args)]
@@ -106,7 +107,9 @@ pub(super) async fn ask(
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PositionReport {
     /// Control group, such as `R1`.
-    group: String,
+    #[schemars(with = "String")]
+    #[serde(serialize_with = "as_text")]
+    group: Group,
     /// By axis; null if not asked for.
     pulse: Option<ItemOutcome<PulsePosition>>,
     /// In base coordinates; null if not asked for.
@@ -115,6 +118,8 @@ pub struct PositionReport {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct PulsePosition {
+    /// As `var set` takes it: `P5=pulse:s=…`.
+    text: String,
     /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
     pulses: ByAxis,
     tool: u32,
@@ -123,6 +128,8 @@ struct PulsePosition {
 /// Six coordinates and how the arm reaches them.
 #[derive(Debug, Serialize, JsonSchema)]
 struct CartesianPosition {
+    /// As `var set` takes it: `P5=base:x=…`.
+    text: String,
     x_mm: Option<f64>,
     y_mm: Option<f64>,
     z_mm: Option<f64>,
@@ -150,7 +157,7 @@ struct CartesianPosition {
 
 impl PositionReport {
     fn nowhere(group: Group) -> Self {
-        Self { group: group.to_string(), pulse: None, base: None }
+        Self { group, pulse: None, base: None }
     }
 
     fn pulses(&self) -> Option<&PulsePosition> {
@@ -189,15 +196,16 @@ impl PositionReport {
         });
         match asked {
             Coordinates::Pulse => {
-                let is_robot = self.group.starts_with('R');
+                let is_robot = matches!(self.group, Group::Robot(_));
                 let pulse = position.map(|(position, fitted)| PulsePosition {
+                    text: text(self.group, position),
                     pulses: ByAxis::new(position.axes, is_robot, fitted),
                     tool: position.tool,
                 });
                 self.pulse = Some(ItemOutcome::new(what("pulses"), pulse));
             }
             Coordinates::Base => {
-                let base = position.map(|(position, fitted)| CartesianPosition::new(&position, fitted));
+                let base = position.map(|(position, fitted)| CartesianPosition::new(self.group, &position, fitted));
                 self.base = Some(ItemOutcome::new(what("base coordinates"), base));
             }
         }
@@ -205,13 +213,14 @@ impl PositionReport {
 }
 
 impl CartesianPosition {
-    fn new(position: &payload::Position, fitted: Fitted) -> Self {
+    fn new(group: Group, position: &payload::Position, fitted: Fitted) -> Self {
         let axes = position.axes.as_slice();
         let value = |axis: usize| {
             let value = axes.get(axis).filter(|_| fitted.has(axis));
             value.map(|value| decimal(*value, position.kind.unit(axis)))
         };
         Self {
+            text: text(group, *position),
             x_mm: value(0),
             y_mm: value(1),
             z_mm: value(2),
@@ -229,6 +238,16 @@ impl CartesianPosition {
             fitted,
         }
     }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn as_text<S: Serializer>(group: &Group, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(group)
+}
+
+/// A position of a group as `var set` takes it.
+fn text(group: Group, position: payload::Position) -> String {
+    PositionData::of(&held(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
 }
 
 /// The value of a wire integer. It is the binary number nearest to the decimal one, so it prints with the same digits.
@@ -309,7 +328,9 @@ impl Report for PositionReport {
             }
             table.rows.push(row);
         }
-        View::table(table)
+        let texts = self.pulses().map(|pulse| &pulse.text).into_iter();
+        let texts = texts.chain(self.cartesian().map(|base| &base.text)).map(|text| ("text", text.as_str().into()));
+        View { sections: vec![Section::Table(table), Section::Fields(texts.collect())] }
     }
 
     fn failure(&self) -> Option<Failure> {

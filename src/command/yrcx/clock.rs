@@ -238,9 +238,10 @@ impl Command for Set {
         }
         let date = date.filter(|_| errors.is_empty()).map(|date| date.to_string());
         let time = time.as_ref().map(describe);
-        let items = [("date", &date), ("time", &time)].into_iter().zip(found).filter_map(|((name, new), old)| {
-            Some(Written::new(Part { name }, Old::read(old), new.clone()?))
-        });
+        let items = [("date", &date), ("time", &time)]
+            .into_iter()
+            .zip(found)
+            .filter_map(|((name, new), old)| Some(Written::new(Part { name }, Old::read(old), new.clone()?)));
         Ok(WasSet { items: items.collect(), date, time, errors })
     }
 }

@@ -15,8 +15,8 @@
 
 mod alarm;
 mod arguments;
-mod before;
 pub mod backup;
+mod before;
 pub mod buses;
 mod check;
 mod clock;
@@ -62,6 +62,7 @@ mod several;
 pub mod simulated;
 mod single;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

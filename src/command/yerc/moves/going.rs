@@ -324,7 +324,8 @@ impl Watch {
     }
 }
 
-fn stands(one: &Position, other: &Position) -> bool {
+/// Whether both are readings of a group that stands still.
+pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool {
     let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
 }

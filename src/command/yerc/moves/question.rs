@@ -79,7 +79,8 @@ impl Question<'_> {
     }
 }
 
-fn compared(change: Change, group: Group, start: &Position, target: &[i32]) -> Change {
+/// Each axis with its old and its new value.
+pub(in crate::command::yerc) fn compared(change: Change, group: Group, start: &Position, target: &[i32]) -> Change {
     let axes = axis_names(start.kind, group).into_iter().zip(start.axes.as_slice().iter().zip(target)).enumerate();
     axes.fold(change, |change, (at, (name, (old, new)))| {
         change.replaces(name, start.kind.unit(at).show(*old).to_string().as_str(), &shown(start.kind, at, *new))
@@ -100,7 +101,7 @@ fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
 }
 
 /// Where the robot stands is not where it stood when that was asked.
-pub(super) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
+pub(in crate::command::yerc) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    outdated(format!("{group} has moved since the question, to {place}; nothing was ordered"))
+    outdated(format!("{group} has moved since the question, to {place}; nothing was sent"))
 }
