@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use super::link::Link;
 use crate::command::frame::interrupt::interruptible;
-use crate::controller::yerc::variables::PlannedRead;
 use crate::controller::yerc::query::Query;
+use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 

@@ -15,8 +15,8 @@
 
 mod alarm;
 mod arguments;
-mod before;
 pub mod backup;
+mod before;
 pub mod buses;
 mod check;
 mod clock;

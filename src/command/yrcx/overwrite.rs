@@ -73,12 +73,7 @@ pub fn confirmation(command: Command) -> Confirmation {
 
 /// Gives an order that `intent` says in a line, and reads first what it replaces. If it overwrites something, that is
 /// confirmed; what is there already is not written.
-pub async fn give(
-    link: &mut Link,
-    authority: &Authority<'_>,
-    order: &Order,
-    intent: String,
-) -> Result<Done, Failure> {
+pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
     if target(order).is_none() {
         let old = before(link, order).await?;
         authority.confirm(&question(order, intent, &old)).await?;

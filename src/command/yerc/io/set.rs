@@ -131,7 +131,10 @@ impl Command for Set {
         let groups = values.into_iter().map(|(group, value)| {
             Ok(Written::new(GroupState::new(model, group, Ok(value))?, Old::read(old(group)), value))
         });
-        Ok(Switched { signals: signals.collect::<Result<_, Failure>>()?, groups: groups.collect::<Result<_, Failure>>()? })
+        Ok(Switched {
+            signals: signals.collect::<Result<_, Failure>>()?,
+            groups: groups.collect::<Result<_, Failure>>()?,
+        })
     }
 }
 
@@ -202,11 +205,15 @@ pub struct Switched {
 
 impl Report for Switched {
     fn view(&self) -> View {
-        View { sections: [
-            signal_table(self.signals.iter().map(|written| &written.item)),
-            group_table(self.groups.iter().map(|written| &written.item)),
-        ]
-        .into_iter().flatten().collect() }
+        View {
+            sections: [
+                signal_table(self.signals.iter().map(|written| &written.item)),
+                group_table(self.groups.iter().map(|written| &written.item)),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+        }
     }
 }
 

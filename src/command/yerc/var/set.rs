@@ -26,7 +26,9 @@ use crate::controller::typed::{self, integer};
 use crate::controller::yerc::payload::{PayloadError, Position};
 use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
-use crate::controller::yerc::variables::{ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes};
+use crate::controller::yerc::variables::{
+    ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes,
+};
 use crate::failure::Failure;
 use crate::files;
 use crate::output::view::{Cell, Table, View};
@@ -195,11 +197,12 @@ impl Command for Set {
             Some(Value::Position(position)) => Some(position),
             _ => None,
         };
-        let mut parts: Vec<Part> =
-            self.assignments.iter().filter_map(|it| it.part(position(&it.reference))).collect();
-        parts.extend(whole_words.into_iter().map(|(reference, word)| {
-            Part::new(reference, word, position(&reference).map(|old| word.old(old)))
-        }));
+        let mut parts: Vec<Part> = self.assignments.iter().filter_map(|it| it.part(position(&it.reference))).collect();
+        parts.extend(
+            whole_words
+                .into_iter()
+                .map(|(reference, word)| Part::new(reference, word, position(&reference).map(|old| word.old(old)))),
+        );
         let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
         if link.is_dry() && !words.is_empty() {
             part::plan_reads(link, &words);
@@ -247,7 +250,9 @@ impl Assignment {
             name: self.reference.to_string(),
             part: format!("axis{}", request.attribute.saturating_sub(1)),
             attribute: request.attribute,
-            old: old.and_then(|old| old.axes.padded().get(usize::from(request.attribute).checked_sub(2)?).copied()).map(Into::into),
+            old: old
+                .and_then(|old| old.axes.padded().get(usize::from(request.attribute).checked_sub(2)?).copied())
+                .map(Into::into),
             new: word.into(),
             value: word.into(),
         })
