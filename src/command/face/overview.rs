@@ -8,7 +8,7 @@ use crate::command::Report;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{self, Origin};
+use crate::settings::alarms;
 
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
@@ -67,7 +67,7 @@ impl Fault {
     /// Takes the text that the operator's `alarms.toml` has for the code, if it has one.
     pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
         if let Some(code) = &self.fault_code
-            && let Some(explained) = alarms::find(Origin::of(robot), code)?
+            && let Some(explained) = alarms::find(robot, code)?
         {
             self.fault_text = Some(explained.text);
         }
