@@ -285,9 +285,10 @@ impl Scanner {
         ended
     }
 
-    /// Whether there is no connection and no search.
+    /// Whether nothing is left that it could do: there is no connection and no search, or it is not on the bus.
     pub fn is_idle(&self) -> bool {
-        self.connections.is_empty() && self.finder.is_none()
+        let is_off = matches!(self.phase, Phase::Failed(_)) || self.bus.health.state == BusState::Off;
+        is_off || self.connections.is_empty() && self.finder.is_none()
     }
 
     fn advance(&mut self, now: Now) {
