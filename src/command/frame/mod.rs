@@ -11,6 +11,7 @@ pub mod batch;
 pub mod command;
 pub mod command_set;
 pub mod connection;
+pub mod cycle;
 pub mod dry_run;
 pub mod interrupt;
 pub mod items;

@@ -80,6 +80,7 @@ impl Command for Position {
             report.take(*coordinates, position);
         }
         items::nothing(wanted.len(), report.errors())?;
+        report.turned(link.pulses_per_degree(self.group));
         Ok(report)
     }
 }
@@ -100,6 +101,7 @@ pub(super) async fn ask(
     let mut report = PositionReport::nowhere(group);
     report.take(coordinates, Ok((position, fitted)));
     items::nothing(1, report.errors())?;
+    report.turned(link.pulses_per_degree(group));
     Ok((position, report))
 }
 
@@ -122,6 +124,10 @@ struct PulsePosition {
     text: String,
     /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
     pulses: ByAxis,
+    /// The same in degrees, where the inventory says the pulses of a degree.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "std::collections::BTreeMap<String, f64>")]
+    degrees: Option<Degrees>,
     tool: u32,
 }
 
@@ -182,6 +188,15 @@ impl PositionReport {
         pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
     }
 
+    /// Adds degrees, where the pulses of a degree are known.
+    fn turned(&mut self, per_degree: &[f64]) {
+        let pulse = self.pulse.as_mut().and_then(ItemOutcome::data_mut).filter(|_| !per_degree.is_empty());
+        if let Some(pulse) = pulse {
+            let rows = pulse.pulses.rows().zip(per_degree);
+            pulse.degrees = Some(Degrees(rows.map(|((name, pulses), per)| (name, f64::from(pulses) / per)).collect()));
+        }
+    }
+
     /// Takes the outcome for the coordinates that were asked for.
     fn take(&mut self, asked: Coordinates, position: Result<(payload::Position, Fitted), Failure>) {
         let what = |coordinates: &str| format!("position of {} in {coordinates}", self.group);
@@ -200,6 +215,7 @@ impl PositionReport {
                 let pulse = position.map(|(position, fitted)| PulsePosition {
                     text: text(self.group, position),
                     pulses: ByAxis::new(position.axes, is_robot, fitted),
+                    degrees: None,
                     tool: position.tool,
                 });
                 self.pulse = Some(ItemOutcome::new(what("pulses"), pulse));
@@ -237,6 +253,18 @@ impl CartesianPosition {
             axes: position.axes,
             fitted,
         }
+    }
+}
+
+/// Degrees under the names of the axes.
+#[derive(Debug, Clone)]
+struct Degrees(Vec<(&'static str, f64)>);
+
+impl Serialize for Degrees {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // To a ten-thousandth, as controllers tell angles.
+        serializer
+            .collect_map(self.0.iter().map(|(name, degrees)| (name.to_lowercase(), (degrees * 1e4).round() / 1e4)))
     }
 }
 
@@ -315,6 +343,10 @@ impl Report for PositionReport {
         if self.pulses().is_some() {
             table.columns.extend(["axis", "pulses"]);
         }
+        let degrees = self.pulses().and_then(|pulse| pulse.degrees.as_ref());
+        if degrees.is_some() {
+            table.columns.push("deg");
+        }
         if self.cartesian().is_some() {
             table.columns.extend(["base", "value", "unit"]);
         }
@@ -322,6 +354,9 @@ impl Report for PositionReport {
             let mut row = Vec::new();
             if self.pulses().is_some() {
                 row.extend(pulses.get(index).cloned().unwrap_or_else(|| [blank(), blank()]));
+            }
+            if let Some(Degrees(degrees)) = degrees {
+                row.push(degrees.get(index).map_or_else(blank, |(_, degrees)| Cell::number(format!("{degrees:.4}"))));
             }
             if self.cartesian().is_some() {
                 row.extend(base.get(index).cloned().unwrap_or_else(|| [blank(), blank(), blank()]));
