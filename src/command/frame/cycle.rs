@@ -18,6 +18,11 @@ pub struct Repeat {
 }
 
 impl Repeat {
+    /// Of what is not repeated.
+    pub const fn once() -> Self {
+        Self { repeat: None, stats: false }
+    }
+
     /// How many runs.
     pub fn count(self) -> u32 {
         self.repeat.unwrap_or(1)

@@ -18,6 +18,7 @@ pub mod items;
 pub mod kind;
 pub mod local;
 pub mod orders;
+pub mod plot;
 pub mod repl;
 pub mod report;
 pub mod run;

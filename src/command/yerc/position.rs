@@ -14,6 +14,7 @@ use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::plot::{Past, Plot};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -31,6 +32,11 @@ pub struct Position {
     /// In pulses, in base coordinates (robots only), or both [default: what the group has]
     #[arg(long, value_enum)]
     coordinates: Option<Which>,
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: Past,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -81,6 +87,7 @@ impl Command for Position {
         }
         items::nothing(wanted.len(), report.errors())?;
         report.turned(link.pulses_per_degree(self.group));
+        report.plot = self.plot.then(|| self.past.add(report.values()));
         Ok(report)
     }
 }
@@ -116,6 +123,8 @@ pub struct PositionReport {
     pulse: Option<ItemOutcome<PulsePosition>>,
     /// In base coordinates; null if not asked for.
     base: Option<ItemOutcome<CartesianPosition>>,
+    #[serde(skip)]
+    plot: Option<Plot>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -163,7 +172,7 @@ struct CartesianPosition {
 
 impl PositionReport {
     fn nowhere(group: Group) -> Self {
-        Self { group, pulse: None, base: None }
+        Self { group, pulse: None, base: None, plot: None }
     }
 
     fn pulses(&self) -> Option<&PulsePosition> {
@@ -186,6 +195,21 @@ impl PositionReport {
             .map(|pulse| in_a_line(PositionKind::Pulse, pulse.pulses.axes.as_slice(), pulse.pulses.is_robot));
         let base = self.cartesian().map(|base| in_a_line(PositionKind::Base, base.axes.as_slice(), true));
         pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What a chart shows: base coordinates, or pulses where there are none.
+    fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
+        let (kind, axes) = match (self.cartesian(), self.pulses()) {
+            (Some(base), _) => (PositionKind::Base, base.axes),
+            (None, Some(pulse)) => (PositionKind::Pulse, pulse.pulses.axes),
+            (None, None) => return Vec::new(),
+        };
+        let names = axis_names(kind, self.group).into_iter().zip(axes.as_slice()).enumerate();
+        let value = |(at, (name, value)): (usize, (&str, &i32))| {
+            let unit = kind.unit(at);
+            (name.to_owned(), unit.symbol, usize::from(unit.decimals), decimal(*value, unit))
+        };
+        names.map(value).collect()
     }
 
     /// Adds degrees, where the pulses of a degree are known.
@@ -335,6 +359,9 @@ impl JsonSchema for ByAxis {
 
 impl Report for PositionReport {
     fn view(&self) -> View {
+        if let Some(plot) = &self.plot {
+            return View { sections: vec![plot.section()] };
+        }
         let pulses = self.pulses().into_iter().flat_map(|pulse| pulse.pulses.rows());
         let pulses: Vec<[Cell; 2]> = pulses.map(pulse_row).collect();
         let base: Vec<[Cell; 3]> = self.cartesian().into_iter().flat_map(CartesianPosition::rows).collect();

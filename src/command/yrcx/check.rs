@@ -2,6 +2,7 @@
 
 use super::connect::endpoint;
 use super::link::Yrcx;
+use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::Status;
@@ -55,6 +56,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         ("ready", &format!("its status is: {status}")),
         "another command runs, or was left over",
     );
+    layers.left_over(&left_over(image));
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
