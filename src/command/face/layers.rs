@@ -104,21 +104,30 @@ impl Layers {
         }
     }
 
-    /// The layers; those that were not reached say why.
+    /// Whether none has failed so far.
+    pub fn is_well(&self) -> bool {
+        self.found.iter().all(|layer| layer.state != State::Failed)
+    }
+
+    /// The layers, in their order; those that were not reached say why.
     pub fn finish(mut self) -> Vec<Layer> {
         let why = match self.found.iter().rev().find(|layer| layer.state == State::Failed) {
             Some(failed) => format!("{} failed", failed.layer),
             None => "it could not be asked".to_owned(),
         };
-        for name in std::mem::take(&mut self.names) {
-            if !self.found.iter().any(|found| found.layer == name) {
+        let names = std::mem::take(&mut self.names);
+        for name in &names {
+            if !self.found.iter().any(|found| found.layer == *name) {
                 self.add(name, State::Skipped, why.clone(), None);
             }
         }
+        self.found.sort_by_key(|found| names.iter().position(|name| *name == found.layer));
         self.found
     }
 
+    /// What is found of a layer later counts.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
+        self.found.retain(|known| known.layer != layer);
         self.found.push(Layer { layer, state, found, advice });
     }
 }

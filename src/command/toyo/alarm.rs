@@ -9,6 +9,7 @@ use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -16,6 +17,7 @@ use crate::controller::toyo::errors;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, Tone, View};
@@ -236,17 +238,25 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;
+        let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
+        let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
-        if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
-            return Ok(Cancelled { left: None });
-        }
-        Ok(Cancelled { left: present(link).await?.map(Explained::of) })
+        let is_gone = becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await?;
+        let left = if is_gone { None } else { present(link).await?.map(Explained::of) };
+        let words = match &left {
+            None => "no error any more".to_owned(),
+            Some(Explained { code, .. }) => format!("still there: {}: {}", code.code, code.meaning),
+        };
+        let new = New::new("fault_code", left.as_ref().map(|error| error.code.code.clone()), words);
+        Ok(Cancelled { done: new.replaces(old), left })
     }
 }
 
 /// What is left after an error was cancelled.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Cancelled {
+    #[serde(flatten)]
+    done: Done,
     /// An error that is still present; null if there is none.
     #[serde(rename = "error")]
     left: Option<Explained>,
@@ -254,10 +264,7 @@ pub struct Cancelled {
 
 impl Report for Cancelled {
     fn view(&self) -> View {
-        match &self.left {
-            None => View::text("no error any more"),
-            Some(Explained { code, .. }) => View::text(format!("still there: {}: {}", code.code, code.meaning)),
-        }
+        self.done.view()
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::items::{self, Item, read_each};
 use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -84,22 +85,24 @@ impl Watchable for Get {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Count;
+    type Report = Done;
     const ID: &'static str = "toyo.counter.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Count, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
         let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
-        link.ask(&order).await?;
         let read = Request::of(table::Command::Mcnt, [Value::Number(counter)]);
+        let old = Old::read(link.before(&read).await?.and_then(|record| record.number("count")));
+        link.ask(&order).await?;
         let found = read_back(link, &order, &read).await?.number("count");
         if found.is_some_and(|found| found != value) {
             return Err(not_held(&order, &format!("it stands at {}", found.unwrap_or_default()))
                 .hint("a program that runs may count on it meanwhile"));
         }
-        Ok(Count { counter: u8::try_from(counter).unwrap_or(u8::MAX), count: value })
+        let new = New::new("count", value, format!("counter {counter} set to {value}"));
+        Ok(new.with("counter", counter).with("count", value).replaces(old))
     }
 }
 
@@ -127,12 +130,6 @@ impl Report for Counters {
 
     fn failure(&self) -> Option<Failure> {
         items::failure_of(&self.counters)
-    }
-}
-
-impl Report for Count {
-    fn view(&self) -> View {
-        View::text(format!("counter {} set to {}", self.counter, self.count))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::command::face::sample;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -252,7 +252,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(Done::new($set, $new, $done))
+                Ok(New::new($set, $new, $done).replaces(Old::UNREAD))
             }
         }
     };

@@ -18,6 +18,7 @@ use super::numbers::within;
 use super::orders::{refuse_controls, usage};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yerc::complete;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -286,16 +287,29 @@ impl Command for Select {
         if name != self.name {
             context.screen.note(&format!("jobs are selected without .JBI: '{name}'"));
         }
+        // Of the master job of a task nothing tells which it is.
+        let was = match self.task {
+            None => link.before(&ReadJob::new(link.model, 0).map_err(usage)?).await?,
+            Some(_) => None,
+        };
+        let was = was.filter(|job| !job.name.is_empty()).map(|job| link.encoding.name(job.name.as_bytes()).text);
         link.ask(&self.query(name, link.encoding, link.model)?).await?;
-        Ok(Selected { job: name.to_owned(), line: self.task.is_none().then_some(self.line), task: self.task })
+        let words = match (self.task, self.line) {
+            (Some(task), _) => format!("{name} is the master job of task {task}"),
+            (None, 0) => format!("{name} is selected"),
+            (None, line) => format!("{name} is selected from line {line} on"),
+        };
+        let line = self.task.is_none().then_some(self.line);
+        let new = New::new("job", name, words).with("job", name);
+        Ok(Selected { done: new.replaces(Old::read(was)), line, task: self.task })
     }
 }
 
 /// What was selected.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Selected {
-    /// Name without `.JBI`.
-    job: String,
+    #[serde(flatten)]
+    done: Done,
     /// Line of the start; null for a master job.
     line: Option<u32>,
     /// The task whose master job it is; null for the job to start.
@@ -304,12 +318,7 @@ pub struct Selected {
 
 impl Report for Selected {
     fn view(&self) -> View {
-        let job = &self.job;
-        View::text(match (self.task, self.line) {
-            (Some(task), _) => format!("{job} is the master job of task {task}"),
-            (None, None | Some(0)) => format!("{job} is selected"),
-            (None, Some(line)) => format!("{job} is selected from line {line} on"),
-        })
+        self.done.view()
     }
 }
 

@@ -12,7 +12,8 @@ use super::trace::Trace;
 use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
 use crate::client::yerc::{Cause, Client, Event, TransferError};
-use crate::command::frame::dry_run::Plan;
+use crate::command::frame::dry_run::{Known as _, Plan};
+use crate::command::frame::orders::BEFORE;
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
@@ -100,6 +101,12 @@ impl Link {
     /// Asks one question or gives one order; a refusal is an answer.
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
+    }
+
+    /// Reads what a write replaces; nothing where the controller refuses to tell, and in a dry run, which notes the
+    /// question. A line that is lost is a failure: nothing was written.
+    pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
+        Ok(self.is_for(BEFORE).try_ask(question).await.known()?.and_then(Result::ok))
     }
 
     /// Asks several questions; each has its own outcome. A dry run notes them all.

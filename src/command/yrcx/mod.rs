@@ -16,6 +16,7 @@
 mod alarm;
 mod arguments;
 pub mod backup;
+mod before;
 pub mod buses;
 mod check;
 mod clock;

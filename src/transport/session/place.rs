@@ -106,6 +106,11 @@ impl Spot {
         self.stem.with_extension(SOCKET)
     }
 
+    /// What the session is named by.
+    pub fn key(&self) -> String {
+        self.stem.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// Whether somebody listens there, and nobody but this user can.
     pub fn is_open(&self) -> bool {
         self.check().is_ok_and(|is_there| is_there && socket::answers(&self.socket()))

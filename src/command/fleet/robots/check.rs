@@ -45,6 +45,10 @@ impl Family for Checked {
         Plan::default()
     }
 
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        families::of(robot.family).driver().addresses(robot)
+    }
+
     async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {
         Ok(())
     }

@@ -153,6 +153,8 @@ pub struct Stored {
     /// Whose points these are.
     task: u8,
     points: Vec<StoredRow>,
+    /// What each held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
 }
@@ -169,7 +171,7 @@ impl Stored {
     fn new(task: u8, stores: &[Store], fates: &[StoreResult]) -> Self {
         let rows =
             stores.iter().zip(fates).map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted), result: *fate });
-        Self { task, points: rows.collect(), cells: stores::sum(fates) }
+        Self { task, points: rows.collect(), items: stores::written(stores), cells: stores::sum(fates) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
@@ -29,6 +29,7 @@ impl Command for Stop {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
         context.link.ask(&query::Hold(true)).await?;
         let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
-        Ok(Done::new("held", true, words))
+        // A stop waits for nothing, as `hold on` does.
+        Ok(New::new("held", true, words).replaces(Old::UNREAD))
     }
 }

@@ -122,6 +122,11 @@ impl Entry {
         }
     }
 
+    /// Its value in JSON; null where it has none.
+    pub fn data(&self) -> Json {
+        serde_json::to_value(&self.value).unwrap_or(Json::Null)
+    }
+
     /// Whether it has a value, and that is a number.
     pub fn is_number(&self) -> bool {
         matches!(self.value, Some(Data::Integer(_) | Data::Real(_)))

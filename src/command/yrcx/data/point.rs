@@ -127,7 +127,7 @@ impl Command for Set {
         let Given { unit, four, hand } = self.given()?;
         let draft = link.draft(table::Command::PointSet)?.with(Key::Point, self.point).with(Key::Unit, unit);
         let order = four.put(draft).with_some(Key::HandSystem, hand.clone()).build()?;
-        let done = overwrite::give(link, &authority, &order).await?;
+        let done = overwrite::give(link, &authority, &order, Command::intent(self)).await?;
         let unit = if unit == "mm" { "mm" } else { "pulses" };
         let hand = hand.map(|hand| format!(", {hand}-handed")).unwrap_or_default();
         let words = format!("defined point {}: {} {unit}{hand}", self.point, four.describe());

@@ -9,7 +9,7 @@ use tokio::time::{Instant, timeout};
 
 use super::{describe, named, put};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, Context, Report};
@@ -99,9 +99,10 @@ impl Command for Run {
         link.ask(&order).await?;
         let began = Instant::now();
         let what = self.which.describe();
-        let done = Done::new("program_state", "running", format!("started {what}"));
+        let done = New::new("program_state", "running", format!("started {what}"));
         let done = named(done, self.which.program(), self.which.name(), self.which.task.as_ref());
         let done = if self.which.all_programs { done.with("all_programs", true) } else { done };
+        let done = done.replaces(Old::UNREAD);
         let Some(limit) = self.wait else { return Ok(Ran { done, ended: None, elapsed_ms: None }) };
         if link.is_dry() {
             link.then("what the controller shows is looked at until SO(13) tells that no program runs");
