@@ -83,6 +83,8 @@ pub struct Robot {
     pub hold: Setting<bool>,
     /// Controller model; means something for yerc alone.
     pub model: Setting<Model>,
+    /// Pulses of a degree of each axis of the first robot; empty where nobody said. Means something for yerc alone.
+    pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
     pub tags: Vec<String>,
     /// Which sessions commands to it go through.
@@ -263,7 +265,8 @@ impl Sources {
                 .hint(format!("use `armctl {} …` for it", entry.family)));
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
-        Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+        let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
+        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), ..robot })
     }
 
     /// The robot at an address, with every setting in force.
@@ -391,6 +394,7 @@ impl Sources {
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
+            pulses_per_degree: Vec::new(),
             tags,
             sessions: self.selection.sessions,
             alarms: self.alarms(),

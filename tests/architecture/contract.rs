@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 45] = [
+const YERC: [&str; 47] = [
     "status",
     "backup",
     "restore",
@@ -14,7 +14,9 @@ const YERC: [&str; 45] = [
     "alarm history",
     "alarm reset",
     "alarm cancel",
+    "job list",
     "job show",
+    "job stop",
     "job select",
     "job start",
     "file list",

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
 
 use super::report::Report;
 use crate::failure::{Failure, Kind};
@@ -25,6 +25,9 @@ pub struct Taught<P, Q> {
     position: Q,
     /// Whether it was written; false where it held that already.
     written: bool,
+    /// Which point it is, in the words of the family.
+    #[serde(flatten)]
+    with: Map<String, Json>,
     /// Old and new in words.
     #[serde(skip)]
     words: [String; 2],
@@ -34,7 +37,14 @@ impl<P, Q> Taught<P, Q> {
     /// Of values and how they are shown.
     pub fn new(name: impl Into<String>, old: Option<P>, new: P, position: Q, shown: impl Fn(&P) -> String) -> Self {
         let words = [old.as_ref().map_or_else(|| "undefined".to_owned(), &shown), shown(&new)];
-        Self { name: name.into(), old, new, position, written: true, words }
+        Self { name: name.into(), old, new, position, written: true, with: Map::new(), words }
+    }
+
+    /// With a name or a number that belongs to it.
+    #[must_use]
+    pub fn with(mut self, name: &str, value: impl Into<Json>) -> Self {
+        self.with.insert(name.to_owned(), value.into());
+        self
     }
 
     /// The same where nothing had to be written.

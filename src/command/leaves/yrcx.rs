@@ -176,6 +176,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx power-on --dry-run", Motion),
     ("yrcx program select --program 1 --priority 32", Write),
     ("yrcx program select --name PICK --priority 32 --task 2", Write),
+    ("yrcx program run COUNT --wait", Motion),
     ("yrcx program run --program 1", Motion),
     ("yrcx program run --all-programs", Motion),
     ("yrcx program step --task 1", Motion),

@@ -14,6 +14,7 @@ use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::plot::{Past, Plot};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -31,6 +32,11 @@ pub struct Position {
     /// In pulses, in base coordinates (robots only), or both [default: what the group has]
     #[arg(long, value_enum)]
     coordinates: Option<Which>,
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: Past,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -80,6 +86,8 @@ impl Command for Position {
             report.take(*coordinates, position);
         }
         items::nothing(wanted.len(), report.errors())?;
+        report.turned(link.pulses_per_degree(self.group));
+        report.plot = self.plot.then(|| self.past.add(report.values()));
         Ok(report)
     }
 }
@@ -100,6 +108,7 @@ pub(super) async fn ask(
     let mut report = PositionReport::nowhere(group);
     report.take(coordinates, Ok((position, fitted)));
     items::nothing(1, report.errors())?;
+    report.turned(link.pulses_per_degree(group));
     Ok((position, report))
 }
 
@@ -114,6 +123,8 @@ pub struct PositionReport {
     pulse: Option<ItemOutcome<PulsePosition>>,
     /// In base coordinates; null if not asked for.
     base: Option<ItemOutcome<CartesianPosition>>,
+    #[serde(skip)]
+    plot: Option<Plot>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -122,6 +133,10 @@ struct PulsePosition {
     text: String,
     /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
     pulses: ByAxis,
+    /// The same in degrees, where the inventory says the pulses of a degree.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "std::collections::BTreeMap<String, f64>")]
+    degrees: Option<Degrees>,
     tool: u32,
 }
 
@@ -157,7 +172,7 @@ struct CartesianPosition {
 
 impl PositionReport {
     fn nowhere(group: Group) -> Self {
-        Self { group, pulse: None, base: None }
+        Self { group, pulse: None, base: None, plot: None }
     }
 
     fn pulses(&self) -> Option<&PulsePosition> {
@@ -182,6 +197,30 @@ impl PositionReport {
         pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
     }
 
+    /// What a chart shows: base coordinates, or pulses where there are none.
+    fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
+        let (kind, axes) = match (self.cartesian(), self.pulses()) {
+            (Some(base), _) => (PositionKind::Base, base.axes),
+            (None, Some(pulse)) => (PositionKind::Pulse, pulse.pulses.axes),
+            (None, None) => return Vec::new(),
+        };
+        let names = axis_names(kind, self.group).into_iter().zip(axes.as_slice()).enumerate();
+        let value = |(at, (name, value)): (usize, (&str, &i32))| {
+            let unit = kind.unit(at);
+            (name.to_owned(), unit.symbol, usize::from(unit.decimals), decimal(*value, unit))
+        };
+        names.map(value).collect()
+    }
+
+    /// Adds degrees, where the pulses of a degree are known.
+    fn turned(&mut self, per_degree: &[f64]) {
+        let pulse = self.pulse.as_mut().and_then(ItemOutcome::data_mut).filter(|_| !per_degree.is_empty());
+        if let Some(pulse) = pulse {
+            let rows = pulse.pulses.rows().zip(per_degree);
+            pulse.degrees = Some(Degrees(rows.map(|((name, pulses), per)| (name, f64::from(pulses) / per)).collect()));
+        }
+    }
+
     /// Takes the outcome for the coordinates that were asked for.
     fn take(&mut self, asked: Coordinates, position: Result<(payload::Position, Fitted), Failure>) {
         let what = |coordinates: &str| format!("position of {} in {coordinates}", self.group);
@@ -200,6 +239,7 @@ impl PositionReport {
                 let pulse = position.map(|(position, fitted)| PulsePosition {
                     text: text(self.group, position),
                     pulses: ByAxis::new(position.axes, is_robot, fitted),
+                    degrees: None,
                     tool: position.tool,
                 });
                 self.pulse = Some(ItemOutcome::new(what("pulses"), pulse));
@@ -237,6 +277,18 @@ impl CartesianPosition {
             axes: position.axes,
             fitted,
         }
+    }
+}
+
+/// Degrees under the names of the axes.
+#[derive(Debug, Clone)]
+struct Degrees(Vec<(&'static str, f64)>);
+
+impl Serialize for Degrees {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // To a ten-thousandth, as controllers tell angles.
+        serializer
+            .collect_map(self.0.iter().map(|(name, degrees)| (name.to_lowercase(), (degrees * 1e4).round() / 1e4)))
     }
 }
 
@@ -307,6 +359,9 @@ impl JsonSchema for ByAxis {
 
 impl Report for PositionReport {
     fn view(&self) -> View {
+        if let Some(plot) = &self.plot {
+            return View { sections: vec![plot.section()] };
+        }
         let pulses = self.pulses().into_iter().flat_map(|pulse| pulse.pulses.rows());
         let pulses: Vec<[Cell; 2]> = pulses.map(pulse_row).collect();
         let base: Vec<[Cell; 3]> = self.cartesian().into_iter().flat_map(CartesianPosition::rows).collect();
@@ -315,6 +370,10 @@ impl Report for PositionReport {
         if self.pulses().is_some() {
             table.columns.extend(["axis", "pulses"]);
         }
+        let degrees = self.pulses().and_then(|pulse| pulse.degrees.as_ref());
+        if degrees.is_some() {
+            table.columns.push("deg");
+        }
         if self.cartesian().is_some() {
             table.columns.extend(["base", "value", "unit"]);
         }
@@ -322,6 +381,9 @@ impl Report for PositionReport {
             let mut row = Vec::new();
             if self.pulses().is_some() {
                 row.extend(pulses.get(index).cloned().unwrap_or_else(|| [blank(), blank()]));
+            }
+            if let Some(Degrees(degrees)) = degrees {
+                row.push(degrees.get(index).map_or_else(blank, |(_, degrees)| Cell::number(format!("{degrees:.4}"))));
             }
             if self.cartesian().is_some() {
                 row.extend(base.get(index).cloned().unwrap_or_else(|| [blank(), blank(), blank()]));

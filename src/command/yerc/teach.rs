@@ -88,7 +88,7 @@ impl Command for Teach {
         let new = held(group, here);
         let is_unchanged = old.as_ref().map(Value::emit) == Some(new.emit());
         let is_asked = authority.asks();
-        authority.confirm(&self.change(group, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
+        authority.confirm(&self.change(link, group, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
         if is_asked {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !stands(&here, &now) {
@@ -156,8 +156,9 @@ impl Teach {
     }
 
     /// What the question says.
-    fn change(&self, group: Group, old: Option<&Value>, here: &Position) -> Change {
+    fn change(&self, link: &Link, group: Group, old: Option<&Value>, here: &Position) -> Change {
         let Some(old) = old.map(as_position) else { return Change::nothing() };
+        let per_degree = link.pulses_per_degree(group);
         let change = Change::new(format!("overwrite {} with the position of {group}", self.variable));
         if old.kind != here.kind {
             let shown = |position| PositionData::of(&held(group, position)).map(|data| data.text().to_owned());
@@ -167,7 +168,7 @@ impl Teach {
                 &shown(*here).unwrap_or_default(),
             );
         }
-        let change = compared(change, group, &old, here.axes.as_slice());
+        let change = compared(change, group, &old, here.axes.as_slice(), per_degree);
         [("tool", old.tool, here.tool), ("user", old.user, here.user)]
             .into_iter()
             .filter(|(_, old, new)| old != new)

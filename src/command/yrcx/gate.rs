@@ -143,6 +143,7 @@ const MOTIONS: &[&str] = &[
     "servo on",
     "motor on",
     "program run --all-programs",
+    "program run MAIN",
     "program step --task 1",
     "program skip --task 1",
     "program next --task 1",

@@ -81,7 +81,8 @@ impl Command for Teach {
             return Err(mismatch(&format!("point {name}"), &place.in_a_line(), &new.position().in_a_line()));
         }
         let old = old.as_ref().map(Coordinates::of);
-        Ok(Taught::new(name, old, new, place, |point| point.position().in_a_line()))
+        let taught = Taught::new(name, old, new, place, |point| point.position().in_a_line());
+        Ok(taught.with("set", "point").with("point", held.int(Key::Point)))
     }
 }
 

@@ -100,7 +100,8 @@ impl Teach {
         if new != place {
             return Err(mismatch(&format!("point {name}"), &shown(&place), &shown(&new)));
         }
-        Ok(Taught::new(name, Some(old), new, place, shown).unchanged(fates == [StoreResult::Unchanged]))
+        let taught = Taught::new(name, Some(old), new, place, shown).unchanged(fates == [StoreResult::Unchanged]);
+        Ok(taught.with("point", self.point).with("task", task))
     }
 }
 
