@@ -114,6 +114,7 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo point list --to 50 --csv points.csv", Read),
     ("toyo point set 1 100 50.5 0 0", Destroy),
     ("toyo point set 1 z=12.5", Destroy),
+    ("toyo point list --csv points.csv --update", Read),
     ("toyo point set --from points.csv", Destroy),
     ("toyo position", Read),
     ("toyo position --watch 500ms", Read),

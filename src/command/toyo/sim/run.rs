@@ -12,7 +12,7 @@ use crate::command::toyo::point::AXES;
 use crate::command::toyo::program::text;
 use crate::controller::toyo::bulk::{self, Placed, Setting};
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::findings::Finding;
+use crate::controller::findings::Finding;
 use crate::controller::toyo::program::{MOST_STEPS, check};
 use crate::controller::toyo::simulator::{Simulator, Start, What};
 use crate::failure::Failure;

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{Four, four, mm};
 use crate::command::commands;
+use crate::command::yrcx::backup::{Dump, Restore};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
@@ -22,6 +23,10 @@ commands! {
         Get(Get),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
+        /// Save points and their comments to a CSV file
+        Dump(Dump),
+        /// Write points and their comments from a CSV file
+        Restore(Restore),
     }
 }
 

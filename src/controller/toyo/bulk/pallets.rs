@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 
 use super::reading::{self, Reading};
 use crate::toyo::field::Value;
-use crate::toyo::findings::Finding;
+use crate::findings::Finding;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;
 use crate::toyo::table::palletizing::RECORDS;

@@ -8,8 +8,8 @@ use toml_edit::{Document, Item, Table, TableLike, Value as Toml};
 use super::plain;
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, Form, Value};
-use crate::toyo::findings::{Finding, Findings, SourceLocation};
-use crate::toyo::source;
+use crate::findings::{Finding, Findings, SourceLocation};
+use crate::source;
 
 /// What fields are, for people: `, mm` or `; J Japanese, E English`.
 pub(super) fn comment(fields: &[Field]) -> String {

@@ -2,7 +2,7 @@
 
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
-use crate::toyo::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, SourceLocation};
 use crate::toyo::table::instructions::INSTRUCTIONS;
 use crate::toyo::table::{Instruction, Op};
 

@@ -27,8 +27,8 @@ pub use listing::{
     Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_with, not_read, tags, used, uses,
 };
 
-pub use super::findings::{Finding, Severity};
-use super::findings::{Findings, SourceLocation};
+pub use crate::findings::{Finding, Severity};
+use crate::findings::{Findings, SourceLocation};
 use super::layout::Record;
 use super::table::Instruction;
 
