@@ -49,6 +49,7 @@ transcripts! {
     robots
     robots_check
     sessions
+    sheets
     signals
     simulator
     status

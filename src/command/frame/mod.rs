@@ -25,9 +25,11 @@ pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod sheet;
 pub mod teach;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod text_files;
 pub mod trace;
 pub mod watch;
 

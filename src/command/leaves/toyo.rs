@@ -115,6 +115,7 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo point set 1 100 50.5 0 0", Destroy),
     ("toyo point set 1 z=12.5", Destroy),
     ("toyo point set 1 @position.json", Destroy),
+    ("toyo point list --csv points.csv --update", Read),
     ("toyo point set --from points.csv", Destroy),
     ("toyo teach 5", Destroy),
     ("toyo teach 5 --task 2", Destroy),

@@ -21,7 +21,7 @@ mod eeprom;
 mod explain;
 pub mod face;
 mod failure;
-mod files;
+use super::frame::text_files as files;
 #[cfg(test)]
 mod gate;
 mod home;

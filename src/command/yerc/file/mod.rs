@@ -12,6 +12,7 @@ mod list;
 mod lists;
 mod manifest;
 mod name;
+mod pattern;
 mod put;
 mod restore;
 mod results;
