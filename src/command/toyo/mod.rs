@@ -39,6 +39,7 @@ mod orders;
 mod overrides;
 mod overview;
 mod palletizing;
+mod panel;
 mod param;
 mod point;
 pub mod ports;
