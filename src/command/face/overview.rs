@@ -13,6 +13,8 @@ use crate::settings::alarms;
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct OverviewReport {
+    /// The family.
+    pub family: &'static str,
     /// Where it is false, all that follows is null.
     pub reachable: bool,
     /// `teach` or `play` (yerc); `auto` or `manual` (yrcx); `automatic`, `step` or `program` (toyo); null if unknown.
@@ -34,9 +36,6 @@ pub struct OverviewReport {
     pub position: Option<PositionMm>,
     /// Why the position was not asked (yrcx without a session); null where it was.
     pub not_asked: Option<&'static str>,
-    /// The family, for the table; envelopes have it.
-    #[serde(skip)]
-    pub family: &'static str,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,

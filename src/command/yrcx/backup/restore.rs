@@ -50,10 +50,10 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     check_origin(link, &manifest.controller, *force).await?;
     let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
     let mut found = Comparison::default();
-    let total = jobs.len();
-    for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
-        screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
+    let mut compared = screen.parts_progress("parts compared", jobs.len());
+    for (job, item) in jobs.iter().zip(&mut items) {
         found.compare(link, screen, job, item).await?;
+        compared.advance(1);
     }
     authority.confirm(&found.change(&folder.display().to_string())).await?;
     // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
@@ -173,14 +173,14 @@ async fn write_all(
     found: &Comparison,
     items: &mut [Item],
 ) -> Result<(), Failure> {
-    let total = jobs.len();
-    for (number, ((job, differ), item)) in jobs.iter().zip(&found.differ).zip(items).enumerate() {
-        screen.step(&format!("{}/{total} {}", number + 1, job.part));
+    let mut written = screen.parts_progress("parts written", jobs.len());
+    for ((job, differ), item) in jobs.iter().zip(&found.differ).zip(items) {
         if let Err(failure) = write(link, screen, job, differ, item).await
             && !item.fail(failure)
         {
             break;
         }
+        written.advance(1);
     }
     Ok(())
 }
