@@ -13,6 +13,8 @@ use crate::settings::alarms;
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct OverviewReport {
+    /// The family.
+    pub family: &'static str,
     /// Where it is false, all that follows is null.
     pub reachable: bool,
     /// `teach` or `play` (yerc); `auto` or `manual` (yrcx); `automatic`, `step` or `program` (toyo); null if unknown.
@@ -37,9 +39,6 @@ pub struct OverviewReport {
     /// What somebody left behind, and how to undo it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_over: Vec<LeftOver>,
-    /// The family, for the table; envelopes have it.
-    #[serde(skip)]
-    pub family: &'static str,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,

@@ -54,10 +54,10 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     check_origin(link, &manifest.controller, *force).await?;
     let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
     let mut found = Comparison::default();
-    let total = jobs.len();
-    for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
-        screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
+    let mut compared = screen.parts_progress("parts compared", jobs.len());
+    for (job, item) in jobs.iter().zip(&mut items) {
         found.compare(link, screen, job, item).await?;
+        compared.advance(1);
     }
     carry_out((link, screen, &authority), &jobs, &found, &mut items, &folder.display().to_string()).await?;
     Ok(Restored::new(folder, Items::new(items)))
@@ -193,14 +193,14 @@ async fn write_all(
     found: &Comparison,
     items: &mut [Item],
 ) -> Result<(), Failure> {
-    let total = jobs.len();
-    for (number, ((job, differ), item)) in jobs.iter().zip(&found.differ).zip(items).enumerate() {
-        screen.step(&format!("{}/{total} {}", number + 1, job.part));
+    let mut written = screen.parts_progress("parts written", jobs.len());
+    for ((job, differ), item) in jobs.iter().zip(&found.differ).zip(items) {
         if let Err(failure) = write(link, screen, job, differ, item).await
             && !item.fail(failure)
         {
             break;
         }
+        written.advance(1);
     }
     Ok(())
 }
