@@ -15,8 +15,9 @@ use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
+use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
-use target::{Address, Family, Given, Target};
+use target::{Family, Given, Target};
 
 /// Where a setting came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,10 +83,14 @@ pub struct Robot {
     pub hold: Setting<bool>,
     /// Controller model; means something for yerc alone.
     pub model: Setting<Model>,
+    /// Pulses of a degree of each axis of the first robot; empty where nobody said. Means something for yerc alone.
+    pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
     pub tags: Vec<String>,
     /// Which sessions commands to it go through.
     pub sessions: Sessions,
+    /// What alarms mean at its site.
+    pub alarms: Alarms,
 }
 
 impl Robot {
@@ -224,6 +229,11 @@ impl Sources {
         )))
     }
 
+    /// What alarms mean at the site of the inventory.
+    pub fn alarms(&self) -> Alarms {
+        Alarms::beside(self.inventory.path.as_deref())
+    }
+
     /// Where nothing is said about robots, takes all of the inventory instead of its default.
     pub fn widen(&mut self) {
         self.selection.all |= self.selection.names_nobody() && !self.inventory.robots.is_empty();
@@ -255,7 +265,8 @@ impl Sources {
                 .hint(format!("use `armctl {} …` for it", entry.family)));
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
-        Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+        let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
+        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), ..robot })
     }
 
     /// The robot at an address, with every setting in force.
@@ -383,8 +394,10 @@ impl Sources {
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
+            pulses_per_degree: Vec::new(),
             tags,
             sessions: self.selection.sessions,
+            alarms: self.alarms(),
         };
         self.bind(&mut robot);
         robot

@@ -52,6 +52,7 @@ transcripts! {
     signals
     simulator
     status
+    teaching
     top
     toyo_backups
     toyo_io

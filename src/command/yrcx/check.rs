@@ -2,6 +2,7 @@
 
 use super::connect::endpoint;
 use super::link::Yrcx;
+use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
 use crate::command::frame::attach::is_held;
 use crate::command::{Access, ConnectMode, Family as _};
@@ -85,6 +86,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         ("ready", &format!("its status is: {status}")),
         "another command runs, or was left over",
     );
+    layers.left_over(&left_over(image));
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),

@@ -66,7 +66,8 @@ impl Command for Check {
         if access.dry_run {
             return Err(Failure::usage("what a check asks next depends on the answers").hint("it only reads"));
         }
-        let layers = families::of(robot.family).check(robot, access, screen).await?;
+        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
+        layers.extend(layers::drafts());
         Ok(CheckReport { layers, family: robot.family.name() })
     }
 }

@@ -11,6 +11,9 @@ mod read;
 mod restore;
 mod set;
 
+pub use self::entry::is_undefined;
+pub use self::part::unlike;
+pub use self::position::{PositionData, held};
 use crate::command::commands;
 use crate::command::frame::watch::Watch;
 use crate::controller::yerc::Model;
