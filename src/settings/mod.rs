@@ -17,7 +17,7 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
-use target::{Family, Given, Target};
+use target::{Address, Family, Given, Target};
 
 /// Where a setting came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
