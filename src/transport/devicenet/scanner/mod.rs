@@ -65,6 +65,11 @@ pub(crate) struct Bus {
 }
 
 impl Bus {
+    /// Whether this node was heard since then.
+    pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
+        self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
+    }
+
     /// Whether any node but this one was heard since then.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
         let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
