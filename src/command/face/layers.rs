@@ -121,7 +121,8 @@ impl Layers {
                 self.add(name, State::Skipped, why.clone(), None);
             }
         }
-        self.found.sort_by_key(|found| names.iter().position(|name| *name == found.layer));
+        // What has no place of its own comes last.
+        self.found.sort_by_key(|found| names.iter().position(|name| *name == found.layer).unwrap_or(names.len()));
         self.found
     }
 
