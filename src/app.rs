@@ -10,6 +10,7 @@ mod misplaced;
 mod parser;
 mod prepared;
 mod repl;
+mod respelled;
 mod typed;
 mod words;
 

@@ -19,7 +19,6 @@ use crate::gate::Gate;
 use crate::output::Format;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
-use crate::settings::alarms;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::Given;
@@ -81,7 +80,12 @@ impl PreparedCommand {
             Some(all) => globals.within(all),
             None => globals,
         };
-        let need = task.need();
+        let need = match task.need() {
+            Need::Names if matches!(task, Task::Common(Common::Explain(_))) && names_robots(&globals) => {
+                Need::Inventory
+            }
+            need => need,
+        };
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
@@ -137,10 +141,18 @@ impl Task {
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
+            // The path of the inventory tells where alarms.toml is.
+            Self::Common(Common::Explain(_)) => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
         }
     }
+}
+
+/// Whether flags name robots.
+fn names_robots(globals: &Globals) -> bool {
+    let Globals { sim, target, robot, all, tag, .. } = globals;
+    *sim || target.is_some() || !robot.is_empty() || *all || !tag.is_empty()
 }
 
 /// What a command wants of inventory and environment.
@@ -164,7 +176,6 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
-    alarms::beside(location(globals.config.clone())?.path());
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }

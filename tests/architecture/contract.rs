@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 44] = [
+const YERC: [&str; 47] = [
     "status",
     "backup",
     "restore",
@@ -14,7 +14,9 @@ const YERC: [&str; 44] = [
     "alarm history",
     "alarm reset",
     "alarm cancel",
+    "job list",
     "job show",
+    "job stop",
     "job select",
     "job start",
     "file list",
@@ -27,6 +29,7 @@ const YERC: [&str; 44] = [
     "file cmos",
     "position",
     "axes",
+    "teach",
     "position-error",
     "torque",
     "var get",
@@ -52,7 +55,7 @@ const YERC: [&str; 44] = [
     "raw",
 ];
 
-const TOYO: [&str; 78] = [
+const TOYO: [&str; 79] = [
     "status",
     "home",
     "position",
@@ -82,6 +85,7 @@ const TOYO: [&str; 78] = [
     "param restore",
     "point get",
     "point set",
+    "teach",
     "point list",
     "speed-table get",
     "speed-table set",

@@ -53,6 +53,7 @@ transcripts! {
     signals
     simulator
     status
+    teaching
     top
     toyo_backups
     toyo_io

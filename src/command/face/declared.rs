@@ -6,6 +6,7 @@ use clap::{ArgMatches, Args, Subcommand};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
+use super::explain::{Explain, Recorded};
 use super::layers::Layer;
 use super::overview::OverviewReport;
 use super::sample::{Detail, Sample};
@@ -17,7 +18,7 @@ use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
 use crate::command::frame::connection;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyContext, CommandSet, Driver, OfflineCommand, Own, SchemaEntry};
+use crate::command::{Access, AnyContext, Command, CommandSet, Driver, Own, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -32,7 +33,11 @@ pub trait Declaration: Backups {
     /// `armctl decode`.
     type Decode: Decode + Args + 'static;
     /// `armctl explain`.
-    type Explain: OfflineCommand + Args + 'static;
+    type Explain: Explain + Args + 'static;
+    /// What lists the alarms that are present.
+    type Alarms: Command<Family = Self, Report: Recorded> + Args;
+    /// What lists those of the past.
+    type AlarmHistory: Command<Family = Self, Report: Recorded> + Args;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Looks for `top`.
@@ -147,7 +152,7 @@ impl<F: Declaration> Face for Declared<F> {
     fn tool(&self, kind: ToolKind) -> Tool {
         match kind {
             ToolKind::Decode => Tool::decode::<F::Decode>(),
-            ToolKind::Explain => Tool::explain::<F::Explain>(),
+            ToolKind::Explain => Tool::explain::<F>(),
             ToolKind::Simulate => Tool::simulate::<F::Serve>(),
         }
     }

@@ -1,6 +1,7 @@
 //! What the rest of the house may ask of a family. Each has its own in `face.rs`; [`families`](super::families) lists them.
 
 pub mod declared;
+pub mod explain;
 pub mod layers;
 pub mod overview;
 pub mod sample;

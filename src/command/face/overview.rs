@@ -8,7 +8,7 @@ use crate::command::Report;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{self, Origin};
+use crate::settings::alarms;
 
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
@@ -34,12 +34,31 @@ pub struct OverviewReport {
     pub position: Option<PositionMm>,
     /// Why the position was not asked (yrcx without a session); null where it was.
     pub not_asked: Option<&'static str>,
+    /// What somebody left behind, and how to undo it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_over: Vec<LeftOver>,
     /// The family, for the table; envelopes have it.
     #[serde(skip)]
     pub family: &'static str,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
+}
+
+/// Something that a client left behind: a hold, control by the host, a program that runs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct LeftOver {
+    /// What it is.
+    pub what: String,
+    /// How to undo it.
+    pub undo: String,
+}
+
+impl LeftOver {
+    /// What it is, and how to undo it; nothing where it is not so.
+    pub fn new(is_so: bool, what: &str, undo: &str) -> Option<Self> {
+        is_so.then(|| Self { what: what.to_owned(), undo: undo.to_owned() })
+    }
 }
 
 /// What is wrong with a controller, under the same names in every family.
@@ -67,7 +86,7 @@ impl Fault {
     /// Takes the text that the operator's `alarms.toml` has for the code, if it has one.
     pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
         if let Some(code) = &self.fault_code
-            && let Some(explained) = alarms::find(Origin::of(robot), code)?
+            && let Some(explained) = alarms::find(robot, code)?
         {
             self.fault_text = Some(explained.text);
         }

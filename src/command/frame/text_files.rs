@@ -13,8 +13,7 @@ const MOST: u64 = 16 << 20;
 
 /// The bytes of a file, or of stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let read = if path == Path::new("-") { files::stdin(MOST) } else { files::read(path, MOST) };
-    read.map_err(|error| match error.kind() {
+    files::input(path, MOST).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
                 .hint("check that it is the file that was meant")

@@ -8,7 +8,9 @@ use super::link::Link;
 use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
+use crate::command::face::explain::{Occurrence, Recorded};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -16,10 +18,11 @@ use crate::controller::toyo::errors;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, Tone, View};
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{self, Explanation};
 
 commands! {
     /// Alarms.
@@ -57,7 +60,7 @@ impl Command for List {
         }
         let mut error = present(link).await?.map(Explained::of);
         if let Some(error) = &mut error {
-            error.explained = alarms::find(Origin::of(context.robot), &error.code.code)?;
+            error.explained = alarms::find(context.robot, &error.code.code)?;
         }
         Ok(Present { alarms: error.iter().cloned().collect(), error })
     }
@@ -224,6 +227,34 @@ impl Report for Past {
     }
 }
 
+impl Recorded for Present {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let of = |error: &Explained| Occurrence {
+            place: "present".to_owned(),
+            code: error.code.code.clone(),
+            data: error.code.axis.map(|axis| format!("axis {axis}")),
+            ..Occurrence::default()
+        };
+        self.alarms.iter().map(of).collect()
+    }
+}
+
+impl Recorded for Past {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let of = |entry: &Entry| {
+            let error = entry.error.as_ref()?;
+            Some(Occurrence {
+                place: format!("history {}", entry.number),
+                code: error.code.clone(),
+                text: None,
+                data: error.axis.map(|axis| format!("axis {axis}")),
+                time: entry.time(),
+            })
+        };
+        self.entries.iter().filter_map(of).collect()
+    }
+}
+
 /// Cancels the error, and looks whether it is gone (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Reset {}
@@ -236,17 +267,25 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Cancelled, Failure> {
         let link = context.link;
+        let code = |status: &Status| (status.error != errors::NONE).then(|| format!("{:02X}", status.error));
+        let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
-        if becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await? {
-            return Ok(Cancelled { left: None });
-        }
-        Ok(Cancelled { left: present(link).await?.map(Explained::of) })
+        let is_gone = becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await?;
+        let left = if is_gone { None } else { present(link).await?.map(Explained::of) };
+        let words = match &left {
+            None => "no error any more".to_owned(),
+            Some(Explained { code, .. }) => format!("still there: {}: {}", code.code, code.meaning),
+        };
+        let new = New::new("fault_code", left.as_ref().map(|error| error.code.code.clone()), words);
+        Ok(Cancelled { done: new.replaces(old), left })
     }
 }
 
 /// What is left after an error was cancelled.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Cancelled {
+    #[serde(flatten)]
+    done: Done,
     /// An error that is still present; null if there is none.
     #[serde(rename = "error")]
     left: Option<Explained>,
@@ -254,10 +293,7 @@ pub struct Cancelled {
 
 impl Report for Cancelled {
     fn view(&self) -> View {
-        match &self.left {
-            None => View::text("no error any more"),
-            Some(Explained { code, .. }) => View::text(format!("still there: {}: {}", code.code, code.meaning)),
-        }
+        self.done.view()
     }
 
     fn failure(&self) -> Option<Failure> {

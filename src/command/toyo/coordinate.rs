@@ -5,7 +5,7 @@ use clap::Args;
 use super::link::Toyo;
 use super::link::wrong;
 use super::values::json;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -89,8 +89,9 @@ impl Command for Set {
             new.insert(format!("{name}_mm"), number(name, value));
         }
         let words = format!("task {} has {}", field("task").meaning(task), self.aim());
-        let done = Done::new("coordinates", new, words).with("task", number("task", task));
-        Ok(if *speed == Value::Number(0) { done } else { done.with("speed_row", number("speed", speed)) })
+        let new = New::new("coordinates", new, words).with("task", number("task", task));
+        let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", number("speed", speed)) };
+        Ok(new.replaces(Old::UNREAD))
     }
 }
 

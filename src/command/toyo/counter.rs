@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::items::{self, Item, read_each};
 use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -84,22 +85,24 @@ impl Watchable for Get {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Count;
+    type Report = Done;
     const ID: &'static str = "toyo.counter.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Count, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let Self { counter, value } = *self;
         let values = [Value::Number(counter), Value::Number(value)];
         let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
-        link.ask(&order).await?;
         let read = Request::of(table::Command::Mcnt, [Value::Number(counter)]);
+        let old = Old::read(link.before(&read).await?.and_then(|record| record.number("count")));
+        link.ask(&order).await?;
         let found = read_back(link, &order, &read).await?.number("count");
         if found.is_some_and(|found| found != value) {
             return Err(not_held(&order, &format!("it stands at {}", found.unwrap_or_default()))
                 .hint("a program that runs may count on it meanwhile"));
         }
-        Ok(Count { counter: u8::try_from(counter).unwrap_or(u8::MAX), count: value })
+        let new = New::new("count", value, format!("counter {counter} set to {value}"));
+        Ok(new.with("counter", counter).with("count", value).replaces(old))
     }
 }
 
@@ -130,12 +133,6 @@ impl Report for Counters {
     }
 }
 
-impl Report for Count {
-    fn view(&self) -> View {
-        View::text(format!("counter {} set to {}", self.counter, self.count))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
@@ -160,9 +157,29 @@ mod tests {
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
-        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fault::Lost } else { Fault::None };
+        let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    }
+
+    #[test]
+    fn what_is_replaced_is_told() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["counter", "set", "5", "7"]);
+        let set = bench.data(&["counter", "set", "5", "8"]);
+        assert_eq!((&set["old"], &set["new"]), (&7.into(), &8.into()), "{set}");
+        // A controller that does not tell it takes it nevertheless; one that is not there is not written to.
+        let refuses = |block: &str, count| {
+            if block == "@MCNT CN=05" && count == 1 { Fault::Answered("@NG") } else { Fault::None }
+        };
+        assert_eq!(
+            Bench::with_faults("", refuses).0.data(&["counter", "set", "5", "7"])["old"],
+            serde_json::Value::Null
+        );
+        let silent = |block: &str, _| if block.starts_with("@MC") { Fault::Lost } else { Fault::None };
+        let (mut bench, heard) = Bench::with_faults("", silent);
+        assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::NoAnswer);
+        assert!(!heard.borrow().iter().any(|block| block.starts_with("@MCST")), "nothing was written");
     }
 
     #[test]
@@ -178,7 +195,7 @@ mod tests {
         heard.borrow_mut().clear();
         // No `@OK` of its own came: whether it was done is open, not done.
         assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
-        assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", "@MCST CN06=0001"], "something harmless is asked first");
+        assert_eq!(heard.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
     }
 
     #[test]

@@ -59,16 +59,18 @@ impl Link {
     /// # Errors
     /// As those of [`Link::ask`]; [`Kind::OutcomeUnknown`] if it cannot be read back, and [`Kind::Malformed`] if
     /// something else is there afterwards.
-    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<(), Failure> {
+    pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(&cell.read, THERE);
-            return self.plan_overwriting(&cell.read, &cell.write.text()).await;
+            return self.plan_overwriting(&cell.read, &cell.write.text()).await.map(|()| None);
         }
-        if self.holds(cell).await? {
+        let found = self.ask(&cell.read).await?;
+        if cell.is(&found) {
             cells.cells_unchanged += 1;
-            return Ok(());
+        } else {
+            self.overwrite(screen, cell, cells).await?;
         }
-        self.overwrite(screen, cell, cells).await
+        Ok(Some(found))
     }
 
     /// Notes in a dry run what [`Link::overwrite`] sends, if the cell holds something else: the block that writes it, in

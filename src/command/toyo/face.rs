@@ -1,5 +1,6 @@
 //! What the rest of the house may ask of `toyo`.
 
+use super::alarm;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
@@ -28,6 +29,8 @@ impl Declaration for Toyo {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
     type Serve = Serve;
     type Poller = Poller;
 

@@ -5,10 +5,11 @@ use clap::Args;
 use super::link::Toyo;
 use super::orders::not_so;
 use super::waiting::becomes;
-use crate::command::frame::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
+use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
 
@@ -33,10 +34,11 @@ impl Command for Host {
             Switch::On => (table::Command::Hson, true, "the host commands; the start input does not"),
             Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),
         };
+        let old = Old::read(context.link.status_before(2).await?.map(Status::host_on));
         context.link.ask(&Request::bare(command)).await?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
-            return Ok(Done::new("host_on", is_on, done));
+            return Ok(New::new("host_on", is_on, done).replaces(old));
         }
         Err(not_so("the host").hint("`toyo status` tells who commands"))
     }
@@ -48,7 +50,7 @@ mod tests {
 
     #[test]
     fn the_order_goes_out_alone() {
-        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@STAS SNO=0", "@HSON", "@STAS SNO=2"]);
+        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
         assert_eq!(blocks(&["position"]).unwrap(), ["@SYSP", "@RPAR E01", "@MPST"]);
         assert!(objection(&["host", "maybe"]).contains("maybe"));
         assert_eq!(intent(&["host", "off"]), "");

@@ -17,9 +17,10 @@ use super::position::Coordinates;
 use super::refusal;
 use super::trace::Trace;
 use super::write_log::WriteLog;
-use crate::client::toyo::{Client, Error, Letters, Line, is_stop};
+use crate::client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
 pub use crate::client::toyo::{Moving, Refusal, jog};
 use crate::command::frame::dry_run::Plan;
+use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::toyo::layout::Record;
@@ -149,6 +150,22 @@ impl Link {
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
         self.tell_what_is_left().await;
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
+    }
+
+    /// Reads what a write replaces; nothing where the controller refuses to tell, and in a dry run, which notes the
+    /// question. A line that is lost is a failure: nothing was written.
+    pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
+        if self.is_dry() {
+            self.plan(question, BEFORE);
+            return Ok(None);
+        }
+        Ok(self.try_ask(question).await.map_err(unwritten)?.ok())
+    }
+
+    /// The same of a page of the status; the others are 0.
+    pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>, Failure> {
+        let record = self.before(&status_page(page)).await?;
+        Ok(record.and_then(|record| record.byte("st1")).map(|byte| Status::default().with(page, byte)))
     }
 
     /// All five pages of the status.

@@ -8,13 +8,14 @@ use super::link::Moving;
 use super::link::Toyo;
 use super::position::Coordinates;
 use super::waiting::becomes;
-use crate::command::frame::orders::{Done, Switch};
+use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::{ProgramKind, RunMode, Status};
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
 use crate::output::view::View;
 
 /// Switches servo power of all axes (TO 2-7), and waits until the status shows it.
@@ -30,6 +31,7 @@ impl Command for Servo {
     type Report = Done;
     const ID: &'static str = "toyo.servo";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         match self.to {
@@ -39,21 +41,21 @@ impl Command for Servo {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        let link = context.link;
-        let (command, is_on) = match self.to {
-            Switch::On => (table::Command::Svon, true),
-            Switch::Off => (table::Command::Svof, false),
+        let Context { link, authority, .. } = context;
+        let (command, is_on, words) = match self.to {
+            Switch::On => (table::Command::Svon, true, "servo power is on"),
+            Switch::Off => (table::Command::Svof, false, "servo power is off"),
         };
+        let (new, old) = (New::new("servo_on", is_on, words), link.status_before(3).await?);
+        let old = Old::read(old.map(Status::servo_on));
+        authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
         let done = becomes(link, (3, "whether it is"), |status| status.servo_on() == is_on).await?;
         link.has_ended();
-        match (done, is_on) {
-            (true, true) => Ok(Done::new("servo_on", true, "servo power is on")),
-            (true, false) => Ok(Done::new("servo_on", false, "servo power is off")),
-            (false, _) => {
-                Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` tell what is in the way"))
-            }
+        if done {
+            return Ok(new.replaces(old));
         }
+        Err(not_so("servo power").hint("`toyo alarm list` and `toyo status` tell what is in the way"))
     }
 }
 
@@ -91,6 +93,14 @@ impl ModeName {
             Self::Auto => status.run_mode() == Some(RunMode::Automatic),
             Self::Sequential => status.program_kind() == ProgramKind::Sequential,
             Self::Palletizing => status.program_kind() == ProgramKind::Palletizing,
+        }
+    }
+
+    /// What is in force in its place, as `status` gives it.
+    fn instead_of(self, status: Status) -> Option<&'static str> {
+        match self {
+            Self::Program | Self::Step | Self::Auto => status.run_mode().map(RunMode::name),
+            Self::Sequential | Self::Palletizing => Some(status.program_kind().name()),
         }
     }
 
@@ -133,10 +143,11 @@ impl Command for Mode {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, mode) = (context.link, self.mode);
+        let old = Old::read(link.status_before(2).await?.and_then(|status| mode.instead_of(status)));
         link.ask(&Request::bare(mode.command())).await?;
         if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
-            return Ok(Done::new(set, new, mode.in_force()));
+            return Ok(New::new(set, new, mode.in_force()).replaces(old));
         }
         Err(not_so("the mode").hint("parameter M10 may have chosen easy or external point mode: `toyo param get M10`"))
     }
@@ -160,7 +171,7 @@ impl Command for Reset {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
         let words = "the controller was reset; errors are cancelled by `toyo alarm reset`";
-        Ok(Done::new("programs", "reset", words))
+        Ok(New::new("programs", "reset", words).replaces(Old::UNREAD))
     }
 }
 
@@ -274,7 +285,7 @@ mod tests {
 
     #[test]
     fn what_was_accepted_and_is_not_seen_is_open() {
-        let blind = |block: &str, _| if block == "@STAS SNO=3" { Fault::Lost } else { Fault::None };
+        let blind = |block: &str, count| if block == "@STAS SNO=3" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", blind).0.run(&["servo", "off"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(failure.message.starts_with("the order was accepted, but what came of it was not seen: "));

@@ -8,6 +8,7 @@ use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::{number, small};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -77,8 +78,10 @@ impl Command for Set {
             wanted: wanted.map_err(|error| wrong(&error))?,
         };
         let mut cells = Cells::default();
-        context.link.store(context.screen, &cell, &mut cells).await?;
-        Ok(Written { override_percent: u8::try_from(self.percent).unwrap_or(u8::MAX), cells })
+        let found = context.link.store(context.screen, &cell, &mut cells).await?;
+        let old = Old::read(found.and_then(|record| record.number(field().name)));
+        let new = New::new("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
+        Ok(Written { done: new.with("override_percent", self.percent).replaces(old), cells })
     }
 }
 
@@ -91,7 +94,8 @@ pub struct Percent {
 /// The override as it was written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written {
-    override_percent: u8,
+    #[serde(flatten)]
+    done: Done,
     #[serde(flatten)]
     cells: Cells,
 }
@@ -104,7 +108,7 @@ impl Report for Percent {
 
 impl Report for Written {
     fn view(&self) -> View {
-        View::text(format!("override {} %: {}", self.override_percent, self.cells.in_words()))
+        self.done.view()
     }
 }
 

@@ -9,7 +9,7 @@ use super::copies::{self, Copied};
 use super::link;
 use super::link::Toyo;
 use super::numbers::{not_held, number, read_back};
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
@@ -84,14 +84,16 @@ impl<K: Kind> Command for Select<K> {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
+        let chosen = Request::bare(K::COMMANDS[2]);
+        let old = Old::read(link.before(&chosen).await?.and_then(|record| record.number("program")));
         link.ask(&order).await?;
-        let found = read_back(link, &order, &Request::bare(K::COMMANDS[2])).await?.number("program");
+        let found = read_back(link, &order, &chosen).await?.number("program");
         if let Some(found) = found.filter(|found| *found != self.program) {
             return Err(
                 not_held(&order, &format!("program {found} is chosen")).hint("a program that runs stays chosen")
             );
         }
         let words = format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN);
-        Ok(Done::new(K::WHAT.replace(' ', "_"), self.program, words))
+        Ok(New::new(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

@@ -209,7 +209,7 @@ impl<K: Kind> Command for Set<K> {
         let stores = [Store::new(self.row.to_string(), cell).over(found)];
         authority.confirm(&stores::replacing(WORK, &stores, &format!(" of the {}", table.name))).await?;
         let cells = stores::sum(&stores::store_all(link, screen, WORK, &stores, 0).await?);
-        Ok(Stored { row, cells, text: in_a_line(&shown(&body)) })
+        Ok(Stored { row, items: stores::written(&stores), cells, text: in_a_line(&shown(&body)) })
     }
 }
 
@@ -241,6 +241,8 @@ pub struct Row<K: Kind> {
 pub struct Stored<K: Kind> {
     #[serde(flatten)]
     row: Row<K>,
+    /// What it held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
     /// The values as typed.

@@ -1,10 +1,15 @@
 //! Many cells of the EEPROM in a row, with an exact account of what was done when one of them fails.
 
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value as Json;
+
 use super::eeprom::{Cell, Cells};
 use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
 use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::orders::{Old, Written, unwritten};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
@@ -144,12 +149,6 @@ pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Res
     looked.await.and_then(|looked| looked).map_err(unwritten)
 }
 
-/// What failed before anything was written.
-pub fn unwritten(failure: Failure) -> Failure {
-    let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
-    Failure { message, ..failure }
-}
-
 async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {
     if link.is_dry() {
         plan_twice(link, &store.cell.read);
@@ -167,8 +166,30 @@ pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Optio
     format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
 }
 
+/// What tells a cell from the others.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Key {
+    /// As typed: `P01`, `17`.
+    name: String,
+}
+
+/// Cells, with what they held and hold.
+pub type WrittenCells = Vec<Written<Key>>;
+
+/// What cells held and hold, each value by its name.
+pub fn written(stores: &[Store]) -> WrittenCells {
+    let values = |record: &Record| -> serde_json::Map<String, Json> {
+        values::shown(record).into_iter().map(|shown| (shown.name, shown.value)).collect()
+    };
+    let of = |store: &Store| {
+        let old = if let CellState::This(found) = &store.found { Some(values(found)) } else { None };
+        Written::new(Key { name: store.key.clone() }, Old::read(old), values(&store.cell.wanted))
+    };
+    stores.iter().map(of).collect()
+}
+
 /// Result of one cell.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StoreResult {
     /// Written and read back.

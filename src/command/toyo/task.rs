@@ -7,9 +7,11 @@ use serde::Serialize;
 use super::link::Link;
 use super::link::Toyo;
 use super::numbers::{not_held, number, read_back, small};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
@@ -60,23 +62,31 @@ impl Command for Get {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Current;
+    type Report = Done;
     const ID: &'static str = "toyo.task.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
+        let read = Request::bare(table::Command::Mtsk);
+        let task = |record: &Record| record.number(field().name);
+        let old = Old::read(link.before(&read).await?.as_ref().and_then(task));
         link.ask(&order).await?;
         let chosen = u8::try_from(self.task).unwrap_or(u8::MAX);
         link.choose_task(chosen);
-        let found = read_back(link, &order, &Request::bare(table::Command::Mtsk)).await?.number(field().name);
+        let found = task(&read_back(link, &order, &read).await?);
         if found != Some(self.task) {
             let found = found.unwrap_or_default();
             return Err(not_held(&order, &format!("task {found} is the current one"))
                 .hint("somebody else may choose tasks at the same time; `toyo task get` tells"));
         }
-        Ok(Current { task: chosen })
+        let words = current_in_words(chosen);
+        Ok(New::new("task", chosen, words).with("task", chosen).replaces(old))
     }
+}
+
+fn current_in_words(task: u8) -> String {
+    format!("task {task} is the current one")
 }
 
 /// The current task.
@@ -88,7 +98,7 @@ pub struct Current {
 
 impl Report for Current {
     fn view(&self) -> View {
-        View::text(format!("task {} is the current one", self.task))
+        View::text(current_in_words(self.task))
     }
 }
 

@@ -1,5 +1,7 @@
 //! `yerc alarm list|history|reset|cancel`.
 
+mod recorded;
+
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +15,7 @@ use crate::command::face::sample;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -25,7 +27,7 @@ use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -252,7 +254,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(Done::new($set, $new, $done))
+                Ok(New::new($set, $new, $done).replaces(Old::UNREAD))
             }
         }
     };
@@ -377,7 +379,7 @@ impl AlarmEntry {
     /// With what `alarms.toml` says of it.
     fn explained(mut self, robot: &Robot, model: Model) -> Result<Self, Failure> {
         let origin = Origin { model: Some(model), ..Origin::of(robot) };
-        self.explained = alarms::find(origin, &self.code.to_string())?;
+        self.explained = robot.alarms.find(origin, &self.code.to_string())?;
         Ok(self)
     }
 

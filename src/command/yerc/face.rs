@@ -1,5 +1,6 @@
 //! What the rest of the house may ask of `yerc`.
 
+use super::alarm;
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -27,6 +28,8 @@ impl Declaration for Yerc {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
     type Serve = Serve;
     type Poller = Poller;
 

@@ -32,6 +32,7 @@ mod register;
 mod serve;
 pub mod simulated;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

@@ -3,12 +3,14 @@
 use clap::{Args, ValueEnum};
 
 use super::link::Yerc;
-use crate::command::frame::orders::{Done, Switch};
+use super::status::cycle_name;
+use crate::command::frame::orders::{Done, New, Old, Switch};
 use crate::command::{Command, Context};
 use crate::controller::Risk;
-use crate::controller::yerc::payload::CycleMode;
+use crate::controller::yerc::payload::{ControllerStatus, CycleMode};
 use crate::controller::yerc::query::{self, Query};
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 
 /// A command whose risk and effect are those of a single order: its type, arguments, id, the order as a query, what it
 /// will do, and what it did.
@@ -16,7 +18,8 @@ macro_rules! order {
     (
         $(#[$doc:meta])*
         $name:ident { $(#[$arg:meta])* $field:ident: $type:ty }, $id:literal,
-        |$this:ident| $query:expr, $intent:expr, $set:literal = $new:expr, $done:expr $(, stops if $is_stop:expr)?
+        |$this:ident| $query:expr, $intent:expr,
+        $set:literal = $new:expr, $done:expr $(, was |$status:ident| $old:expr)? $(, stops if $is_stop:expr)?
     ) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
@@ -39,15 +42,31 @@ macro_rules! order {
                 $intent.to_owned()
             }
 
+            fn confirmation(&self) -> Confirmation {
+                if self.is_stop() { Confirmation::Question } else { Confirmation::WhenKnown }
+            }
+
             $(fn is_stop(&self) -> bool {
                 let $this = self;
                 $is_stop
             })?
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
-                let $this = self;
-                context.link.ask(&$query).await?;
-                Ok(Done::new($set, $new, $done))
+                let ($this, Context { link, authority, .. }) = (self, context);
+                let new = New::new($set, $new, $done);
+                let old = Old::UNREAD;
+                // A stop waits for nothing.
+                $(let old = if self.is_stop() {
+                    old
+                } else {
+                    let $status = link.before(&query::ReadStatus).await?;
+                    Old::read($old)
+                };)?
+                if !self.is_stop() {
+                    authority.confirm(&new.question(self.intent(), &old)).await?;
+                }
+                link.ask(&$query).await?;
+                Ok(new.replaces(old))
             }
         }
     };
@@ -62,7 +81,8 @@ order! {
     }, "yerc.servo",
     |this| query::Servo(this.switch == Switch::On), "switch servo power on",
     "servo_on" = this.switch == Switch::On,
-    if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" }
+    if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" },
+    was |status| status.map(ControllerStatus::servo_on)
 }
 order! {
     /// Holds the robot, or lets it go on (FS and DX 3.3.20).
@@ -74,6 +94,7 @@ order! {
     |this| query::Hold(this.switch == Switch::On), "release the hold",
     "held" = this.switch == Switch::On,
     if this.switch == Switch::On { "hold is on" } else { "hold is off" },
+    was |status| status.map(ControllerStatus::held),
     stops if this.switch == Switch::On
 }
 order! {
@@ -116,16 +137,13 @@ order! {
         mode: CycleName
     }, "yerc.cycle",
     |this| query::SetCycle(this.mode.into()), "",
-    "cycle" = match this.mode {
-        CycleName::Step => "step",
-        CycleName::Once => "one_cycle",
-        CycleName::Continuous => "continuous",
-    },
+    "cycle" = cycle_name(this.mode.into()),
     match this.mode {
         CycleName::Step => "the cycle is step",
         CycleName::Once => "the cycle is one cycle",
         CycleName::Continuous => "the cycle is continuous",
-    }
+    },
+    was |status| status.and_then(ControllerStatus::cycle).map(cycle_name)
 }
 
 /// Shows a message on the pendant (FS and DX 3.3.22).
@@ -146,7 +164,7 @@ impl Command for Say {
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
         let words = if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" };
-        Ok(Done::new("pendant_message", self.text.as_str(), words))
+        Ok(New::new("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
     }
 }
 

@@ -10,9 +10,10 @@ use serde::Serialize;
 use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
-use super::writes::{WriteOrder, write_all};
+use super::writes::{WriteOrder, before, write_all};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::orders::{Old, Written};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::typed;
@@ -113,10 +114,13 @@ impl Command for Set {
         }
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
         let steps = plan_register_writes(link.model, &values).map_err(usage)?;
+        let numbers: Vec<u16> = values.iter().map(|(number, _)| *number).collect();
+        let old = before(link, &plan_register_reads(link.model, &numbers).map_err(usage)?).await?;
         write_all(link, screen, &steps).await?;
-        Ok(WrittenRegisters {
-            written: values.into_iter().map(|(number, value)| Word::new(number, Ok(value))).collect(),
-        })
+        let written = values.into_iter().map(|(number, value)| {
+            Written::new(Word::new(number, Ok(value)), Old::read(old.get(&number).copied()), value)
+        });
+        Ok(WrittenRegisters { written: written.collect() })
     }
 }
 
@@ -169,10 +173,10 @@ pub struct Registers {
 /// Registers the controller confirmed.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WrittenRegisters {
-    written: Vec<Word>,
+    written: Vec<Written<Word>>,
 }
 
-fn table(first: &'static str, words: &[Word]) -> View {
+fn table<'a>(first: &'static str, words: impl Iterator<Item = &'a Word>) -> View {
     let mut table = Table::new(&[first, "value", "hex"], "no registers");
     for word in words {
         let [value, hex] = match (word.outcome.data(), word.outcome.error()) {
@@ -186,7 +190,7 @@ fn table(first: &'static str, words: &[Word]) -> View {
 
 impl Report for Registers {
     fn view(&self) -> View {
-        table("register", &self.registers)
+        table("register", self.registers.iter())
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -196,7 +200,7 @@ impl Report for Registers {
 
 impl Report for WrittenRegisters {
     fn view(&self) -> View {
-        table("written", &self.written)
+        table("written", self.written.iter().map(|written| &written.item))
     }
 }
 

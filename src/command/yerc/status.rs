@@ -83,11 +83,7 @@ impl From<ControllerStatus> for StatusReport {
         Self {
             mode: mode(status),
             command_remote: status.has(StatusBit::CommandRemote),
-            cycle: status.cycle().map(|cycle| match cycle {
-                CycleMode::Step => "step",
-                CycleMode::Once => "one_cycle",
-                CycleMode::Continuous => "continuous",
-            }),
+            cycle: status.cycle().map(cycle_name),
             running: status.running(),
             servo_on: status.servo_on(),
             held: status.held(),
@@ -98,6 +94,15 @@ impl From<ControllerStatus> for StatusReport {
             safe_operation: status.has(StatusBit::Guarded),
             raw: RawStatus { data_1: format!("{data_1:#010x}"), data_2: format!("{data_2:#010x}") },
         }
+    }
+}
+
+/// How far a start goes, for programs.
+pub(super) const fn cycle_name(cycle: CycleMode) -> &'static str {
+    match cycle {
+        CycleMode::Step => "step",
+        CycleMode::Once => "one_cycle",
+        CycleMode::Continuous => "continuous",
     }
 }
 

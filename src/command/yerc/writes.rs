@@ -1,8 +1,11 @@
 //! Several writes in a row, with an exact account of what was done when one of them fails.
 
+use std::collections::HashMap;
+
 use super::link::Link;
 use crate::command::frame::interrupt::interruptible;
 use crate::controller::yerc::query::Query;
+use crate::controller::yerc::variables::PlannedRead;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 
@@ -16,6 +19,16 @@ pub trait WriteOrder: Query<Answer = ()> {
 
     /// Names in a few words.
     fn listed(items: Vec<Self::Item>) -> String;
+}
+
+/// Reads what orders replace, each run with one request; what the controller refuses to tell is missing. A dry run notes
+/// the requests.
+pub async fn before<S: PlannedRead>(link: &mut Link, reads: &[S]) -> Result<HashMap<S::Item, S::Value>, Failure> {
+    let mut found = HashMap::new();
+    for read in reads {
+        found.extend(link.before(read).await?.into_iter().flatten());
+    }
+    Ok(found)
 }
 
 /// Sends the orders one after the other. The first that fails ends it, and the failure says what was written, what may

@@ -8,7 +8,9 @@ use serde::Serialize;
 use super::info::AlarmReport;
 use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
-use crate::command::frame::dry_run::Reason;
+use crate::command::face::explain::{Occurrence, Recorded};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -17,7 +19,7 @@ use crate::controller::yrcx::table::Command as Row;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::View;
-use crate::settings::alarms::{self, Origin};
+use crate::settings::alarms;
 
 commands! {
     /// Alarms.
@@ -61,7 +63,7 @@ impl Command for List {
             alarms.retain(|alarm| alarm.code.is_some());
             for alarm in &mut alarms {
                 let code = alarm.code.as_deref().unwrap_or_default();
-                alarm.explained = alarms::find(Origin::of(context.robot), code)?;
+                alarm.explained = alarms::find(context.robot, code)?;
             }
         }
         Ok(ActiveAlarms { alarm, warning, alarms })
@@ -130,6 +132,19 @@ impl Report for PastAlarms {
     }
 }
 
+impl Recorded for ActiveAlarms {
+    fn recorded(&self) -> Vec<Occurrence> {
+        self.alarms.iter().map(|alarm| alarm.occurrence("present".to_owned())).collect()
+    }
+}
+
+impl Recorded for PastAlarms {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let known = self.alarms.known();
+        known.map(|(which, alarm)| alarm.occurrence(format!("history {}", which.number))).collect()
+    }
+}
+
 /// Resets the alarm.
 #[derive(Debug, Args)]
 #[command(
@@ -149,12 +164,12 @@ impl Command for Reset {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
         let order = link.draft(Row::AlarmReset)?.build()?;
+        let old = Old::read(link.look().await.known()?.map(|image| output::ALARM.is_on(&image)));
         link.ask(&order).await?;
-        if link.is_dry() {
-            return Ok(WasReset { alarm: false, servo_on: false });
-        }
-        let image = link.look().await?;
-        let report = WasReset { alarm: output::ALARM.is_on(&image), servo_on: output::SERVO_ON.is_on(&image) };
+        let Some(image) = link.look().await.known()? else { return Err(unknown()) };
+        let (alarm, servo_on) = (output::ALARM.is_on(&image), output::SERVO_ON.is_on(&image));
+        let words = if alarm { "alarm reset accepted; there is still an alarm" } else { "alarm reset" };
+        let report = WasReset { done: New::new("alarm", alarm, words).replaces(old), alarm, servo_on };
         if !report.servo_on {
             if link.is_held() {
                 screen.note(POWER_OFF);
@@ -176,6 +191,8 @@ const POWER_OFF: &str = "hint: motor power is off: `yrcx recover` clears the eme
 /// An alarm that was reset.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasReset {
+    #[serde(flatten)]
+    done: Done,
     /// SO(03) after it: there is still one.
     alarm: bool,
     /// SO(02): motor power is on.
@@ -184,7 +201,7 @@ pub struct WasReset {
 
 impl Report for WasReset {
     fn view(&self) -> View {
-        View::text(if self.alarm { "alarm reset accepted; there is still an alarm" } else { "alarm reset" })
+        self.done.view()
     }
 }
 

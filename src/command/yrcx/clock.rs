@@ -7,9 +7,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::{Link, Yrcx};
+use super::overwrite::there;
 use super::several::ask_each;
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::frame::orders::{BEFORE, Old, Written};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Order;
@@ -218,6 +220,7 @@ impl Command for Set {
             Moment::Given { date, time } => (date, time),
             Moment::Now => (None, Some(Zoned::now().time())),
         };
+        let found = read_before(link, time.is_some(), date.is_some() || self.moment == Moment::Now).await?;
         // The time goes first: the clock must not pass midnight by its old time with the new date.
         if let Some(time) = time {
             let order = time_order(link, time)?;
@@ -234,8 +237,35 @@ impl Command for Set {
             }
         }
         let date = date.filter(|_| errors.is_empty()).map(|date| date.to_string());
-        Ok(WasSet { date, time: time.as_ref().map(describe), errors })
+        let time = time.as_ref().map(describe);
+        let items = [("date", &date), ("time", &time)]
+            .into_iter()
+            .zip(found)
+            .filter_map(|((name, new), old)| Some(Written::new(Part { name }, Old::read(old), new.clone()?)));
+        Ok(WasSet { items: items.collect(), date, time, errors })
     }
+}
+
+/// Reads date and time as they are, as far as they will be set and are told.
+async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
+    let mut found = [None, None];
+    if date {
+        let order = link.draft(table::Command::DateGet)?.build()?;
+        let values = there(link, &order, BEFORE).await?;
+        found[0] = values.and_then(|values| date_of(&values).ok()).map(|date| date.to_string());
+    }
+    if time {
+        let order = link.draft(table::Command::TimeGet)?.build()?;
+        let values = there(link, &order, BEFORE).await?;
+        found[1] = values.and_then(|values| time_of(&values).ok()).as_ref().map(describe);
+    }
+    Ok(found)
+}
+
+/// `date` or `time`.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Part {
+    name: &'static str,
 }
 
 /// What the clock was set to.
@@ -245,6 +275,8 @@ pub struct WasSet {
     date: Option<String>,
     /// `08:45:00`; null if it was not set.
     time: Option<String>,
+    /// What was set, with what the clock showed before.
+    items: Vec<Written<Part>>,
     /// What could not be set, and why.
     errors: Vec<ItemError>,
 }
@@ -344,12 +376,12 @@ mod tests {
     #[test]
     fn a_time_that_is_set_is_told_where_the_date_is_refused() {
         let line = ["clock", "set", "2014-02-02T08:45:00"];
-        let (set, failure, _) = report_on(Scripted::new([answer([0; 3]), no()]), &line);
+        let (set, failure, _) = report_on(Scripted::new([no(), no(), answer([0; 3]), no()]), &line);
         assert_eq!((&set["date"], &set["time"]), (&json!(null), &json!("08:45:00")));
         assert_eq!((&set["errors"][0]["asked"], &set["errors"][0]["code"]), (&json!("date"), &json!("5.1")));
         assert_eq!(failure.unwrap().kind.exit(), 9);
-        let (refused, peer) = run_on(Scripted::new([no()]), &line);
-        assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 1), "the date does not go alone");
+        let (refused, peer) = run_on(Scripted::new([no(), no(), no()]), &line);
+        assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 3), "the date does not go alone");
     }
 
     #[test]

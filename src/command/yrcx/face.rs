@@ -2,6 +2,7 @@
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
+use super::alarm as alarms;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
@@ -31,6 +32,8 @@ impl Declaration for Yrcx {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarms::List;
+    type AlarmHistory = alarms::History;
     type Serve = ServeArgs;
     type Poller = Poller;
 

@@ -113,7 +113,7 @@ const BOARDS: [&str; 4] =
 
 /// Each after what makes it overwrite something else.
 const DESTROYS: &[(&str, &str)] = &[
-    ("point set 7 --mm 9,9,9,9", "teach --point 7 --in mm"),
+    ("point set 7 --mm 9,9,9,9", "teach 7 --in mm"),
     ("point set 7 --mm 9,9,9,9", "point set 7 --mm 1,2,3,4"),
     ("comment set 7 OLD", "comment set 7 NEW"),
     ("pallet-data set 7 --nx 2 --ny 2 --first-point 1", "pallet-data set 7 --nx 3 --ny 2 --first-point 1"),
@@ -145,6 +145,7 @@ const MOTIONS: &[&str] = &[
     "servo on",
     "motor on",
     "program run --all-programs",
+    "program run MAIN",
     "program step --task 1",
     "program skip --task 1",
     "program next --task 1",

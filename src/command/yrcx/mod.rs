@@ -16,6 +16,7 @@
 mod alarm;
 mod arguments;
 pub mod backup;
+mod before;
 pub mod buses;
 mod check;
 mod clock;
@@ -61,6 +62,7 @@ mod several;
 pub mod simulated;
 mod single;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
+use super::before::{before, question};
 use super::link::Link;
 use super::position::{Position, Unit};
 use super::refusal::refused;
@@ -15,6 +16,7 @@ use crate::command::Report;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::orders;
+use crate::command::frame::orders::Old;
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
@@ -33,11 +35,13 @@ pub struct Done {
     pub elapsed: Duration,
     /// What was overwritten, where something was.
     pub replaced: Option<Replaced>,
+    /// The value before, of an order that sets one.
+    pub old: Old,
 }
 
 impl From<yrcx::Done> for Done {
     fn from(yrcx::Done { values, elapsed }: yrcx::Done) -> Self {
-        Self { values, elapsed, replaced: None }
+        Self { values, elapsed, replaced: None, old: Old::UNREAD }
     }
 }
 
@@ -61,24 +65,42 @@ pub struct Replaced {
 pub fn confirmation(command: Command) -> Confirmation {
     match (command, command.row().risk) {
         (Command::AbsoluteReset, _) => Confirmation::Word("reset"),
+        (Command::ServoOn | Command::ServoOff | Command::ServoFree, _) => Confirmation::WhenKnown,
         (_, Risk::Destroy) => Confirmation::WhenKnown,
         (_, Risk::Read | Risk::Write | Risk::Motion) => Confirmation::Question,
     }
 }
 
-/// Gives an order. If it overwrites something, that is confirmed first; what is there already is not written.
-pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Done, Failure> {
-    if confirmation(order.command()) != Confirmation::WhenKnown {
-        return link.ask(order).await;
+/// Gives an order that `intent` says in a line, and reads first what it replaces. If it overwrites something, that is
+/// confirmed; what is there already is not written.
+pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
+    if target(order).is_none() {
+        let old = before(link, order).await?;
+        authority.confirm(&question(order, intent, &old)).await?;
+        return Ok(Done { old, ..link.ask(order).await? });
     }
+    give_either(link, authority, order, order).await
+}
+
+/// The same of an order that overwrites something; `other` is it with other answers, to show what of it is known in a dry
+/// run.
+pub async fn give_either(
+    link: &mut Link,
+    authority: &Authority<'_>,
+    order: &Order,
+    other: &Order,
+) -> Result<Done, Failure> {
     let replaced = confirm(link, authority, order).await?;
     if replaced.is_there {
         return Ok(Done { replaced: Some(replaced), ..Done::default() });
     }
     if link.is_dry() {
-        let reason =
-            if may_be_there(order.command()) { Reason::default().depending_on(DIFFERS) } else { Reason::default() };
-        link.plan_depending(order, order, reason);
+        let reason = match order.command() {
+            _ if order != other => Reason::about("stores it").depending_on("the unit of the point"),
+            command if may_be_there(command) => Reason::default().depending_on(DIFFERS),
+            _ => Reason::default(),
+        };
+        link.plan_depending(order, other, reason);
         return Ok(Done::default());
     }
     let done = link.ask(order).await?;
@@ -179,7 +201,7 @@ fn which(order: &Order) -> (&'static str, Vec<(Key, Json)>) {
 }
 
 /// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
-async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
         link.plan(order, about);
         return Ok(None);
@@ -396,11 +418,11 @@ impl Stored {
             given.replaced.clone().unwrap_or_default();
         let [before, after] = data;
         let there = format!("{what}: {new} already; nothing was written");
-        let done = orders::Done::new(name, after, done).replaces(before);
-        let with = |done: orders::Done, (key, value): (Key, Json)| {
-            done.with(if key == Key::Axes { "axis" } else { key.name() }, value)
+        let with = |new: orders::New, (key, value): (Key, Json)| {
+            new.with(if key == Key::Axes { "axis" } else { key.name() }, value)
         };
-        Self { done: numbers.into_iter().fold(done, with), written: !is_there, there }
+        let new = numbers.into_iter().fold(orders::New::new(name, after, done), with);
+        Self { done: new.replaces(Old::read(Some(before))), written: !is_there, there }
     }
 }
 

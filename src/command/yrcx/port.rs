@@ -8,7 +8,7 @@ use super::link::Yrcx;
 use super::numbers::{Series, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
-use crate::command::frame::orders::Done;
+use crate::command::frame::orders::{Done, New};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
@@ -205,7 +205,7 @@ one_row! {
         } else {
             format!("{place} = {} ({:08b})", self.value, self.value)
         };
-        Done::new(place, self.value, words)
+        New::new(place, self.value, words)
     };
 }
 

@@ -4,17 +4,19 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link::Yrcx;
-use crate::command::frame::orders::Done;
+use super::link::{Link, Yrcx};
+use crate::command::frame::dry_run::Known as _;
+use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::procedure::Procedure;
+use crate::controller::yrcx::signal::{Signal, output};
 use crate::failure::Failure;
 use crate::output::view::View;
 
 /// Declares a command for each procedure.
 macro_rules! procedures {
-    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $set:literal = $new:literal, $done:literal $($is_stop:literal)?;)*) => {
+    ($($(#[$meta:meta])* $name:ident $id:literal $procedure:ident $set:literal = $new:literal, $done:literal $(was $signal:ident)? $($is_stop:literal)?;)*) => {
         $(
             $(#[$meta])*
             #[derive(Debug, Args)]
@@ -42,29 +44,37 @@ macro_rules! procedures {
                 }
 
                 async fn run(&self, context: Context<'_, Yrcx>) -> Result<CarriedOut, Failure> {
+                    let old = was(context.link, [$(output::$signal)?].into_iter().next()).await?;
                     let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
                     let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
-                    Ok(CarriedOut { done: Done::new($set, $new, $done), elapsed_ms })
+                    Ok(CarriedOut { done: New::new($set, $new, $done).replaces(old), elapsed_ms })
                 }
             }
         )*
     };
 }
 
+/// What the controller shows of this before; a stop names no signal, and waits for nothing.
+async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
+    let Some(signal) = signal else { return Ok(Old::UNREAD) };
+    let shown = link.look().await.known()?;
+    Ok(Old::read(shown.map(|image| signal.is_on(&image))))
+}
+
 procedures! {
     /// Switches the servos on after power on: SI(00) on, SI(01) on, until SO(02) confirms it.
-    PowerOn "yrcx.power-on" power_on "servo_on" = true, "the servos are on";
+    PowerOn "yrcx.power-on" power_on "servo_on" = true, "the servos are on" was SERVO_ON;
     /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. The connection must
     /// be held, or its end is what the controller sees next.
     EmergencyStop "yrcx.emergency-stop" emergency_stop "emergency_stop" = true, "the controller is in emergency stop" true;
     /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
-    Recover "yrcx.recover" recover "servo_on" = true, "the servos are on again";
+    Recover "yrcx.recover" recover "servo_on" = true, "the servos are on again" was SERVO_ON;
     /// Waits until AUTO mode is selected (SO(10)); people select it at the controller.
-    AutoMode "yrcx.auto-mode" auto_mode "auto_mode" = true, "AUTO mode is selected";
+    AutoMode "yrcx.auto-mode" auto_mode "auto_mode" = true, "AUTO mode is selected" was AUTO_MODE;
     /// Puts the robot program back to its first line: SI(15) on, until SO(14) confirms it.
     Reset "yrcx.reset" program_reset "program_state" = "reset", "the robot program is reset";
     /// Runs the robot program, also after a stop: SI(06) on, SI(12) on, until SO(13) confirms it.
-    Run "yrcx.run" run "program_running" = true, "the robot program runs";
+    Run "yrcx.run" run "program_running" = true, "the robot program runs" was PROGRAM_RUNNING;
     /// Stops the robot program: SI(06) off, until SO(13) confirms it. It stays off until the next run.
     Stop "yrcx.stop" stop "program_running" = false, "the robot program is stopped" true;
 }

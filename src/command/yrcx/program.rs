@@ -1,12 +1,14 @@
 //! `yrcx program` (4.6): programs and the tasks they run in.
 
+mod run;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link;
 use super::single::{Single, one_row};
-use crate::command::frame::orders::{Done, number};
+use crate::command::frame::orders::{Done, New, Old, number};
 use crate::command::yrcx::complete;
 use crate::command::{Report, commands};
 use crate::controller::yrcx::order::Draft;
@@ -21,7 +23,7 @@ commands! {
         /// Register a program in a task
         Select(Select),
         /// Run a program, or all of them
-        Run(Run),
+        Run(run::Run),
         /// Step into: run one line, also of a subroutine
         Step(Step),
         /// Skip one line
@@ -86,14 +88,14 @@ fn describe(program: Option<&String>, name: Option<&String>, task: Option<&Strin
 }
 
 /// The report with what names the program.
-fn named(done: Done, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Done {
+fn named(new: New, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> New {
     let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
-    done.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
+    new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
 }
 
 impl Which {
-    fn named(&self, done: Done) -> Done {
-        named(done, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    fn named(&self, new: New) -> New {
+        named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
     fn put(&self, draft: Draft) -> Draft {
@@ -106,9 +108,9 @@ impl Which {
 }
 
 impl WhichOrAll {
-    fn named(&self, done: Done) -> Done {
-        let done = named(done, self.program.as_ref(), self.name.as_ref(), self.task.as_ref());
-        if self.all_programs { done.with("all_programs", true) } else { done }
+    fn named(&self, new: New) -> New {
+        let new = named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref());
+        if self.all_programs { new.with("all_programs", true) } else { new }
     }
 
     fn put(&self, draft: Draft) -> Draft {
@@ -154,9 +156,9 @@ one_row! {
         let program = describe(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
         let words = format!("registered {program} in {task} with priority {}", self.priority);
-        let done = Done::new("program_state", "registered", words);
-        let done = named(done, self.program.program.as_ref(), self.program.name.as_ref(), None);
-        done.with("task", self.task).with("priority", number(&self.priority))
+        let new = New::new("program_state", "registered", words);
+        let new = named(new, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        new.with("task", self.task).with("priority", number(&self.priority))
     };
 }
 
@@ -188,8 +190,8 @@ macro_rules! starts {
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    let done = Done::new("program_state", $new, format!($done, self.which.describe()));
-                    Ok(self.which.named(done))
+                    let new = New::new("program_state", $new, format!($done, self.which.describe()));
+                    Ok(self.which.named(new).replaces(Old::UNREAD))
                 }
             }
         )*
@@ -197,10 +199,6 @@ macro_rules! starts {
 }
 
 starts! {
-    /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
-    #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it, and so \
-        does the end of the connection.")]
-    Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "running" "started {}";
     /// Runs one line of a program, also of a subroutine.
     Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
     /// Skips one line of a program.

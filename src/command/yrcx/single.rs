@@ -3,6 +3,7 @@
 use super::link::Done;
 use super::link::Yrcx;
 use super::overwrite::{self, Stored};
+use crate::command::frame::orders;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::Draft;
@@ -55,7 +56,7 @@ impl<S: Single> Command for S {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<S::Report, Failure> {
         let draft = context.link.draft(Single::command(self))?;
         let order = self.fill(draft).build()?;
-        self.report(&overwrite::give(context.link, &context.authority, &order).await?)
+        self.report(&overwrite::give(context.link, &context.authority, &order, Single::intent(self)).await?)
     }
 }
 
@@ -68,6 +69,12 @@ pub trait Said<R> {
 impl<R: Report> Said<R> for R {
     fn report(self, _done: &Done) -> R {
         self
+    }
+}
+
+impl Said<orders::Done> for orders::New {
+    fn report(self, done: &Done) -> orders::Done {
+        self.replaces(done.old.clone())
     }
 }
 

@@ -10,7 +10,7 @@ use super::link::Yrcx;
 use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
-use crate::command::frame::orders::{self, Done};
+use crate::command::frame::orders::{self, Done, New};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
@@ -112,6 +112,11 @@ impl Held {
     }
 }
 
+/// What a variable holds, for programs; null where that is no number.
+pub fn held(value: Option<&Value>) -> Json {
+    Held::of(value).value.map_or(Json::Null, Json::Number)
+}
+
 /// A single-precision number with its own digits.
 fn real(number: f32) -> Option<Number> {
     match serde_json::from_str(&number.to_string()) {
@@ -172,7 +177,7 @@ impl Operand {
     }
 
     /// What was assigned, or computed from what was there.
-    fn done(&self, variable: String, does: &str, words: String) -> Done {
+    fn done(&self, variable: String, does: &str, words: String) -> New {
         let operand = match self {
             Self::Number(text) => orders::number(text),
             Self::Variable(number) => name(*number).into(),
@@ -181,7 +186,7 @@ impl Operand {
             ("set", Self::Number(_)) => operand.clone(),
             _ => Json::Null,
         };
-        Done::new(variable, new, words).with("operation", does).with("operand", operand)
+        New::new(variable, new, words).with("operation", does).with("operand", operand)
     }
 
     fn describe(&self) -> String {
@@ -222,10 +227,10 @@ macro_rules! changes {
                     self.operand.put(draft.with(Key::Variable, self.variable))
                 }
 
-                fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+                fn report(&self, done: &link::Done) -> Result<Done, Failure> {
                     let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
-                    Ok(self.operand.done(variable, $does, words))
+                    Ok(self.operand.done(variable, $does, words).replaces(done.old.clone()))
                 }
             }
         )*

@@ -61,7 +61,7 @@ impl Bus for Device {
     }
 
     fn traffic(&self) -> Traffic {
-        let counted = self.connection.view().statistics;
+        let counted = self.connection.statistics();
         let odd = vec![
             (counted.stale, "late or doubled"),
             (counted.skipped, "not sent in time"),

@@ -53,7 +53,7 @@ impl Command for Set {
         let stores = [Store::new(self.program.to_string(), cell).over(found)];
         authority.confirm(&stores::replacing(WORK, &stores, "")).await?;
         let cells = stores::sum(&stores::store_all(link, screen, WORK, &stores, 0).await?);
-        Ok(Stored { program, cells })
+        Ok(Stored { program, items: stores::written(&stores), cells })
     }
 }
 
@@ -62,6 +62,8 @@ impl Command for Set {
 pub struct Stored {
     #[serde(flatten)]
     program: Program,
+    /// What it held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
 }

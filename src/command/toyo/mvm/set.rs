@@ -78,7 +78,7 @@ impl Command for Set {
         let of = format!(" of group {}", self.group);
         authority.confirm(&stores::replacing(WORK, &stores, &of)).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
-        Ok(Stored { group: Group::of(&sheets), cells: stores::sum(&fates) })
+        Ok(Stored { group: Group::of(&sheets), items: stores::written(&stores), cells: stores::sum(&fates) })
     }
 }
 
@@ -117,6 +117,8 @@ impl Set {
 pub struct Stored {
     #[serde(flatten)]
     group: Group,
+    /// What each held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
 }

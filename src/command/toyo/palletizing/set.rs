@@ -87,7 +87,8 @@ impl Command for Set {
         authority.confirm(&stores::replacing(WORK, &stores, &of)).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         let records = entries.into_iter().zip(&fates).map(|(entry, fate)| StoredRecord { entry, result: *fate });
-        Ok(Stored { program: self.program, records: records.collect(), cells: stores::sum(&fates) })
+        let (records, items) = (records.collect(), stores::written(&stores));
+        Ok(Stored { program: self.program, records, items, cells: stores::sum(&fates) })
     }
 }
 
@@ -107,6 +108,8 @@ pub struct Stored {
     /// 1 to 16.
     program: i32,
     records: Vec<StoredRecord>,
+    /// What each held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
 }

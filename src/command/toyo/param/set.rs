@@ -79,6 +79,7 @@ impl Command for Set {
             id: parameter.id,
             name: parameter.name,
             values: values::shown(&store.cell.wanted),
+            items: stores::written(std::slice::from_ref(&store)),
             cells,
             needs_power_cycle: parameter.group() == Group::Machine && cells.cells_written > 0,
         })
@@ -93,6 +94,8 @@ pub struct Written {
     /// `soft-limit-plus`.
     name: &'static str,
     values: Vec<Shown>,
+    /// What it held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
     /// Nothing but communication works until the controller's power was switched off and on.

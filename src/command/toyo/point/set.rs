@@ -1,6 +1,6 @@
 //! `toyo point set`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::{OTHER_TASK, Row, field};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::teach::printed;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
@@ -42,7 +43,8 @@ pub struct Set {
     /// Row of the coordinate table, 1 to 999
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
     point: Option<i32>,
-    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others
+    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others; or @FILE with what
+    /// `position --json` printed, @- for stdin, or here
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "MM", allow_negative_numbers = true)]
     values: Vec<String>,
     /// Write the points of this CSV file; - is stdin
@@ -56,7 +58,7 @@ pub struct Set {
     resume: Option<String>,
 }
 
-const WORK: StoreTask =
+pub(super) const WORK: StoreTask =
     StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
@@ -71,7 +73,9 @@ impl Command for Set {
         let Context { link, screen, authority, .. } = context;
         let Some(file) = &self.from else {
             let point = self.point.unwrap_or_default();
-            let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
+            let given = printed_values(&self.values)?;
+            let values = given.as_ref().unwrap_or(&self.values);
+            let changes = Changes::read(&format!("point {point}"), &points::table().body(), values)?;
             let task = tasks::choose(link, self.task).await?;
             let stored = self.store_one(link, screen, &authority, (task, point), &changes).await;
             return tasks::done(link, stored).await;
@@ -156,10 +160,25 @@ impl Set {
     }
 }
 
-fn store(values: Vec<Value>) -> Result<Store, Failure> {
+pub(super) fn store(values: Vec<Value>) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
     let row = cell.wanted.number("row").unwrap_or_default();
     Ok(Store::new(row.to_string(), cell))
+}
+
+/// The values of a position that another command printed, where a file of one is given.
+fn printed_values(values: &[String]) -> Result<Option<Vec<String>>, Failure> {
+    let [only] = values else { return Ok(None) };
+    let Some(file) = only.strip_prefix('@') else { return Ok(None) };
+    let position = printed(Path::new(file))?;
+    let value = |key: &str| {
+        let number = position.get(key).filter(|value| value.is_number());
+        number.map(ToString::to_string).ok_or_else(|| {
+            Failure::usage(format!("{file}: no number {key}"))
+                .hint("it holds a position as `toyo position --json` prints it")
+        })
+    };
+    ["x_mm", "y_mm", "z_mm", "r_mm"].into_iter().map(value).collect::<Result<_, _>>().map(Some)
 }
 
 /// Result of points.
@@ -168,6 +187,8 @@ pub struct Stored {
     /// Whose points these are.
     task: u8,
     points: Vec<StoredRow>,
+    /// What each held and holds.
+    items: stores::WrittenCells,
     #[serde(flatten)]
     cells: Cells,
 }
@@ -184,7 +205,7 @@ impl Stored {
     fn new(task: u8, stores: &[Store], fates: &[StoreResult]) -> Self {
         let rows =
             stores.iter().zip(fates).map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted), result: *fate });
-        Self { task, points: rows.collect(), cells: stores::sum(fates) }
+        Self { task, points: rows.collect(), items: stores::written(stores), cells: stores::sum(fates) }
     }
 }
 

@@ -19,8 +19,9 @@ mod results;
 mod transfer;
 
 pub use backup::back_up;
+pub(super) use name::{Shown, exact};
 pub use restore::Restore;
-pub(super) use transfer::taken as download_failed;
+pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed};
 
 use crate::command::commands;
 

@@ -105,7 +105,12 @@ impl States {
 
 impl Report for States {
     fn view(&self) -> View {
-        View { sections: [signal_table(&self.signals), group_table(&self.groups)].into_iter().flatten().collect() }
+        View {
+            sections: [signal_table(self.signals.iter()), group_table(self.groups.iter())]
+                .into_iter()
+                .flatten()
+                .collect(),
+        }
     }
 
     fn failure(&self) -> Option<Failure> {

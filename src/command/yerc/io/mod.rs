@@ -93,7 +93,7 @@ impl GroupState {
     }
 }
 
-fn signal_table(signals: &[SignalState]) -> Option<Section> {
+fn signal_table<'a>(signals: impl Iterator<Item = &'a SignalState>) -> Option<Section> {
     let mut table = Table::new(&["signal", "class", "state"], "no signals");
     for state in signals {
         let on = match (state.outcome.data(), state.outcome.error()) {
@@ -102,10 +102,10 @@ fn signal_table(signals: &[SignalState]) -> Option<Section> {
         };
         table.row([state.name.as_str().into(), state.class.into(), on]);
     }
-    (!signals.is_empty()).then_some(Section::Table(table))
+    (!table.rows.is_empty()).then_some(Section::Table(table))
 }
 
-fn group_table(groups: &[GroupState]) -> Option<Section> {
+fn group_table<'a>(groups: impl Iterator<Item = &'a GroupState>) -> Option<Section> {
     let mut table = Table::new(&["group", "signals", "class", "value", "7 to 0"], "no groups");
     for state in groups {
         let [value, bits] = match (state.outcome.data(), state.outcome.error()) {
@@ -120,5 +120,5 @@ fn group_table(groups: &[GroupState]) -> Option<Section> {
             bits,
         ]);
     }
-    (!groups.is_empty()).then_some(Section::Table(table))
+    (!table.rows.is_empty()).then_some(Section::Table(table))
 }

@@ -9,10 +9,11 @@ use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::parts::{Parts, plan_in_parts, read_in_parts};
-use super::super::writes::{WriteOrder, write_all};
+use super::super::writes::{WriteOrder, before, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::orders::{Old, Written};
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -30,7 +31,7 @@ use crate::output::view::View;
     after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on \
                         an FS100. The protocol writes eight signals at a time: the group is read, the named signals \
                         are changed, and the other seven are written back as they were read. If something else changes \
-                        one of them in between, that change is undone. --group writes all eight without reading."
+                        one of them in between, that change is undone. --group writes all eight, whatever they were."
 )]
 pub struct Set {
     /// Such as 27010=on or #27011=off
@@ -102,13 +103,13 @@ impl Command for Set {
         for &group in changes.keys() {
             signal::writable(model, group)?;
         }
-        let partial: Vec<u16> =
-            changes.iter().filter(|(_, change)| change.mask != u8::MAX).map(|(group, _)| *group).collect();
+        let (whole, partial): (Vec<u16>, Vec<u16>) =
+            changes.keys().partition(|group| changes.get(group).is_some_and(|change| change.mask == u8::MAX));
+        let mut found = before(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
         if link.is_dry() && !partial.is_empty() {
             return Err(plan(link, &partial, &changes)?);
         }
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-        let mut found = BTreeMap::new();
         for (group, outcome) in read_in_parts(link, plan, &partial, |_| Parts::Halves, |_, _| {}).await? {
             let byte = outcome.map_err(|denied| {
                 let failure = Failure::from(denied);
@@ -122,9 +123,18 @@ impl Command for Set {
             .collect();
         let steps = plan_io_writes(model, &values).map_err(usage)?;
         write_all(link, screen, &steps).await?;
-        let signals = self.signals.iter().map(|switch| SignalState::new(model, switch.signal, Ok(switch.on)));
-        let groups = values.into_iter().map(|(group, value)| GroupState::new(model, group, Ok(value)));
-        Ok(Switched { signals: signals.collect::<Result<_, _>>()?, groups: groups.collect::<Result<_, _>>()? })
+        let old = |group: u16| found.get(&group).copied();
+        let signals = self.signals.iter().map(|Switch { signal, on }| {
+            let old = old(signal.group()).map(|byte| byte >> signal.bit() & 1 == 1);
+            Ok(Written::new(SignalState::new(model, *signal, Ok(*on))?, Old::read(old), *on))
+        });
+        let groups = values.into_iter().map(|(group, value)| {
+            Ok(Written::new(GroupState::new(model, group, Ok(value))?, Old::read(old(group)), value))
+        });
+        Ok(Switched {
+            signals: signals.collect::<Result<_, Failure>>()?,
+            groups: groups.collect::<Result<_, Failure>>()?,
+        })
     }
 }
 
@@ -188,14 +198,22 @@ impl WriteOrder for WriteIoStep {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Switched {
     /// The signals that were named.
-    signals: Vec<SignalState>,
+    signals: Vec<Written<SignalState>>,
     /// The groups as they were written, all eight signals each.
-    groups: Vec<GroupState>,
+    groups: Vec<Written<GroupState>>,
 }
 
 impl Report for Switched {
     fn view(&self) -> View {
-        View { sections: [signal_table(&self.signals), group_table(&self.groups)].into_iter().flatten().collect() }
+        View {
+            sections: [
+                signal_table(self.signals.iter().map(|written| &written.item)),
+                group_table(self.groups.iter().map(|written| &written.item)),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+        }
     }
 }
 

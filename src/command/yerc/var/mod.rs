@@ -12,6 +12,9 @@ mod restore;
 mod set;
 mod sheet;
 
+pub use self::entry::is_undefined;
+pub use self::part::unlike;
+pub use self::position::{PositionData, held};
 use crate::command::commands;
 use crate::command::frame::watch::Watch;
 use crate::controller::yerc::Model;

@@ -1,32 +1,34 @@
 //! `yerc var set`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value as Json;
 
 use super::super::orders::usage;
-use super::super::writes::{WriteOrder, write_all};
+use super::super::writes::{WriteOrder, before, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::orders;
+use crate::command::frame::orders::Old;
+use crate::command::frame::teach::printed;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::typed::{self, integer};
-use crate::controller::yerc::payload::PayloadError;
+use crate::controller::yerc::payload::{PayloadError, Position};
 use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
-use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
+use crate::controller::yerc::variables::{
+    ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes,
+};
 use crate::failure::Failure;
-use crate::files;
 use crate::output::view::{Cell, Table, View};
 
 /// Variables to write.
@@ -34,7 +36,8 @@ use crate::output::view::{Cell, Table, View};
 #[command(
     after_help = "Every value is checked before the first is sent; runs of numbers go in one request. A position \
                         is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
-                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` printed. BP takes \
+                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` or \
+                        `position --json` printed (of both coordinates the pulses; @- is stdin). P1=here is `teach P1`. BP takes \
                         base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change that word and keep \
                         the others (a P is read, changed and written back whole); axis words count steps of the wire \
                         (pulses, or 0.001 mm and 0.0001 degree)."
@@ -175,18 +178,30 @@ impl Command for Set {
             }
             named.push((reference, part));
         }
-        let mut parts: Vec<Part> = self.assignments.iter().filter_map(Assignment::part).collect();
+        let mut whole_words = Vec::new();
         for (reference, value) in &mut values {
             // Words of a position that is given whole are a part of it.
             let Value::Position(position) = value else { continue };
             for word in words.remove(reference).unwrap_or_default() {
                 word.set(position);
-                parts.push(Part::new(*reference, word, None));
+                whole_words.push((*reference, word));
             }
         }
         let plain: Vec<(u16, Value)> =
             values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
         let steps = plan_writes(&plain).map_err(usage)?;
+        let replaced = values.iter().map(|(reference, _)| *reference).chain(changed_in_part(&fields));
+        let old = before(link, &replaced_by(replaced)).await?;
+        let position = |reference: &Reference| match old.get(reference) {
+            Some(Value::Position(position)) => Some(position),
+            _ => None,
+        };
+        let mut parts: Vec<Part> = self.assignments.iter().filter_map(|it| it.part(position(&it.reference))).collect();
+        parts.extend(
+            whole_words
+                .into_iter()
+                .map(|(reference, word)| Part::new(reference, word, position(&reference).map(|old| word.old(old)))),
+        );
         let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
         if link.is_dry() && !words.is_empty() {
             part::plan_reads(link, &words);
@@ -202,13 +217,31 @@ impl Command for Set {
             changes.push(Change::Position(reference, write));
         }
         write_all(link, screen, &changes).await?;
-        let entries = values.into_iter().map(|(reference, value)| Entry::new(reference, &Ok(value), link.encoding));
-        Ok(Written { written: entries.collect(), parts })
+        let entry = |reference, value| Entry::new(reference, &Ok(value), link.encoding);
+        let written = values.into_iter().map(|(reference, value)| {
+            let old = old.get(&reference).map(|old| entry(reference, old.clone()).data());
+            let item = entry(reference, value);
+            let new = item.data();
+            orders::Written::new(item, Old::read(old), new)
+        });
+        Ok(Written { written: written.collect(), parts })
     }
 }
 
+/// Positions of which single words are written.
+fn changed_in_part(fields: &[Change]) -> impl Iterator<Item = Reference> {
+    fields.iter().flat_map(WriteOrder::items)
+}
+
+/// What reads variables that are written. Positions are read one by one, as each may hold nothing yet.
+fn replaced_by(references: impl Iterator<Item = Reference>) -> Vec<ReadStep> {
+    let (positions, others): (Vec<_>, Vec<_>) = references.partition(|reference| reference.kind.is_position());
+    let positions = positions.iter().flat_map(|position| plan_reads(&[*position]));
+    plan_reads(&others).into_iter().chain(positions).collect()
+}
+
 impl Assignment {
-    fn part(&self) -> Option<Part> {
+    fn part(&self, old: Option<&Position>) -> Option<Part> {
         let Input::Field(field) = &self.input else { return None };
         let request = field.request();
         let word = request.data.first_chunk().map_or(0, |word| i32::from_le_bytes(*word));
@@ -216,7 +249,10 @@ impl Assignment {
             name: self.reference.to_string(),
             part: format!("axis{}", request.attribute.saturating_sub(1)),
             attribute: request.attribute,
-            old: None,
+            old: old
+                .and_then(|old| old.axes.padded().get(usize::from(request.attribute).checked_sub(2)?).copied())
+                .map(Into::into),
+            new: word.into(),
             value: word.into(),
         })
     }
@@ -237,10 +273,10 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
         }
         Input::File(path) => {
             let wrong = |error: String| {
-                let hint = "the file holds a position as `yerc var get P1 --json` prints it";
+                let hint = "the file holds a position as `yerc var get P1 --json` or `yerc position --json` prints it";
                 Failure::usage(format!("{}: {error}", path.display())).hint(hint)
             };
-            let json: Json = serde_json::from_str(&read(path)?).map_err(|error| wrong(error.to_string()))?;
+            let json = printed(path)?;
             let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
             let reading = Reading { model: link.model, encoding: link.encoding };
             reading.value(reference.kind, position).map_err(|error| {
@@ -250,13 +286,6 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
         }
         Input::Field(_) | Input::Word(_) => Err(wrong("a part is no value".to_owned())),
     }
-}
-
-/// A position takes a kilobyte; this is room for a whole report around it.
-const MOST: u64 = 1 << 20;
-
-fn read(path: &Path) -> Result<String, Failure> {
-    Ok(files::text(path, MOST).with_context(|| path.display().to_string())?)
 }
 
 /// A request of `var set`.
@@ -302,7 +331,7 @@ impl WriteOrder for Change {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written {
     /// Whole variables.
-    written: Vec<Entry>,
+    written: Vec<orders::Written<Entry>>,
     /// Single words of positions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<Part>,
@@ -319,21 +348,25 @@ struct Part {
     attribute: u8,
     /// What was there; null where that was not read.
     old: Option<i64>,
+    /// Its value now.
+    new: i64,
+    /// The same.
     value: i64,
 }
 
 impl Part {
     fn new(reference: Reference, word: Word, old: Option<i64>) -> Self {
         let (name, part) = (reference.to_string(), word.name());
-        Self { name, part, attribute: word.attribute(), old, value: word.value() }
+        Self { name, part, attribute: word.attribute(), old, new: word.value(), value: word.value() }
     }
 }
 
 impl Report for Written {
     fn view(&self) -> View {
         let mut table = Table::new(&["written", "value"], "nothing to write");
-        let numbers = self.written.iter().all(Entry::is_number);
-        for entry in &self.written {
+        let entries = || self.written.iter().map(|written| &written.item);
+        let numbers = entries().all(Entry::is_number);
+        for entry in entries() {
             let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
             table.row([entry.name().into(), value]);
         }

@@ -7,13 +7,14 @@ use serde_json::json;
 
 use super::board::{Object, shown};
 use super::{NO_UNIT, board_of};
-use crate::command::frame::orders::Done;
+use crate::command::frame::dry_run::Known as _;
+use crate::command::frame::orders::{BEFORE, Done, New, Old};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text;
 use crate::controller::typed;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, View};
 
 /// Reads an attribute of an object, or all of them (Get_Attribute_Single, Get_Attributes_All).
@@ -98,13 +99,20 @@ impl Command for Set {
         context.link.no_unit(NO_UNIT)?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
+        context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": BEFORE })).known()?;
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.authorize("yrcx.eip.set", self.risk())?;
+        let old = match board_of(context.link)?.get(object).await {
+            Ok(bytes) => Some(text::hex(&bytes)),
+            Err(failure) if failure.kind == Kind::Refused => None,
+            Err(failure) => return Err(failure),
+        };
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         let words = format!("set {object} to {}", shown(&self.data.0));
-        let done = Done::new("attribute", text::hex(&self.data.0), words);
-        Ok(done.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute))
+        let new = New::new("attribute", text::hex(&self.data.0), words);
+        let new = new.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute);
+        Ok(new.replaces(Old::read(old)))
     }
 }
 

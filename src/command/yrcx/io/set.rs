@@ -3,13 +3,14 @@
 use clap::Args;
 
 use super::input;
-use crate::command::frame::orders::{AllDone, Done};
+use crate::command::frame::orders::{AllDone, Done, New, Old};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::typed;
+use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::procedure::Procedure;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -49,10 +50,17 @@ fn change(text: &str) -> Result<Change, String> {
 }
 
 impl Change {
-    fn done(self) -> Done {
+    /// What was done, where this was shown before.
+    fn done(self, shown: Option<&Image>) -> Done {
         match self {
-            Self::Signal { signal, on } => Done::new(signal.to_string(), on, self.describe()),
-            Self::Word { register, value } => Done::new(register.to_string(), value, self.describe()),
+            Self::Signal { signal, on } => {
+                let old = shown.map(|image| signal.is_on(image));
+                New::new(signal.to_string(), on, self.describe()).replaces(Old::read(old))
+            }
+            Self::Word { register, value } => {
+                let old = shown.map(|image| register.read(&image.command()));
+                New::new(register.to_string(), value, self.describe()).replaces(Old::read(old))
+            }
         }
     }
 
@@ -101,6 +109,7 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<AllDone, Failure> {
+        let shown = context.link.shown().copied();
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
@@ -113,7 +122,7 @@ impl Command for Set {
             })?;
             done += together.len();
         }
-        let items = self.changes.iter().map(|change| change.done()).collect();
+        let items = self.changes.iter().map(|change| change.done(shown.as_ref())).collect();
         Ok(AllDone::new(items, format!("switched {}", describe(&self.changes))))
     }
 }
@@ -144,9 +153,10 @@ impl Command for Pulse {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+        let old = context.link.shown().map(|image| self.signal.is_on(image));
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
         let words = format!("switched {} on and off again", self.signal.named());
-        Ok(Done::new(self.signal.to_string(), false, words).with("pulsed", true))
+        Ok(New::new(self.signal.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
     }
 }
 

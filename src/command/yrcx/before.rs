@@ -1,0 +1,96 @@
+//! What a remote command replaces that sets a value: which command reads it, and what of its answer tells it.
+
+use serde_json::Value as Json;
+
+use super::link::Link;
+use super::overwrite::there;
+use super::single::shown;
+use super::var::held;
+use crate::command::frame::orders::{BEFORE, Old, unwritten};
+use crate::controller::yrcx::order::{Draft, Order};
+use crate::controller::yrcx::table::Command;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::gate::Change;
+
+/// Reads what an order replaces; what is not told stays unknown. A dry run notes the question.
+pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
+    let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
+    let values = there(link, &read.build()?, BEFORE).await.map_err(unwritten)?;
+    Ok(Old::read(values.and_then(|values| told(order, &values))))
+}
+
+/// What is asked before an order that sets a value: what it will do, and old and new where old was read.
+pub fn question(order: &Order, intent: String, old: &Old) -> Change {
+    let change = Change::new(if intent.is_empty() { order.row().name.to_owned() } else { intent });
+    let new = match order.command() {
+        Command::ServoOn => "on",
+        Command::ServoOff => "off",
+        Command::ServoFree => "free",
+        _ => return change,
+    };
+    match old.in_words() {
+        Some(old) => change.replaces("servo", &old, new),
+        None => change,
+    }
+}
+
+/// What reads what an order sets. There is nothing that reads a torque limit, a selected shift or hand, and motor power.
+fn reader(order: &Order) -> Option<Draft> {
+    let values = order.values();
+    let (read, keys): (_, &[Key]) = match order.command() {
+        Command::VarSet
+        | Command::VarSetVar
+        | Command::VarAdd
+        | Command::VarAddVar
+        | Command::VarSub
+        | Command::VarSubVar
+        | Command::VarMul
+        | Command::VarMulVar
+        | Command::VarDiv
+        | Command::VarDivVar => (Command::VarGet, &[Key::Variable]),
+        Command::PortSet | Command::PortSetBit => (Command::PortGet, &[Key::PortType, Key::Port]),
+        Command::SpeedManual | Command::SpeedAuto | Command::SpeedProgram => (Command::SpeedStatus, &[Key::Robot]),
+        Command::InchAmountSet => (Command::InchAmountGet, &[Key::Robot]),
+        Command::ArmSelect => (Command::ArmDesignation, &[Key::Robot]),
+        Command::ServoOn | Command::ServoOff | Command::ServoFree => (Command::ServoStatus, &[Key::Robot]),
+        _ => return None,
+    };
+    let given = keys.iter().filter_map(|key| Some((*key, values.int(*key)?)));
+    Some(given.fold(read.order(), |draft, (key, number)| draft.with(key, number)))
+}
+
+/// What the answer says of it, as the report of the order names values.
+fn told(order: &Order, answer: &Values) -> Option<Json> {
+    let number = |key| answer.int(key).map(Json::from);
+    match order.command() {
+        Command::PortSet => number(Key::Value),
+        Command::PortSetBit => {
+            let bit = order.values().int(Key::PortBit)?;
+            answer.int(Key::Value).map(|port| Json::from(port >> bit & 1))
+        }
+        Command::SpeedManual => number(Key::ManualSpeed),
+        Command::SpeedAuto => number(Key::AutoSpeed),
+        Command::SpeedProgram => number(Key::ProgramSpeed),
+        Command::InchAmountSet => number(Key::InchingAmount),
+        Command::ArmSelect => shown(Command::ArmDesignation, answer, Key::Arm).map(Json::from),
+        Command::ServoOn | Command::ServoOff | Command::ServoFree => servo(order.values(), answer),
+        _ => Some(held(answer.value(Key::Value))),
+    }
+}
+
+/// `on`, `off` or `free` where all axes that are meant are alike; else that of each, null for one that is not there.
+fn servo(order: &Values, answer: &Values) -> Option<Json> {
+    let mask = order.int(Key::Axes).unwrap_or_default();
+    let state = |key| match shown(Command::ServoStatus, answer, key).as_deref() {
+        Some("servo") => Some("on"),
+        Some("brake") => Some("off"),
+        Some("free") => Some("free"),
+        _ => None,
+    };
+    let meant = Key::AXES.into_iter().enumerate().filter(|(at, _)| mask == 0 || mask >> at & 1 == 1);
+    let states: Vec<Option<&str>> = meant.map(|(_, key)| state(key)).collect();
+    let mut there = states.iter().flatten();
+    let first = there.next()?;
+    Some(if there.all(|state| state == first) { Json::from(*first) } else { Json::from(states) })
+}
