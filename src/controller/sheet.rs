@@ -323,7 +323,8 @@ fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> O
 
 /// The cells of a line, each with the byte it begins at; where a quote is wrong, its place.
 fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usize> {
-    let trimmed = |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();
+    let trimmed =
+        |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();
     let mut cells = Vec::new();
     let mut at = 0;
     loop {

@@ -140,7 +140,8 @@ impl Differences {
         for entry in b.files.iter().filter(|entry| only.has(&entry.name) && partner(entry, a).is_none()) {
             files.push(of_files(old, new, None, Some(entry), manner));
         }
-        let equal = files.iter().all(|file| matches!(file.state, State::Same | State::SameButDate | State::WithinTolerance));
+        let equal =
+            files.iter().all(|file| matches!(file.state, State::Same | State::SameButDate | State::WithinTolerance));
         Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance: manner.tolerance, files })
     }
 
@@ -211,13 +212,7 @@ fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifferenc
 }
 
 /// Compares a file that one or both have.
-fn of_files(
-    old: &Side,
-    new: &Side,
-    entry: Option<&Entry>,
-    partner: Option<&Entry>,
-    manner: Manner,
-) -> FileDifference {
+fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> FileDifference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
     let state = match (entry, partner) {
         (Some(_), None) if covers(&new.manifest, &old.manifest, &name) => State::OnlyOld,
@@ -247,13 +242,7 @@ fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
         && backup.scope.iter().all(|word| is_common(word) || other.scope.contains(word))
 }
 
-fn both(
-    old: &Side,
-    new: &Side,
-    entry: &Entry,
-    partner: &Entry,
-    manner: Manner,
-) -> Result<FileDifference, Failure> {
+fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) -> Result<FileDifference, Failure> {
     let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
     let file = |state| FileDifference { file: ours.file.clone(), ..FileDifference::new(String::new(), state) };
     if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
@@ -310,7 +299,15 @@ fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
 
 impl FileDifference {
     fn new(name: String, state: State) -> Self {
-        Self { name, state, ignored: Vec::new(), hunks: None, only_line_endings: false, error: None, file: String::new() }
+        Self {
+            name,
+            state,
+            ignored: Vec::new(),
+            hunks: None,
+            only_line_endings: false,
+            error: None,
+            file: String::new(),
+        }
     }
 
     fn unknown(name: String, failure: Failure) -> Self {

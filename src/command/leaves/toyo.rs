@@ -127,6 +127,8 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo program get pick.toyo --explain", Read),
     ("toyo program put pick.toyo", Destroy),
     ("toyo program put pick.toyo --task 2 --dry-run", Destroy),
+    ("toyo program edit", Destroy),
+    ("toyo program edit 2", Destroy),
     ("toyo program insert 12 END", Destroy),
     ("toyo program insert 12 OUT STN=0 PN1=.......1", Destroy),
     ("toyo program delete 12", Destroy),

@@ -119,7 +119,8 @@ impl Set {
         (task, points): (u8, &[Partial]),
     ) -> Result<Stored, Failure> {
         // With zeros for what is not known yet.
-        let whole = |point: &Partial| store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect());
+        let whole =
+            |point: &Partial| store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect());
         let mut stores = points.iter().map(whole).collect::<Result<Vec<Store>, Failure>>()?;
         let left_out = stores::left_out(&stores, self.resume.as_deref())?;
         if points.iter().all(|point| point.values.iter().all(Option::is_some)) {

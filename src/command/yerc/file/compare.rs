@@ -126,8 +126,8 @@ mod tests {
     use std::io::Write as _;
 
     use super::super::content::Content;
-    use crate::command::backup::dated::aligned;
     use super::*;
+    use crate::command::backup::dated::aligned;
 
     fn compared(local: &[u8], blocks: &[&[u8]]) -> Comparison {
         let mut file = tempfile::NamedTempFile::new().unwrap();

@@ -170,7 +170,9 @@ impl Difference {
         let Self { name: Shown { name, .. }, path, controller_bytes, local_bytes, .. } = self;
         match (self.first_difference_offset, self.only_line_endings) {
             (None, _) if !self.ignored.is_empty() => {
-                format!("{name} on the controller and {path} are the same but for the line {DATE_LINE}, which is ignored")
+                format!(
+                    "{name} on the controller and {path} are the same but for the line {DATE_LINE}, which is ignored"
+                )
             }
             (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
             (Some(_), Some(true)) => format!("{name} on the controller and {path} differ in line endings only"),

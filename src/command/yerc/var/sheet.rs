@@ -129,7 +129,8 @@ fn variable<'k>(
     for (column, at) in given.filter(|(column, at)| *column == NAME || !row.string(*at).is_empty()) {
         let text = row.text(at);
         let number = || -> Result<Json, (usize, String)> {
-            let digits = sheet.number(row, at).map_err(|why| (at, format!("{column}: '{text}' is not clear: {why}")))?;
+            let digits =
+                sheet.number(row, at).map_err(|why| (at, format!("{column}: '{text}' is not clear: {why}")))?;
             serde_json::from_str(&digits).map_err(|_| (at, format!("{column}: '{text}' is not a number")))
         };
         match column {
@@ -182,16 +183,18 @@ impl Kept {
             merged.clear();
         }
         merged.extend(fields.clone());
-        let value = position::read(kind, &merged).map_err(|error| error.trim_start_matches([':', '.', ' ']).to_owned())?;
+        let value =
+            position::read(kind, &merged).map_err(|error| error.trim_start_matches([':', '.', ' ']).to_owned())?;
         let missing = |data: &PositionData| {
             let all = serde_json::to_value(data).ok()?;
             let axes = all.as_object()?.keys().filter(|name| position::is_axis(name));
             Some(axes.filter(|name| !fields.contains_key(*name)).cloned().collect::<Vec<_>>())
         };
         match PositionData::of(&value).as_ref().and_then(missing).filter(|_| is_alone) {
-            Some(missing) if !missing.is_empty() => {
-                Err(format!("the controller has none of this type that could be kept in part; {} is missing", missing.join(", ")))
-            }
+            Some(missing) if !missing.is_empty() => Err(format!(
+                "the controller has none of this type that could be kept in part; {} is missing",
+                missing.join(", ")
+            )),
             _ => Ok(value),
         }
     }
@@ -199,7 +202,8 @@ impl Kept {
     /// Two positions that agree in nothing but what is known before, for a dry run.
     pub fn sketch(&self, kind: VariableKind) -> Option<[Value; 2]> {
         let Self::Fields(fields) = self else { return None };
-        let is_pulses = fields.keys().any(|name| name.ends_with("_pulses")) || fields.get(TYPE) == Some(&json!("pulse"));
+        let is_pulses =
+            fields.keys().any(|name| name.ends_with("_pulses")) || fields.get(TYPE) == Some(&json!("pulse"));
         let kinds = if is_pulses { [PositionKind::Pulse; 2] } else { [PositionKind::Base, PositionKind::Robot] };
         let of = |(at, word, axis): (usize, u32, i32)| Position {
             kind: fields.get(TYPE).and_then(|name| named(name.as_str()?)).unwrap_or(kinds[at]),
@@ -250,15 +254,21 @@ mod tests {
             value("P3", "pulse:s=1,l=-2,u=3,r=4,b=5,t=6"),
             value("EX1", "pulse:1=77"),
         ];
-        let entries: Vec<Entry> =
-            values.iter().map(|(reference, value)| Entry::new(*reference, &Ok(value.clone()), READING.encoding).bare()).collect();
+        let entries: Vec<Entry> = values
+            .iter()
+            .map(|(reference, value)| Entry::new(*reference, &Ok(value.clone()), READING.encoding).bare())
+            .collect();
         let (columns, rows) = rows(&entries);
         for dialect in [crate::controller::sheet::Dialect::COMMAS, crate::controller::sheet::Dialect::DECIMAL_COMMA] {
             let text = crate::controller::sheet::write(dialect, &columns, &rows);
             let read = read(text.as_bytes(), READING).unwrap();
             for ((reference, value), (back, kept)) in values.iter().zip(read) {
                 let old = reference.kind.is_position().then_some(value);
-                assert_eq!((back, kept.unwrap().over(back.kind, old).unwrap().emit()), (*reference, value.emit()), "{text}");
+                assert_eq!(
+                    (back, kept.unwrap().over(back.kind, old).unwrap().emit()),
+                    (*reference, value.emit()),
+                    "{text}"
+                );
             }
         }
     }

@@ -184,10 +184,13 @@ fn point(sheet: &Sheet, row: &Row, given: &[(&'static str, usize)]) -> Result<Po
             }
             COMMENT => point.comment = Some(row.string(at).to_owned()).filter(|text| !text.is_empty()),
             HAND => drop(point.cells.insert(name, text.to_owned())),
-            _ if text.is_empty() => return Err((at, format!("{name} is empty; without its column, it stays as it is"))),
+            _ if text.is_empty() => {
+                return Err((at, format!("{name} is empty; without its column, it stays as it is")));
+            }
             UNIT => drop(point.cells.insert(name, text.to_owned())),
             _ => {
-                let number = sheet.number(row, at).map_err(|why| (at, format!("{name}: '{text}' is not clear: {why}")))?;
+                let number =
+                    sheet.number(row, at).map_err(|why| (at, format!("{name}: '{text}' is not clear: {why}")))?;
                 point.cells.insert(name, number.into_owned());
             }
         }
@@ -213,7 +216,10 @@ impl Point {
                 (None, Some(kept)) => kept,
                 (None, None) if name == HAND => String::new(),
                 (None, None) => {
-                    return Err(format!("the controller has no point in {} to keep {name} of; give it", unit.map_or("it", |unit| unit)));
+                    return Err(format!(
+                        "the controller has no point in {} to keep {name} of; give it",
+                        unit.map_or("it", |unit| unit)
+                    ));
                 }
             };
             row.push(cell);
@@ -228,7 +234,11 @@ impl Point {
         let unit = self.cells.get(UNIT).map_or("mm", String::as_str);
         let axes = if unit == "mm" { ["0", "-0.001"] } else { ["0", "-1"] };
         let of = |axis: &str, hand: &str| -> Cells {
-            [&[&self.number.to_string(), unit][..], &[axis; 4], &[hand]].concat().into_iter().map(str::to_owned).collect()
+            [&[&self.number.to_string(), unit][..], &[axis; 4], &[hand]]
+                .concat()
+                .into_iter()
+                .map(str::to_owned)
+                .collect()
         };
         [of(axes[0], ""), of(axes[1], if unit == "mm" { "left" } else { "" })]
     }
@@ -259,7 +269,8 @@ impl Command for Restore {
         }
         let mut jobs = [Part::Points(0), Part::Comments(0)].map(|part| Job { part, stores: Vec::new() });
         let mut found = Comparison { differ: vec![Vec::new(), Vec::new()], ..Comparison::default() };
-        let mut items = ["points", "comments"].map(|kind| Item { written: Some(0), unchanged: Some(0), ..Item::pending(kind) });
+        let mut items =
+            ["points", "comments"].map(|kind| Item { written: Some(0), unchanged: Some(0), ..Item::pending(kind) });
         let mut progress = screen.items_progress("comparing points", points.len() as u64);
         for point in &points {
             let number = point.number;

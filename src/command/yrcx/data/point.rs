@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::yrcx::backup::{Dump, Restore};
 use crate::command::frame::teach::printed;
+use crate::command::yrcx::backup::{Dump, Restore};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite;

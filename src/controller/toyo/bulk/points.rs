@@ -212,10 +212,7 @@ mod tests {
         let header = "point,x_mm,y_mm,z_mm,r_mm\n";
         for (row, expected) in [
             ("1,0,0,0", "line 2, column 1: error: 4 cells under 5 columns"),
-            (
-                "1,0,0,0,",
-                "line 2, column 9: error: r_mm is empty (without its column, a coordinate stays as it is)",
-            ),
+            ("1,0,0,0,", "line 2, column 9: error: r_mm is empty (without its column, a coordinate stays as it is)"),
             (
                 "1,0,8000.01,0,0",
                 "line 2, column 5: error: y: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)",
