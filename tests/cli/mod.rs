@@ -30,6 +30,7 @@ transcripts! {
     batch
     captures
     decode
+    edit
     exit_codes
     explain
     files

@@ -13,6 +13,7 @@ pub mod command_set;
 pub mod connection;
 pub mod cycle;
 pub mod dry_run;
+pub mod edited;
 pub mod interrupt;
 pub mod items;
 pub mod kind;

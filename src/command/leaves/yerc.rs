@@ -60,6 +60,8 @@ pub const LEAVES: &[Leaf] = &[
     ("yerc io set 27010=on", Write),
     ("yerc io set 27010=on 27011=off", Write),
     ("yerc io set --group 2701=0xA5", Write),
+    ("yerc job edit WELD", Destroy),
+    ("yerc job edit WELD --dry-run", Destroy),
     ("yerc job select WELD", Write),
     ("yerc job select WELD --line 5", Write),
     ("yerc job list", Read),

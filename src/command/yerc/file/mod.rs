@@ -7,6 +7,7 @@ mod content;
 mod delete;
 mod deliver;
 mod diff;
+mod edit;
 mod get;
 mod list;
 mod lists;
@@ -19,6 +20,7 @@ mod results;
 mod transfer;
 
 pub use backup::back_up;
+pub use edit::Edit;
 pub(super) use name::{Shown, exact};
 pub use restore::Restore;
 pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed};
