@@ -86,11 +86,13 @@ fn question(model: &Model, asked: &Asked) -> String {
     match asked {
         Asked::Point(Use::Store, typed) => format!("Store the place of the robot in: {typed}_  (number, Enter; Esc)"),
         Asked::Point(Use::Go, typed) => format!("Go to: {typed}_  (number, Enter; Esc)"),
-        Asked::Sure(Use::Store, number, old) => format!("Overwrite {} ({old})? y, or Esc", point(*number)),
-        Asked::Sure(Use::Go, number, place) => {
-            format!("Go to {}: {place}? The motion ends there, not with a step. y, or Esc", point(*number))
+        Asked::Sure(Use::Store, number, old) => {
+            format!("y stores it in {}, Esc does not; there now: {old}", point(*number))
         }
-        Asked::Release => "Release the hold? A motion that was stopped may go on. y, or Esc".to_owned(),
+        Asked::Sure(Use::Go, number, place) => {
+            format!("y goes to {} in one motion, Esc does not; it is {place}", point(*number))
+        }
+        Asked::Release => "y releases the hold, Esc does not; a motion that was stopped may go on".to_owned(),
     }
 }
 
