@@ -10,6 +10,8 @@
 mod keys;
 mod model;
 mod panel;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use clap::Args;

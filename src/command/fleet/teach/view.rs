@@ -1,6 +1,7 @@
 //! The picture of the panel: the robot as `top` shows it above, what keys do to it below.
 
 use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
@@ -27,7 +28,11 @@ pub struct Robot<'a> {
 /// Draws everything.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, robot: &Robot<'_>, palette: Palette) {
     let area = frame.area();
-    let mut painter = Painter { buffer: frame.buffer_mut(), palette };
+    render(frame.buffer_mut(), area, model, robot, palette);
+}
+
+pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Robot<'_>, palette: Palette) {
+    let mut painter = Painter { buffer, palette };
     let past = PAST.min(area.height / 4);
     let below = (PANEL + past + 1).min(area.height);
     let foot = line_of(area, area.height.saturating_sub(1));

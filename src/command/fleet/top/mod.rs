@@ -12,7 +12,7 @@ mod keys;
 mod model;
 mod poller;
 #[cfg(test)]
-mod testing;
+pub(super) mod testing;
 mod track;
 mod view;
 
