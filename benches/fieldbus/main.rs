@@ -1,18 +1,24 @@
 //! What the fieldbuses of a yrcx cost: exchanges beside what the bits of their lines allow, masters side by side, and how long
 //! a command takes through a session.
 //!
-//! `cargo bench --bench fieldbus` measures everything, with `-- devicenet profibus masters status profinet` only that;
+//! `cargo bench --bench fieldbus` measures everything, with `-- devicenet profibus masters status profinet devices` only that;
 //! `-- --quick`, and `cargo test --benches`, only show that all of it works. Lines of virtual time do not depend on this machine.
+//! What needs network namespaces runs this program inside them as well, told by `ROLE` what it is there.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
 #[path = "../common/mod.rs"]
 mod common;
+#[cfg(target_os = "linux")]
+mod devices;
 #[cfg(unix)]
 mod masters;
 #[cfg(target_os = "linux")]
+#[path = "../../tests/profinet/namespaces.rs"]
+mod namespaces;
+#[cfg(target_os = "linux")]
 mod profinet;
-#[cfg(unix)]
+#[cfg(target_os = "linux")]
 mod status;
 mod virtual_time;
 
@@ -31,7 +37,7 @@ struct Effort {
     commands: usize,
 }
 
-const FULL: Effort = Effort { exchanges: 2000, time: Duration::from_secs(3), rounds: 5, commands: 31 };
+const FULL: Effort = Effort { exchanges: 2000, time: Duration::from_secs(3), rounds: 5, commands: 200 };
 const QUICK: Effort = Effort { exchanges: 20, time: Duration::from_millis(100), rounds: 1, commands: 1 };
 
 /// The comparisons, by the word that chooses one.
@@ -40,16 +46,22 @@ const COMPARISONS: &[(&str, common::Compare<Effort>)] = &[
     ("profibus", virtual_time::profibus),
     #[cfg(unix)]
     ("masters", masters::compare),
-    #[cfg(unix)]
+    #[cfg(target_os = "linux")]
     ("status", status::compare),
     #[cfg(target_os = "linux")]
     ("profinet", profinet::compare),
+    #[cfg(target_os = "linux")]
+    ("devices", devices::compare),
 ];
 
 fn main() -> anyhow::Result<()> {
     #[cfg(target_os = "linux")]
-    if let Some(done) = profinet::end() {
-        return done;
+    match std::env::var("ROLE").as_deref() {
+        Ok("controller") => return profinet::controller(),
+        Ok("bare") => return profinet::bare(),
+        Ok("status") => return status::measure(),
+        Ok("devices") => return devices::hold(),
+        _ => {}
     }
     run(COMPARISONS, &FULL, &QUICK)
 }

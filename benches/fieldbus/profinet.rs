@@ -13,13 +13,10 @@ use armctl::transport::profinet::layout::Layout;
 use armctl::transport::profinet::network::Network;
 use armctl::transport::profinet::settings::{Settings, Station};
 
-use super::Effort;
 use super::common::runtime;
 use super::common::table::{Row, Table};
 use super::virtual_time::resting;
-
-#[path = "../../tests/profinet/namespaces.rs"]
-mod namespaces;
+use super::{Effort, namespaces};
 
 const CYCLE: Duration = Duration::from_millis(16);
 
@@ -119,20 +116,12 @@ fn ms(all: &[f64]) -> String {
     format!("{:.2} ms", super::common::median(all) * 1000.0)
 }
 
-/// The ends that are ours, each in a process of its own; `None` where this is not one of those.
-pub fn end() -> Option<anyhow::Result<()>> {
-    match std::env::var("ROLE").ok()?.as_str() {
-        "controller" => Some(controller()),
-        "bare" => Some(bare()),
-        _ => None,
-    }
-}
-
 fn time() -> anyhow::Result<Duration> {
     Ok(Duration::from_secs_f64(std::env::var("SECONDS_EACH")?.parse()?))
 }
 
-fn controller() -> anyhow::Result<()> {
+/// Our controller, in a process of its own.
+pub fn controller() -> anyhow::Result<()> {
     let settings = Settings {
         watchdog: Duration::from_millis(1600),
         resting: resting(),
@@ -154,7 +143,7 @@ fn controller() -> anyhow::Result<()> {
 }
 
 /// The least that sends every 16 ms.
-fn bare() -> anyhow::Result<()> {
+pub fn bare() -> anyhow::Result<()> {
     let socket = UdpSocket::bind("192.168.79.1:0")?;
     let (start, mut due) = (Instant::now(), Instant::now());
     while start.elapsed() < time()? {
@@ -166,7 +155,7 @@ fn bare() -> anyhow::Result<()> {
 }
 
 /// What this process has used of processors, in seconds: of all its threads.
-fn cpu() -> anyhow::Result<f64> {
+pub fn cpu() -> anyhow::Result<f64> {
     const NANOS: f64 = 1e9;
 
     let mut all = 0.0;

@@ -10,6 +10,7 @@ use crate::command::common::Common;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
+use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
@@ -30,6 +31,8 @@ pub enum Invocation {
     Task(Task),
     /// The commands of a file.
     Batch(Batch),
+    /// The panel with which keys move a robot.
+    Teach(Teach),
     /// A prompt; these words stand before each line.
     Prompt(Vec<String>),
     /// Nothing but the name of a family was typed: a prompt, where somebody can type.
@@ -58,6 +61,7 @@ impl From<Top> for Invocation {
             }
             Top::Common(common) => Self::Task(Task::Common(common)),
             Top::Batch(batch) => Self::Batch(batch),
+            Top::Teach(teach) => Self::Teach(teach),
             Top::Repl(_) => Self::Prompt(Vec::new()),
         }
     }

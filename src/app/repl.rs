@@ -123,11 +123,17 @@ impl Repl {
         self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
         // Ctrl-C puts a line away; where there is none, it is not yet the wish to leave, but twice is.
         let mut is_second = false;
+        let mut is_new = true;
         loop {
             let seen = match &self.robot {
                 Some(robot) if !self.globals.dry_run => look(robot, &line_of(manager, "repl"), &self.screen).await,
                 _ => Seen::NotAsked,
             };
+            if std::mem::take(&mut is_new) {
+                for left in seen.left_over() {
+                    self.screen.note(&format!("left over: {}; {}", left.what, left.undo));
+                }
+            }
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
@@ -225,6 +231,9 @@ impl Repl {
                 Err(failure) => Err(failure.into()),
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+            Invocation::Teach(_) => Err(Failure::usage("the panel has the terminal for itself")
+                .hint("leave the prompt, then `armctl teach`")
+                .into()),
             Invocation::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };

@@ -11,6 +11,8 @@ pub struct Typed<'a> {
     pub path: Vec<&'a str>,
     /// The same as they were typed: another word may stand for one.
     pub said: Vec<&'a str>,
+    /// Where in the line those stand.
+    pub said_at: Vec<usize>,
     /// What follows them.
     pub rest: Vec<&'a str>,
     /// Where in the line that stands.
@@ -35,6 +37,7 @@ impl<'a> Typed<'a> {
                 commands.push(below);
                 typed.path.push(below.get_name());
                 typed.said.push(word);
+                typed.said_at.push(at);
             } else {
                 typed.rest.push(word);
                 typed.at.push(at);

@@ -55,6 +55,14 @@ pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
     bounded(io::stdin().lock(), most)
 }
 
+/// The bytes of a regular file, or of stdin for `-`, up to so many.
+///
+/// # Errors
+/// As [`read`] and [`stdin`].
+pub fn input(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    if path == Path::new("-") { stdin(most) } else { read(path, most) }
+}
+
 fn bounded(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
@@ -122,19 +130,24 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
 
 /// Removes the drafts of runs that were killed: those that nobody has locked.
 pub fn sweep(folder: &Path) {
+    for path in abandoned_drafts(folder) {
+        // What cannot be removed is in nobody's way.
+        let _ = std::fs::remove_file(&path);
+    }
+}
+
+/// The drafts of runs that were killed: those that nobody has locked.
+pub fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let drafts = entries.map(|entry| entry.path()).filter(|path| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         name.strip_prefix(DRAFT.0).is_some_and(|rest| rest.ends_with(DRAFT.1))
     });
-    for path in drafts {
-        if path.symlink_metadata().is_ok_and(|found| found.is_file())
-            && open(&path).is_ok_and(|file| can_tell_the_dead() && lock(&file))
-        {
-            // What cannot be removed is in nobody's way.
-            let _ = std::fs::remove_file(&path);
-        }
-    }
+    let is_dead = |path: &PathBuf| {
+        path.symlink_metadata().is_ok_and(|found| found.is_file())
+            && open(path).is_ok_and(|file| can_tell_the_dead() && lock(&file))
+    };
+    drafts.filter(is_dead).collect()
 }
 
 /// Replaces the content of a file, or makes it with its folder: what is there keeps its rights, and a link that leads to

@@ -27,6 +27,7 @@ use super::target::{Family, Given, Target};
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
+use crate::controller::yerc::payload::MAX_AXES;
 use crate::failure::{Failure, plain};
 use crate::files;
 
@@ -61,6 +62,8 @@ pub struct Entry {
     pub family: Family,
     /// What is set for it alone.
     pub options: Options,
+    /// Pulses of a degree of each axis.
+    pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
     pub tags: Vec<String>,
 }
@@ -174,6 +177,16 @@ impl Inventory {
             if let Some(model) = raw.model.as_ref().filter(|_| !family.has_model()) {
                 return Err(at(model.span(), &format!("a {family} robot has no model")).hint("leave `model` away"));
             }
+            for value in &raw.pulses_per_degree {
+                let is_number = value.as_ref().is_finite() && *value.as_ref() > 0.0;
+                if family != Family::Yerc || !is_number || raw.pulses_per_degree.len() > MAX_AXES {
+                    let why =
+                        "pulses_per_degree are the pulses of a degree of up to 8 axes of a yerc robot, more than 0";
+                    return Err(
+                        at(value.span(), why).hint("such as pulses_per_degree = [1360, 1360, 1360, 1000, 1000, 500]")
+                    );
+                }
+            }
             robots.push(Entry {
                 name: robot.clone(),
                 target,
@@ -186,6 +199,7 @@ impl Inventory {
                     hold: raw.hold,
                     model: parsed(raw.model, &at)?,
                 },
+                pulses_per_degree: raw.pulses_per_degree.into_iter().map(Spanned::into_inner).collect(),
                 tags: raw.tags,
             });
         }
@@ -293,6 +307,8 @@ struct RawRobot {
     model: Option<Spanned<String>>,
     read_only: Option<bool>,
     hold: Option<bool>,
+    #[serde(default)]
+    pulses_per_degree: Vec<Spanned<f64>>,
     encoding: Option<Spanned<String>>,
     #[serde(default, deserialize_with = "duration::field::deserialize")]
     timeout: Option<Duration>,

@@ -17,7 +17,7 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
-use target::{Family, Given, Target};
+use target::{Address, Family, Given, Target};
 
 /// Where a setting came from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,10 +77,14 @@ pub struct Robot {
     pub read_only: Setting<bool>,
     /// The entry of the inventory that makes it read-only, where that is another one with the same address.
     pub bound_by: Option<String>,
+    /// Its other addresses, where its network was asked for them.
+    pub aliases: Vec<Address>,
     /// Whether the first command that needs a command connection opens a session for it.
     pub hold: Setting<bool>,
     /// Controller model; means something for yerc alone.
     pub model: Setting<Model>,
+    /// Pulses of a degree of each axis of the first robot; empty where nobody said. Means something for yerc alone.
+    pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
     pub tags: Vec<String>,
     /// Which sessions commands to it go through.
@@ -90,6 +94,11 @@ pub struct Robot {
 }
 
 impl Robot {
+    /// Whether this is an address of it, as far as is known.
+    pub fn is_at(&self, address: &Address) -> bool {
+        self.target.value.address().meets(address) || self.aliases.iter().any(|alias| alias.meets(address))
+    }
+
     /// How messages name it: `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();
@@ -256,7 +265,8 @@ impl Sources {
                 .hint(format!("use `armctl {} …` for it", entry.family)));
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
-        Ok(self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone()))
+        let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
+        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), ..robot })
     }
 
     /// The robot at an address, with every setting in force.
@@ -333,19 +343,26 @@ impl Sources {
         chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
     }
 
-    /// The read-only entry that has this address: what it says is of the controller, under whichever name.
-    fn binding(&self, family: Family, target: &Target) -> Option<String> {
-        if target.is_simulated() {
-            return None;
-        }
+    /// The addresses of read-only robots of a family, each with its entry: what that says is of the controller, under
+    /// whichever name.
+    pub fn read_only(&self, family: Family) -> impl Iterator<Item = (Address, &Entry)> {
         let file = self.inventory.defaults.read_only;
-        let mut others = self
-            .inventory
-            .robots
-            .iter()
-            .filter(|entry| entry.family == family && entry.options.read_only.or(file) == Some(true));
-        let address = target.address();
-        others.find(|entry| address.meets(&entry.target.address())).map(|entry| entry.name.clone())
+        let entries = self.inventory.robots.iter();
+        let bound =
+            entries.filter(move |entry| entry.family == family && entry.options.read_only.or(file) == Some(true));
+        bound.map(|entry| (entry.target.address(), entry))
+    }
+
+    /// Makes a robot read-only if an entry with one of its addresses is.
+    pub fn bind(&self, robot: &mut Robot) {
+        if robot.read_only.value || robot.target.value.is_simulated() {
+            return;
+        }
+        let bound = self.read_only(robot.family).find(|(address, _)| robot.is_at(address));
+        if let Some((_, entry)) = bound {
+            robot.read_only = Setting { value: true, origin: Origin::Robot };
+            robot.bound_by = Some(entry.name.clone());
+        }
     }
 
     fn robot(&self, name: String, family: Family, target: Setting<Target>, own: &Options, tags: Vec<String>) -> Robot {
@@ -365,11 +382,10 @@ impl Sources {
                 )
             };
         }
-        let read_only = setting!(read_only, false);
-        let bound_by = if read_only.value { None } else { self.binding(family, &target.value) };
-        Robot {
-            read_only: bound_by.as_ref().map_or(read_only, |_| Setting { value: true, origin: Origin::Robot }),
-            bound_by,
+        let mut robot = Robot {
+            read_only: setting!(read_only, false),
+            bound_by: None,
+            aliases: Vec::new(),
             hold: setting!(hold, false),
             name,
             family,
@@ -378,10 +394,13 @@ impl Sources {
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
             model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
+            pulses_per_degree: Vec::new(),
             tags,
             sessions: self.selection.sessions,
             alarms: self.alarms(),
-        }
+        };
+        self.bind(&mut robot);
+        robot
     }
 }
 

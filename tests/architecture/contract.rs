@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 44] = [
+const YERC: [&str; 48] = [
     "status",
     "backup",
     "restore",
@@ -14,9 +14,12 @@ const YERC: [&str; 44] = [
     "alarm history",
     "alarm reset",
     "alarm cancel",
+    "job list",
     "job show",
+    "job stop",
     "job select",
     "job start",
+    "job edit",
     "file list",
     "file get",
     "file put",
@@ -27,6 +30,7 @@ const YERC: [&str; 44] = [
     "file cmos",
     "position",
     "axes",
+    "teach",
     "position-error",
     "torque",
     "var get",
@@ -52,7 +56,7 @@ const YERC: [&str; 44] = [
     "raw",
 ];
 
-const TOYO: [&str; 78] = [
+const TOYO: [&str; 80] = [
     "status",
     "home",
     "position",
@@ -82,6 +86,7 @@ const TOYO: [&str; 78] = [
     "param restore",
     "point get",
     "point set",
+    "teach",
     "point list",
     "speed-table get",
     "speed-table set",
@@ -97,6 +102,7 @@ const TOYO: [&str; 78] = [
     "program list",
     "program get",
     "program put",
+    "program edit",
     "program insert",
     "program delete",
     "program copy",

@@ -30,6 +30,7 @@ transcripts! {
     batch
     captures
     decode
+    edit
     exit_codes
     explain
     files
@@ -49,9 +50,11 @@ transcripts! {
     robots
     robots_check
     sessions
+    sheets
     signals
     simulator
     status
+    teaching
     top
     toyo_backups
     toyo_io

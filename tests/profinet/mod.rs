@@ -25,8 +25,16 @@ robot "yrcx-sim@pc0?$M" 'yrcx status'
 robot "yrcx-sim@pc0?$M" '--yes session open --background'
 robot "yrcx-sim@pc0?$M" 'yrcx io get'
 robot "yrcx-sim@pc0?$M" 'yrcx info position'
+robot "$MAC@pc0?$M" 'yrcx io get servo-on'
+robot "$MAC@pc0?$M" '--yes session open'
 robot "other@pc0?$M" '--yes yrcx info system'
 robot "yrcx-sim@pc0?$M" 'session close'
+"$ARMCTL" robots add line3 "profinet://yrcx-sim@pc0?$M" --read-only
+robot "$MAC@pc0?$M" '--yes yrcx recover'
+robot "$MAC@pc0?$M" 'yrcx profinet identify'
+robot "$MAC@pc0?$M" 'session open'
+robot "02:00:00:00:00:09@pc0?$M" '--yes yrcx alarm reset'
+"$ARMCTL" robots remove line3 > /dev/null
 robot "other@pc0?$M" '--yes yrcx info tasks'
 robot "yrcx-sim@pc9?$M" '--yes yrcx info slots'
 robot 'yrcx-sim@pc0?layout=1:0x99:i48,2:0x102:o48' '--yes yrcx info speed'
@@ -65,8 +73,14 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("--yes session open --background", "0", &["held by process"]),
         ("yrcx io get", "0", &["CPU_OK"]),
         ("yrcx info position", "0", &["mm"]),
+        ("yrcx io get servo-on", "0", &["SO(01)"]),
+        ("--yes session open", "4", &["a session is open already"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
         ("session close", "0", &["closed"]),
+        ("--yes yrcx recover", "7", &["read-only", "its address is that of 'line3'"]),
+        ("yrcx profinet identify", "0", &["yrcx-sim"]),
+        ("session open", "7", &["read-only"]),
+        ("--yes yrcx alarm reset", "4", &["02:00:00:00:00:09 was not found"]),
         ("--yes yrcx info tasks", "4", &["station 'other' was not found"]),
         ("--yes yrcx info slots", "2", &["no network interface 'pc9'", "there are pc0"]),
         ("--yes yrcx info speed", "3", &["Connect was refused"]),

@@ -12,7 +12,7 @@ set -e
 mount -t sysfs none /sys
 ip link set lo up
 ip link add pc0 type veth peer name pd0
-unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 300' & P=$!
+unshare -nm sh -c 'mount -t sysfs none /sys; exec sleep 3600' & P=$!
 until [ "$(readlink /proc/$P/ns/net)" != "$(readlink /proc/self/ns/net)" ] && grep -q sleep /proc/$P/cmdline; do :; done
 ip link set pc0 address 02:00:00:00:00:01
 ip link set pd0 address 02:00:00:00:00:02

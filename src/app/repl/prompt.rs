@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use tokio::time::timeout;
 
-use crate::command::face::overview::OverviewReport;
+use crate::command::face::overview::{LeftOver, OverviewReport};
 use crate::command::fleet::status;
 use crate::command::frame::script_line::Line;
 use crate::output::render::painted;
@@ -33,6 +33,16 @@ pub enum Seen {
     Silent,
     /// It is not talked to.
     NotAsked,
+}
+
+impl Seen {
+    /// What somebody left behind there.
+    pub fn left_over(&self) -> &[LeftOver] {
+        match self {
+            Self::State(state) => &state.left_over,
+            Self::Silent | Self::NotAsked => &[],
+        }
+    }
 }
 
 /// A prompt, and the same with colours; both are as wide on the screen.

@@ -9,6 +9,7 @@ use futures_util::future::LocalBoxFuture;
 use super::explain::{Explain, Recorded};
 use super::layers::Layer;
 use super::overview::OverviewReport;
+use super::panel::Panel;
 use super::sample::{Detail, Sample};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
@@ -57,6 +58,8 @@ pub trait Declaration: Backups {
     const START_STATE: &'static str;
     /// See [`Face::guard`].
     const GUARD: Guard;
+    /// See [`Face::panel`].
+    const PANEL: Panel;
     /// See [`Face::session_records`].
     const SESSION_RECORDS: bool = false;
     /// See [`Face::session_commands`].
@@ -193,6 +196,10 @@ impl<F: Declaration> Face for Declared<F> {
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
         F::hold(robot, access, screen).boxed_local()
+    }
+
+    fn panel(&self) -> Panel {
+        F::PANEL
     }
 
     fn guard(&self) -> Guard {

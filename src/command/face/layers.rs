@@ -1,9 +1,13 @@
 //! What `armctl robots check` finds out about a robot, layer by layer, from its name to its alarms.
 
+use std::path::Path;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::overview::LeftOver;
 use crate::failure::Failure;
+use crate::files;
 use crate::output::view::{Cell, Table, Tone};
 
 /// One layer.
@@ -92,23 +96,52 @@ impl Layers {
         if is_well { self.ok(layer, well) } else { self.warn(layer, ill, advice) }
     }
 
-    /// The layers; those that were not reached say why.
+    /// What somebody left behind; no layer where there is nothing.
+    pub fn left_over(&mut self, left: &[LeftOver]) {
+        let joined = |part: fn(&LeftOver) -> &str| left.iter().map(part).collect::<Vec<_>>().join("; ");
+        if !left.is_empty() {
+            self.warn("left over", joined(|left| &left.what), joined(|left| &left.undo));
+        }
+    }
+
+    /// Whether none has failed so far.
+    pub fn is_well(&self) -> bool {
+        self.found.iter().all(|layer| layer.state != State::Failed)
+    }
+
+    /// The layers, in their order; those that were not reached say why.
     pub fn finish(mut self) -> Vec<Layer> {
         let why = match self.found.iter().rev().find(|layer| layer.state == State::Failed) {
             Some(failed) => format!("{} failed", failed.layer),
             None => "it could not be asked".to_owned(),
         };
-        for name in std::mem::take(&mut self.names) {
-            if !self.found.iter().any(|found| found.layer == name) {
+        let names = std::mem::take(&mut self.names);
+        for name in &names {
+            if !self.found.iter().any(|found| found.layer == *name) {
                 self.add(name, State::Skipped, why.clone(), None);
             }
         }
+        // What has no place of its own comes last.
+        self.found.sort_by_key(|found| names.iter().position(|name| *name == found.layer).unwrap_or(names.len()));
         self.found
     }
 
+    /// What is found of a layer later counts.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
+        self.found.retain(|known| known.layer != layer);
         self.found.push(Layer { layer, state, found, advice });
     }
+}
+
+/// Half-written files of commands that were killed, in this folder; no layer where there are none.
+pub fn drafts() -> Option<Layer> {
+    let count = files::abandoned_drafts(Path::new(".")).len();
+    (count > 0).then(|| Layer {
+        layer: "left over here",
+        state: State::Warning,
+        found: format!("{count} half-written files of commands that were killed (.armctl-*.part)"),
+        advice: Some("the next command that writes a file into this folder removes them".to_owned()),
+    })
 }
 
 /// Layers as a table.

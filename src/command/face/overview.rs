@@ -36,9 +36,28 @@ pub struct OverviewReport {
     pub position: Option<PositionMm>,
     /// Why the position was not asked (yrcx without a session); null where it was.
     pub not_asked: Option<&'static str>,
+    /// What somebody left behind, and how to undo it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_over: Vec<LeftOver>,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
+}
+
+/// Something that a client left behind: a hold, control by the host, a program that runs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct LeftOver {
+    /// What it is.
+    pub what: String,
+    /// How to undo it.
+    pub undo: String,
+}
+
+impl LeftOver {
+    /// What it is, and how to undo it; nothing where it is not so.
+    pub fn new(is_so: bool, what: &str, undo: &str) -> Option<Self> {
+        is_so.then(|| Self { what: what.to_owned(), undo: undo.to_owned() })
+    }
 }
 
 /// What is wrong with a controller, under the same names in every family.

@@ -16,7 +16,7 @@ use crate::command::ValueKind;
 use crate::command::frame::run::{Run, RunError};
 use crate::output::view::{Table, View};
 use crate::settings::inventory::Inventory;
-use crate::settings::{Setting, duration};
+use crate::settings::{Origin, Setting, duration};
 
 /// What can be done with the inventory.
 #[derive(Debug, Subcommand)]
@@ -101,6 +101,10 @@ impl Show {
             row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
             row("retries", &robot.retries, ToString::to_string),
         ]);
+        if !robot.pulses_per_degree.is_empty() {
+            let value = robot.pulses_per_degree.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+            settings.push(Value { name: "pulses_per_degree", value, origin: Origin::Robot.to_string() });
+        }
         let family = robot.family.name();
         run.local(
             "robots.show",

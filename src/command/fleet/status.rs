@@ -58,6 +58,10 @@ impl Family for Fleet {
         families::of(robot.family).driver().entry(robot, mode)
     }
 
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        families::of(robot.family).driver().addresses(robot)
+    }
+
     async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
         match link {
             Link::Open(_, connection) => connection.close(screen).await,

@@ -6,12 +6,13 @@ use std::time::Duration;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use crate::command::frame::Access;
+use crate::command::frame::{Access, Driver};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::{Robot, Sessions};
+use crate::settings::target::{Address, Family, Target};
+use crate::settings::{Robot, Sessions, Sources};
 use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
-use crate::transport::session::place::{Place, PlaceError, key};
+use crate::transport::session::place::{Place, PlaceError, Spot, key};
 use crate::transport::session::process;
 use crate::transport::session::wire::Peer;
 
@@ -71,8 +72,50 @@ pub fn is_held(robot: &Robot) -> bool {
         && Place::find().is_ok_and(|place| place.is_some_and(|place| place.spot(&key_of(robot)).is_open()))
 }
 
-/// What the robot's session is named by.
+/// What the robot's session is named by: by its address, or by the other one that a session was opened with.
 pub fn key_of(robot: &Robot) -> String {
+    let own = own_key(robot);
+    let Ok(Some(place)) = Place::find() else { return own };
+    if robot.target.value.is_simulated() || place.spot(&own).socket().exists() {
+        return own;
+    }
+    let mut others = sessions(&place, robot.family).into_iter();
+    others.find(|(_, address)| robot.is_at(address)).map_or(own, |(spot, _)| spot.key())
+}
+
+/// The sessions of a family, each with the address that it was opened with.
+fn sessions(place: &Place, family: Family) -> Vec<(Spot, Address)> {
+    // A folder that cannot be read has none; whoever opens one there is told.
+    let spots = place.spots().unwrap_or_default().into_iter();
+    let owned = spots.filter_map(|spot| Some((spot.owner().filter(|owner| owner.family == family.name())?, spot)));
+    owned.filter_map(|(owner, spot)| Some((spot, owner.target.parse::<Target>().ok()?.address()))).collect()
+}
+
+/// Asks the network of a robot for all its addresses, where one of them may be that of a session, or of a read-only robot
+/// that is to be changed: then it is that robot.
+///
+/// # Errors
+/// When the robot does not answer, so that nobody knows which it is.
+pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, changes: bool) -> Result<(), Failure> {
+    let own = robot.target.value.address();
+    let is_bound = changes && sources.read_only(robot.family).any(|(address, _)| own.may_meet(&address));
+    if is_bound || may_be_held(robot, &own) {
+        robot.aliases = driver.addresses(robot)?;
+        sources.bind(robot);
+    }
+    Ok(())
+}
+
+/// Whether there is a session that may hold it, and none of its very address.
+fn may_be_held(robot: &Robot, own: &Address) -> bool {
+    let place = if robot.sessions == Sessions::None { None } else { Place::find().ok().flatten() };
+    place.is_some_and(|place| {
+        !place.spot(&own_key(robot)).socket().exists()
+            && sessions(&place, robot.family).iter().any(|(_, address)| own.may_meet(address))
+    })
+}
+
+fn own_key(robot: &Robot) -> String {
     let (family, url) = (robot.family.name(), robot.target.value.url());
     if let Some(address) = robot.target.value.address().key() {
         return key(family, &address);

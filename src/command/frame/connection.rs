@@ -131,6 +131,11 @@ pub trait Family: Sized + 'static {
         Entry::Harmless
     }
 
+    /// All addresses of a robot, asked of its network where each robot there has several; without them, none.
+    fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        Ok(Vec::new())
+    }
+
     /// Closes the connection, and says at `-v` what it was like.
     async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
 }
@@ -155,6 +160,8 @@ pub trait Driver: Sync {
     fn family(&self) -> Option<target::Family>;
     /// See [`Family::entry`].
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// See [`Family::addresses`].
+    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure>;
     /// See [`Family::connect`].
     fn connect<'a>(
         &self,
@@ -178,6 +185,10 @@ impl<F: Family> Driver for Drives<F> {
 
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
         F::entry(robot, mode)
+    }
+
+    fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        F::addresses(robot)
     }
 
     fn connect<'a>(

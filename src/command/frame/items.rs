@@ -73,6 +73,11 @@ impl<T> ItemOutcome<T> {
         self.data.as_ref()
     }
 
+    /// The same, to add to it.
+    pub fn data_mut(&mut self) -> Option<&mut T> {
+        self.data.as_mut()
+    }
+
     /// Why there is nothing.
     pub fn error(&self) -> Option<&ItemError> {
         self.error.as_ref()

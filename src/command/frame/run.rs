@@ -15,6 +15,7 @@ pub use self::print::as_value;
 use self::print::{ReportPosition, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
+use super::attach::identify;
 use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
@@ -140,6 +141,7 @@ impl Run {
                 .hint("add --for TIME, such as --for 500ms"));
         }
         let mut robots = self.sources.robots(command.family())?;
+        self.identify(command, &mut robots)?;
         for robot in &mut robots {
             // A session that ends meanwhile must not leave the way that nobody was asked about.
             if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
@@ -152,6 +154,21 @@ impl Run {
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
         Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
+    }
+
+    /// Finds out which robots have another address that counts. A dry run sends nothing for that.
+    fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<(), Failure> {
+        let Some(driver) = command.driver().filter(|_| !self.gate.dry_run) else { return Ok(()) };
+        for robot in robots {
+            let intent = self.intent(command, robot);
+            let changes = intent.risk > Risk::Read && !intent.is_stop;
+            match identify(&self.sources, driver, robot, changes) {
+                Err(failure) if changes => return Err(failure),
+                // A robot that is only read, or stopped, need not be told from others.
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     /// Whether a session is to be opened for what a command does, because the robot's entry says so.

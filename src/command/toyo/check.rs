@@ -3,6 +3,7 @@
 use super::info;
 use super::link::Link;
 use super::link::Toyo;
+use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
@@ -66,6 +67,7 @@ async fn look(link: &mut Link, layers: &mut Layers) {
     } else {
         layers.ok("error", "none");
     }
+    layers.left_over(&left_over(status));
     layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `toyo servo on`");
     layers.judge("origin", status.homed(), ("done", "not done"), "motion wants the origin: `toyo home`");
 }

@@ -61,6 +61,8 @@ commands! {
         /// Run programs offline
         Sim(Subcommands<sim::Sim>),
         "Data":
+        /// Teach: store the current position as a point
+        Teach(point::Teach),
         /// Points of the coordinate table
         Point(Subcommands<point::Point>),
         /// Parameters: read, change, save, restore

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
+use crate::command::frame::plot::{Past, Plot};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -14,7 +15,13 @@ use crate::output::view::{Cell, Section, View};
 
 /// Asks for the present position.
 #[derive(Debug, Args)]
-pub struct Position {}
+pub struct Position {
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: Past,
+}
 
 impl Command for Position {
     type Family = Toyo;
@@ -25,7 +32,10 @@ impl Command for Position {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.ask(&Request::bare(table::Command::Mpst)).await?;
-        Ok(Stands { place: Coordinates::of(&record), axes: letters.all() })
+        let (place, axes) = (Coordinates::of(&record), letters.all());
+        let values = axes.iter().zip(place.mm()).map(|(letter, mm)| (letter.clone(), "mm", 2, mm));
+        let plot = self.plot.then(|| self.past.add(values));
+        Ok(Stands { place, axes, plot })
     }
 }
 
@@ -37,10 +47,15 @@ pub struct Stands {
     /// The letters that the teach pendant shows for axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the
     /// coordinates in this order.
     axes: [String; 4],
+    #[serde(skip)]
+    plot: Option<Plot>,
 }
 
 impl Report for Stands {
     fn view(&self) -> View {
+        if let Some(plot) = &self.plot {
+            return View { sections: vec![plot.section()] };
+        }
         let Coordinates { x_mm, y_mm, z_mm, r_mm } = self.place;
         let axes = self.axes.iter().zip([x_mm, y_mm, z_mm, r_mm]).enumerate();
         let fields = axes.map(|(index, (letter, mm))| (heading(index, letter), Cell::number(format!("{mm:.2}"))));

@@ -9,6 +9,7 @@ use super::numbers::small;
 use super::position::{Coordinates, titled};
 use super::program::steps;
 use super::waiting::{Accepted, End, Work, step};
+use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -20,7 +21,7 @@ use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
-use crate::output::view::{Cell, Tone, View};
+use crate::output::view::{Cell, Section, Tone, View};
 
 commands! {
     /// Programs, and moves to a point.
@@ -46,8 +47,10 @@ pub struct Sequential {
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
     step: Option<i32>,
     /// Return as soon as the controller has accepted the start
-    #[arg(long)]
+    #[arg(long, conflicts_with = "repeat")]
     no_wait: bool,
+    #[command(flatten)]
+    repeat: Repeat,
 }
 
 impl Command for Sequential {
@@ -58,14 +61,18 @@ impl Command for Sequential {
 
     fn intent(&self) -> String {
         match self.step {
-            Some(step) => format!("run the sequential program from step {step} on"),
+            Some(step) => format!("run the sequential program from step {step} on{}", self.repeat.in_words()),
             None => "run the sequential program from its current step on".to_owned(),
         }
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+        if self.repeat.repeat.is_some() && self.step.is_none() {
+            return Err(Failure::usage("--repeat wants the step at which each run begins")
+                .hint("`toyo run sequential 1 --repeat 20` begins at step 1 each time; nothing was started"));
+        }
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
-        go(context, &start, self.no_wait).await
+        go(context, &start, self.no_wait, self.repeat).await
     }
 }
 
@@ -73,11 +80,16 @@ impl Command for Sequential {
 #[derive(Debug, Args)]
 pub struct Palletizing {
     /// Choose this program first; without it, the one chosen before
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(1..=16))]
+    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
+    number: Option<i32>,
+    /// The same as a flag
+    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
     /// Return as soon as the controller has accepted the start
-    #[arg(long)]
+    #[arg(long, conflicts_with = "repeat")]
     no_wait: bool,
+    #[command(flatten)]
+    repeat: Repeat,
 }
 
 impl Command for Palletizing {
@@ -87,12 +99,12 @@ impl Command for Palletizing {
     const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
-        format!("run {}", chosen("palletizing", self.program))
+        format!("run {}{}", chosen("palletizing", self.number.or(self.program)), self.repeat.in_words())
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
-        choose(context.link, table::Command::Spln, self.program).await?;
-        go(context, &Request::bare(table::Command::Ppst), self.no_wait).await
+        choose(context.link, table::Command::Spln, self.number.or(self.program)).await?;
+        go(context, &Request::bare(table::Command::Ppst), self.no_wait, self.repeat).await
     }
 }
 
@@ -101,11 +113,16 @@ impl Command for Palletizing {
 #[command(after_help = "Parameter M10 chooses easy mode: `toyo param set M10 E`.")]
 pub struct Easy {
     /// Choose this program first; without it, the one chosen before
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(1..=8))]
+    #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
+    number: Option<i32>,
+    /// The same as a flag
+    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
     /// Return as soon as the controller has accepted the start
-    #[arg(long)]
+    #[arg(long, conflicts_with = "repeat")]
     no_wait: bool,
+    #[command(flatten)]
+    repeat: Repeat,
 }
 
 impl Command for Easy {
@@ -115,12 +132,12 @@ impl Command for Easy {
     const RISK: Risk = Risk::Motion;
 
     fn intent(&self) -> String {
-        format!("run {}", chosen("easy", self.program))
+        format!("run {}{}", chosen("easy", self.number.or(self.program)), self.repeat.in_words())
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
-        choose(context.link, table::Command::Sesn, self.program).await?;
-        go(context, &Request::bare(table::Command::Sesy), self.no_wait).await
+        choose(context.link, table::Command::Sesn, self.number.or(self.program)).await?;
+        go(context, &Request::bare(table::Command::Sesy), self.no_wait, self.repeat).await
     }
 }
 
@@ -161,7 +178,8 @@ impl Command for Point {
             authority.confirm(&Change::new(Command::intent(self))).await?;
         }
         let context = Context { link, authority, ..context };
-        go(context, &Request::of(table::Command::Extp, [Value::Number(self.point)]), self.no_wait).await
+        let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
+        go(context, &start, self.no_wait, Repeat::once()).await
     }
 }
 
@@ -209,21 +227,32 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
     }
 }
 
-/// Starts, and unless told otherwise waits for the end.
-async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool) -> Result<Ran, Failure> {
-    let link = context.link;
-    link.ask(start).await?;
-    if no_wait {
-        return Ok(Ran {
-            accepted: true,
-            stopped: None,
-            step: None,
-            instruction: None,
-            position: None,
-            elapsed_ms: None,
-        });
+/// Starts, and unless told otherwise waits for the end. Another run begins only after an end that was seen.
+async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: Repeat) -> Result<Ran, Failure> {
+    let Context { link, screen, .. } = context;
+    let mut times_ms = Vec::new();
+    loop {
+        link.ask(start).await.map_err(|failure| ended_early(failure, repeat, &times_ms))?;
+        if no_wait {
+            return Ok(Ran { accepted: true, ..Ran::default() });
+        }
+        let ran = wait(link, screen, start.command()).await;
+        let ran =
+            ran.map_err(|failure| if link.is_dry() { failure } else { ended_early(failure, repeat, &times_ms) })?;
+        if repeat.repeat.is_none() {
+            return Ok(ran);
+        }
+        if ran.stopped == Some(true) {
+            let failure =
+                Failure::new(Kind::ConditionNotMet, "it stands at a stop, or after a step, and has not ended")
+                    .hint("start it without a step or program to go on there");
+            return Err(ended_early(failure, repeat, &times_ms));
+        }
+        times_ms.push(ran.elapsed_ms.unwrap_or(0));
+        if times_ms.len() >= usize::try_from(repeat.count()).unwrap_or(usize::MAX) {
+            return Ok(Ran { cycle: CycleTimes::new(&times_ms), with_stats: repeat.stats, ..ran });
+        }
     }
-    wait(link, context.screen, start.command()).await
 }
 
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result<Ran, Failure> {
@@ -239,7 +268,8 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result
         return Err(stopped(last.as_ref(), place));
     }
     let (step, instruction) = last.unzip();
-    Ok(Ran { accepted: true, stopped: Some(is_paused), step, instruction, position: place, elapsed_ms })
+    let stopped = Some(is_paused);
+    Ok(Ran { accepted: true, stopped, step, instruction, position: place, elapsed_ms, ..Ran::default() })
 }
 
 /// Notes in a dry run what is asked at the end.
@@ -281,7 +311,7 @@ fn after(failure: &Failure) -> Failure {
 }
 
 /// Result of a start.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Ran {
     /// The controller took the order.
     accepted: bool,
@@ -295,6 +325,10 @@ pub struct Ran {
     position: Option<Coordinates>,
     /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
+    /// What the runs took; null unless there were several.
+    cycle: Option<CycleTimes>,
+    #[serde(skip)]
+    with_stats: bool,
 }
 
 impl Report for Ran {
@@ -308,12 +342,14 @@ impl Report for Ran {
             Cell::from("ended").tone(Tone::Good)
         };
         let step = self.step.zip(self.instruction.as_ref()).map(|(step, text)| format!("{step}: {text}"));
-        View::fields([
+        let mut fields = vec![
             ("run", run),
             ("step", Cell::maybe(step)),
             ("at (mm)", place.in_a_line().into()),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
-        ])
+        ];
+        fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
+        View { sections: vec![Section::Fields(fields)] }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::link::Link;
 use super::link::Yerc;
+use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
 use crate::command::{Access, Family as _};
 use crate::controller::yerc::group::Group;
@@ -62,6 +63,7 @@ async fn look(link: &mut Link, layers: &mut Layers) {
     } else {
         layers.ok("alarm", "none");
     }
+    layers.left_over(&left_over(status));
     layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `yerc servo on`");
 }
 

@@ -43,9 +43,35 @@ impl Chosen {
         }
     }
 
-    /// What the question says.
-    pub fn change(&self, encoding: Encoding) -> Change {
-        let unnamed = Change::new("start the selected job");
+    /// Whether it is the job of this name, in the bytes of the controller.
+    pub fn is(&self, name: &[u8]) -> bool {
+        matches!(self, Self::Job(info) if info.name.as_bytes() == name)
+    }
+
+    /// Its speed override, in 0.01 %.
+    pub fn speed_override(&self) -> Option<u32> {
+        match self {
+            Self::Job(info) => Some(info.speed_override),
+            Self::None | Self::Unread(_) => None,
+        }
+    }
+
+    /// What the question says where another job is selected first.
+    pub fn noted(&self, change: Change, encoding: Encoding) -> Change {
+        match self {
+            Self::Job(info) => {
+                let percent = units::PERCENT.show_unsigned(info.speed_override);
+                let name = encoding.decode(info.name.as_bytes());
+                change.note(format!("Selected now is {name}. The speed override is {percent} %."))
+            }
+            Self::None => change.note("No job is selected now."),
+            Self::Unread(why) => change.note(format!("Which job is selected now could not be read: {why}.")),
+        }
+    }
+
+    /// What the question says; `times` is how often, such as ` 20 times`.
+    pub fn change(&self, encoding: Encoding, times: &str) -> Change {
+        let unnamed = Change::new(format!("start the selected job{times}"));
         match self {
             Self::None => unnamed.note("The controller names no job."),
             Self::Unread(why) => unnamed.note(format!("Which job that is could not be read: {why}.")),
@@ -53,7 +79,8 @@ impl Chosen {
                 let name = encoding.decode(info.name.as_bytes());
                 let from = if info.line == 0 { String::new() } else { format!(" from line {} on", info.line) };
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
-                Change::new(format!("start job {name}{from}")).note(format!("The speed override is {percent} %."))
+                Change::new(format!("start job {name}{from}{times}"))
+                    .note(format!("The speed override is {percent} %."))
             }
         }
     }

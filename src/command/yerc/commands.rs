@@ -1,7 +1,7 @@
 //! The commands of `yerc`, as its help lists them.
 
 use super::link::Yerc;
-use super::{alarm, axes, file, hours, info, io, job, moves, orders, position, raw, register, status, var};
+use super::{alarm, axes, file, hours, info, io, job, moves, orders, position, raw, register, status, teach, var};
 use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
@@ -45,6 +45,8 @@ commands! {
         /// Files: list, get, put, delete, diff, backup, restore, cmos
         File(Subcommands<file::File>),
         "Data":
+        /// Teach: store the current position in a variable
+        Teach(teach::Teach),
         /// Variables: get, set, dump, restore
         Var(Subcommands<var::Var>),
         /// Save every file of the controller to a folder

@@ -1,23 +1,24 @@
-//! `yerc job show|select|start`.
+//! `yerc job list|show|select|start|stop|edit`.
+
+mod list;
+mod source;
+mod start;
+mod stop;
 
 use std::str::FromStr;
-use std::time::Duration;
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use tokio::time::Instant;
 
-use super::chosen::Chosen;
+use self::source::Source;
 use super::each::{Denied, Outcome};
-use super::link::Link;
-use super::link::Yerc;
-use super::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
+use super::file::Edit;
+use super::link::{Link, Yerc};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
-use crate::command::frame::dry_run::unknown;
 use crate::command::frame::items;
-use crate::command::frame::items::ItemError;
+use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yerc::complete;
 use crate::command::{Command, Context, Report, commands};
@@ -26,23 +27,27 @@ use crate::controller::text::{Encoding, Name};
 use crate::controller::typed;
 use crate::controller::units;
 use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{ControllerStatus, JobInfo};
-use crate::controller::yerc::query::{Query, ReadJob, ReadStatus, SelectJob, Selection, StartJob};
+use crate::controller::yerc::payload::JobInfo;
+use crate::controller::yerc::query::{ReadJob, SelectJob, Selection};
 use crate::controller::yerc::status::{self, is_absent};
-use crate::failure::{Failure, Kind};
-use crate::gate::Confirmation;
-use crate::output::view::{Cell, Table, Tone, View};
-use crate::settings::duration;
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, Table, View};
 
 commands! {
     /// Jobs.
     pub enum Job {
+        /// List the jobs of the controller
+        List(list::List),
         /// Show the running job: name, line, step, speed override
         Show(Show),
         /// Select the job to start
         Select(Select),
-        /// Start the selected job
-        Start(Start),
+        /// Start the selected job, or a job by its name
+        Start(start::Start),
+        /// Stop the running job: HOLD on
+        Stop(stop::Stop),
+        /// Edit a job in your editor, and write it back
+        Edit(Edit),
     }
 }
 
@@ -52,6 +57,9 @@ pub struct Show {
     /// A task, 0 being the master, or all
     #[arg(long, value_name = "N|all", default_value = "0")]
     task: Tasks,
+    /// Show the text of the line too, from the file of the job, which is got each time
+    #[arg(long)]
+    source: bool,
 }
 
 /// One task or all there are.
@@ -81,10 +89,13 @@ impl Command for Show {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Jobs, Failure> {
         let link = context.link;
         let encoding = link.encoding;
-        let jobs = match self.task {
+        let jobs: Vec<(u8, Outcome<JobInfo>)> = match self.task {
             Tasks::One(task) => {
+                if link.is_dry() && self.source {
+                    link.then("the file of the job, if it has one, is got");
+                }
                 let job = link.ask(&ReadJob::new(link.model, task).map_err(usage)?).await?;
-                vec![Task::new(task, Ok(job), encoding)]
+                vec![(task, Ok(job))]
             }
             Tasks::All => {
                 let model = link.model;
@@ -94,10 +105,24 @@ impl Command for Show {
                     // Every controller has a master task: this is not about a task that is absent.
                     return Err(denied.clone().into());
                 }
-                (0..).zip(outcomes).map(|(task, outcome)| Task::new(task, outcome, encoding)).collect()
+                (0..).zip(outcomes).collect()
             }
         };
-        Ok(Jobs { tasks: jobs })
+        let mut tasks = Vec::with_capacity(jobs.len());
+        for (number, outcome) in jobs {
+            let source = self.source(link, &outcome).await;
+            tasks.push(Task { source, ..Task::new(number, outcome, encoding) });
+        }
+        Ok(Jobs { tasks })
+    }
+}
+
+impl Show {
+    /// The text of the line that a task is at, where that is wanted and there is one.
+    async fn source(&self, link: &mut Link, outcome: &Outcome<JobInfo>) -> Option<ItemOutcome<Source>> {
+        let job = outcome.as_ref().ok().filter(|job| self.source && !job.name.is_empty())?;
+        let what = format!("{}.JBI", link.encoding.decode(job.name.as_bytes()));
+        Some(ItemOutcome::new(what, Source::read(link, job).await))
     }
 }
 
@@ -123,6 +148,9 @@ struct Task {
     /// 0 while no step is executed.
     step: Option<u32>,
     speed_override_percent: Option<f64>,
+    /// The text of the line; not there unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    source: Option<ItemOutcome<Source>>,
     /// The controller's code where it has no such task.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
@@ -155,6 +183,7 @@ impl Task {
             line: info.map(|info| info.line),
             step: info.map(|info| info.step),
             speed_override_percent: info.map(|info| f64::from(info.speed_override) / 100.0),
+            source: None,
             refusal,
             error,
             shown_override: info.map(|info| units::PERCENT.show_unsigned(info.speed_override).to_string()),
@@ -182,11 +211,22 @@ impl Report for Jobs {
             let percent = task.shown_override.as_deref().map(Cell::number);
             table.row([name.into(), job, Cell::maybe(task.line), Cell::maybe(task.step), Cell::maybe(percent)]);
         }
-        View::table(table)
+        let sources = self.tasks.iter().filter_map(|task| task.source.as_ref());
+        let texts: Vec<Cell> = sources
+            .map(|source| match (source.data(), source.error()) {
+                (_, Some(error)) => error.cell(),
+                (Some(source), None) => source.text().unwrap_or("(no such line in its file)").into(),
+                (None, None) => "".into(),
+            })
+            .collect();
+        let lines = (!texts.is_empty()).then_some(Section::Lines(texts));
+        View { sections: std::iter::once(Section::Table(table)).chain(lines).collect() }
     }
 
     fn failure(&self) -> Option<Failure> {
-        items::verdict(self.tasks.len(), self.tasks.iter().filter_map(|task| task.error.as_ref()))
+        let sources = self.tasks.iter().filter_map(|task| task.source.as_ref()?.error());
+        let errors = self.tasks.iter().filter_map(|task| task.error.as_ref()).chain(sources);
+        items::verdict(self.tasks.len(), errors)
     }
 }
 
@@ -221,6 +261,12 @@ impl Select {
         let selection = self.task.map_or(Selection::Execute { line }, |task| Selection::Master { task });
         SelectJob::new(model, &bytes, selection).map_err(usage)
     }
+}
+
+/// The name of a job of the name of its file.
+fn stem(file: &[u8]) -> &[u8] {
+    let at = file.len().saturating_sub(b".JBI".len());
+    if file[at..].eq_ignore_ascii_case(b".JBI") { &file[..at] } else { file }
 }
 
 /// The name as the controller has it; files have a suffix that jobs do not.
@@ -279,167 +325,20 @@ impl Report for Selected {
     }
 }
 
-/// Starts the selected job (FS and DX 3.3.23).
-#[derive(Debug, Args)]
-pub struct Start {
-    /// Wait until the job has ended, at most TIME
-    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
-    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
-    wait: Option<Option<Duration>>,
-}
-
-impl Command for Start {
-    type Family = Yerc;
-    type Report = Started;
-    const ID: &'static str = "yerc.job.start";
-    const INTENT: &'static str = "start the selected job";
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    fn risk(&self) -> Risk {
-        StartJob.risk()
-    }
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
-        let link = context.link;
-        let chosen = Chosen::ask(link).await?;
-        let is_asked = context.authority.asks();
-        context.authority.confirm(&chosen.change(link.encoding)).await?;
-        if is_asked {
-            chosen.check_again(link).await?;
-        }
-        let job = chosen.name(link.encoding);
-        link.is_for("starts it").ask(&StartJob).await?;
-        let Some(limit) = self.wait else { return Ok(Started { accepted: true, job, ended: None, elapsed_ms: None }) };
-        if link.is_dry() {
-            link.plan(&ReadStatus.request(), "again and again until the job has ended");
-            plan_alarm(link)?;
-            return Err(unknown());
-        }
-        let progress = context.screen.spinner("the job runs");
-        let began = Instant::now();
-        let mut watch = Watch::new(limit);
-        loop {
-            let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
-            match watch.look(began.elapsed(), status) {
-                Look::Running => {}
-                Look::Ended => break,
-                Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
-                Look::NotSeen => return Err(not_seen()),
-                Look::Late(limit) => {
-                    let message = format!("the job still runs after {}", duration::display(limit));
-                    return Err(Failure::new(Kind::ConditionNotMet, message)
-                        .hint("it goes on; `yerc status` and `yerc job show` tell how far it is"));
-                }
-            }
-            if let Some(line) = line(link, context.screen.can_redraw()).await? {
-                progress.say(&line);
-            }
-            tokio::time::sleep(LOOK_EVERY).await;
-        }
-        let elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
-        Ok(Started { accepted: true, job, ended: Some(true), elapsed_ms })
-    }
-}
-
-/// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
-async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
-    if !is_seen {
-        return Ok(None);
-    }
-    let question = ReadJob::new(link.model, 0).map_err(usage)?;
-    let answer = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
-    let encoding = link.encoding;
-    Ok(answer.ok().map(|job| format!("{} line {}", encoding.decode(job.name.as_bytes()), job.line)))
-}
-
-fn not_seen() -> Failure {
-    let message = format!(
-        "the start was accepted, but no running job was seen within {}: it may have ended at once, or not begun",
-        duration::display(START_WITHIN)
-    );
-    Failure::new(Kind::ConditionNotMet, message).hint("`yerc job show` tells the line, `yerc status` what holds it")
-}
-
-/// Watches a job from its start to its end.
-#[derive(Debug)]
-struct Watch {
-    limit: Option<Duration>,
-    seen: bool,
-}
-
-/// What a look at the status says about the job.
-#[derive(Debug, PartialEq, Eq)]
-enum Look {
-    /// Look again.
-    Running,
-    /// It has ended.
-    Ended,
-    /// Something stopped it.
-    Stopped(StandstillCause),
-    /// It was not seen running in time.
-    NotSeen,
-    /// It runs for longer than wanted.
-    Late(Duration),
-}
-
-impl Watch {
-    fn new(limit: Option<Duration>) -> Self {
-        Self { limit, seen: false }
-    }
-
-    fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
-        self.seen |= status.running();
-        match StandstillCause::of(status) {
-            // An error is a message on the pendant; a job may run on under it.
-            Some(StandstillCause::Error) if status.running() => {}
-            Some(trouble) => return Look::Stopped(trouble),
-            None if self.seen && !status.running() => return Look::Ended,
-            None => {}
-        }
-        match self.limit {
-            _ if !self.seen && elapsed >= START_WITHIN => Look::NotSeen,
-            Some(limit) if elapsed >= limit => Look::Late(limit),
-            _ => Look::Running,
-        }
-    }
-}
-
-/// Result of a start.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Started {
-    /// The controller took the order.
-    accepted: bool,
-    /// Its name, as the controller told it before; null if it did not.
-    job: Option<String>,
-    /// Whether it has ended; null if nobody waited.
-    ended: Option<bool>,
-    /// From the acceptance to the end; null if nobody waited.
-    elapsed_ms: Option<u64>,
-}
-
-impl Report for Started {
-    fn view(&self) -> View {
-        match self.elapsed_ms {
-            None => View::fields([
-                ("job", Cell::maybe(self.job.as_deref())),
-                ("state", Cell::from("started").tone(Tone::Good)),
-            ]),
-            Some(ms) => View::fields([
-                ("job", Cell::maybe(self.job.as_deref())),
-                ("state", Cell::from("ended").tone(Tone::Good)),
-                ("elapsed (ms)", ms.into()),
-            ]),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::command::yerc::link::{Asked, Refusal};
     use crate::command::yerc::testing::{frames, frames_on, golden, intent, objection, reports};
-    use crate::controller::yerc::payload::{StatusBit, Text};
+    use std::time::Duration;
+
+    use super::start::{Look, Watch};
+    use crate::command::yerc::motion::{START_WITHIN, StandstillCause};
+    use crate::controller::Risk;
+    use crate::controller::yerc::payload::{ControllerStatus, StatusBit, Text};
+    use crate::controller::yerc::query::{Query as _, StartJob};
     use crate::controller::yerc::wire;
+    use crate::failure::Kind;
     use crate::output::render;
 
     #[test]
@@ -483,7 +382,11 @@ mod tests {
         assert_eq!(frames("job start").unwrap(), start);
         let waiting = frames("job start --wait 2m").unwrap();
         assert_eq!(waiting[..2], start);
-        assert_eq!(waiting[2..], ["7200010000010000", "7000010000010000"], "the status until it has ended");
+        assert_eq!(
+            waiting[2..],
+            ["7200010000010000", "7300010000010000", "7000010000010000"],
+            "the status until it has ended"
+        );
         assert_eq!(intent("job start"), "start the selected job");
         assert_eq!(StartJob.risk(), Risk::Motion);
     }

@@ -17,6 +17,7 @@ use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
+use crate::controller::yerc::group::Group;
 use crate::controller::yerc::query::Query;
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
@@ -41,6 +42,8 @@ pub struct Link {
     label: String,
     /// Encoding of its texts.
     pub encoding: Encoding,
+    /// Pulses of a degree of each axis of R1, as far as the inventory says it.
+    pulses_per_degree: Vec<f64>,
     /// Words of a cartesian move, 25 or 26.
     pub move_words: u8,
 }
@@ -55,7 +58,9 @@ impl Family for Yerc {
         let label = robot.label();
         client.watch(Onlooker { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
         let move_words = robot.target.value.traits().move_words.unwrap_or(26);
-        Ok(Link { client, trace, screen: *screen, label, encoding: robot.encoding.value, move_words })
+        let pulses_per_degree = robot.pulses_per_degree.clone();
+        let encoding = robot.encoding.value;
+        Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words })
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
@@ -83,6 +88,11 @@ impl Family for Yerc {
 }
 
 impl Link {
+    /// Pulses of a degree of each axis of a group, as far as they are known.
+    pub fn pulses_per_degree(&self, group: Group) -> &[f64] {
+        if group == Group::R1 { &self.pulses_per_degree } else { &[] }
+    }
+
     /// Asks one question or gives one order; a refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
         self.try_ask(query).await?.map_err(|refusal| refused(refusal, query.risk()))

@@ -25,6 +25,7 @@ mod moves;
 mod numbers;
 mod orders;
 mod overview;
+mod panel;
 mod parts;
 mod position;
 mod raw;
@@ -32,6 +33,7 @@ mod register;
 mod serve;
 pub mod simulated;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

@@ -3,14 +3,20 @@
 mod arguments;
 mod going;
 mod question;
+mod taught;
 
+pub(super) use self::going::stands;
+pub(super) use self::question::{compared, moved_meanwhile};
 use clap::Args;
+
+use std::borrow::Cow;
 
 use self::arguments::{
     By, Forms, Frame, Mover, Part, Speed, To, Values, base_lengths, base_pulses, robot_pulses, split, station_pulses,
 };
 use self::going::{Goal, Going, MotionReport};
 use self::question::Question;
+use self::taught::Motion;
 use super::link::Link;
 use super::link::Yerc;
 use super::orders::usage;
@@ -72,31 +78,64 @@ impl Target {
     fn question(&self, way: &str, speed: Speed) -> Question<'_> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let robot = to.coordinates();
+        let name = to.destination().map(|destination| format!(" to {destination}")).unwrap_or_default();
         Question {
-            what: format!("move {} {way}", mover.group),
+            what: format!("move {} {way}{name}", mover.group),
             preposition: "to",
-            kind: frame.coordinate.into(),
+            kind: frame.kind(),
             how: robot.map(|_| format!("in {}, {}", frame.describe(), forms.describe())).unwrap_or_default(),
             robot: robot.map(Vec::from),
             base: (base_axes.as_ref(), units::MILLIMETRE),
-            station: station_axes.as_ref(),
+            station: station_axes.as_ref().map(Cow::Borrowed),
             speed,
+        }
+    }
+
+    /// Moves to the coordinates that were typed, to those of a variable, or by degrees.
+    async fn run(
+        &self,
+        context: Context<'_, Yerc>,
+        kind: MoveKind,
+        way: &'static str,
+        speed: Speed,
+    ) -> Result<MotionReport, Failure> {
+        match self.to.destination() {
+            Some(destination) => Motion { target: self, kind, way, speed }.run(context, &destination).await,
+            None => self.going(context.link, kind, speed)?.run(context, &self.question(way, speed)).await,
+        }
+    }
+
+    /// Refuses what a variable or pulses say already.
+    fn refuse_besides(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
+        let given = [
+            ("--coordinate", self.frame.coordinate.is_some()),
+            ("--tool or --user", has_frame),
+            ("--form", self.forms.form.is_some() || self.forms.extended_form.is_some()),
+            ("--base-axes", self.base_axes.is_some()),
+            ("--station-axes", self.station_axes.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            None => Ok(()),
+            Some((other, _)) => {
+                Err(Failure::usage(format!("{other} cannot be used with {flag}, which says it already"))
+                    .hint(format!("remove {other}, or type the target by its coordinates")))
+            }
         }
     }
 
     fn going(&self, link: &Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
-        let coordinate = PositionKind::from(frame.coordinate);
+        let coordinate = frame.kind();
         let mut order = plain(link, mover, speed, frame);
-        order.form = forms.form;
-        order.extended = forms.extended_form;
+        order.form = forms.form();
+        order.extended = forms.extended_form();
         let (goal, unnamed) = match part {
             Part::Robot(target, base) => {
                 order.target = target;
                 order.base = base.map(Values::padded).unwrap_or_default();
                 let goal = match coordinate {
-                    PositionKind::Base => Goal::Base(target, frame.tool),
+                    PositionKind::Base => Goal::Base(target, frame.tool()),
                     _ => Goal::Unknown(Coordinates::Base),
                 };
                 (goal, unnamed_base(mover.group, base))
@@ -120,13 +159,13 @@ fn plain(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMo
         station,
         class: speed.class,
         speed: speed.word,
-        coordinate: frame.coordinate.into(),
+        coordinate: frame.kind(),
         target: [0; 6],
         reserved: [0; 2],
         form: Form::default(),
         extended: ExtendedForm::default(),
-        tool: frame.tool,
-        user: frame.user,
+        tool: frame.tool(),
+        user: frame.user(),
         base: [0; 3],
         station_axes: [0; 6],
     }
@@ -143,7 +182,7 @@ fn unnamed_base(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'sta
 macro_rules! motion {
     (
         $(#[$doc:meta])* $name:ident { $(#[$speed_doc:meta])* speed: $parser:expr, $target:ident: $type:ty }, $id:literal,
-        |$this:ident, $link:ident| $question:expr, $going:expr
+        |$this:ident, $context:ident| $question:expr, $run:expr
     ) => {
         $(#[$doc])*
         #[derive(Debug, Args)]
@@ -171,10 +210,8 @@ macro_rules! motion {
             }
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<MotionReport, Failure> {
-                let $this = self;
-                let $link = &*context.link;
-                let going = $going?;
-                going.run(context, &$question).await
+                let ($this, $context) = (self, context);
+                $run.await
             }
         }
     };
@@ -186,7 +223,8 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: Target
     }, "yerc.move.joint",
-    |this, link| this.target.question("by its joints", this.speed), this.target.going(link, MoveKind::Link, this.speed)
+    |this, context| this.target.question("by its joints", this.speed),
+    this.target.run(context, MoveKind::Link, "by its joints", this.speed)
 }
 motion! {
     /// Moves to a position in a straight line (0x8A, instance 2).
@@ -194,8 +232,8 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: Target
     }, "yerc.move.linear",
-    |this, link| this.target.question("in a straight line", this.speed),
-    this.target.going(link, MoveKind::Straight, this.speed)
+    |this, context| this.target.question("in a straight line", this.speed),
+    this.target.run(context, MoveKind::Straight, "in a straight line", this.speed)
 }
 motion! {
     /// Moves by a distance in a straight line (0x8A, instance 3).
@@ -203,7 +241,8 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, distance: Distance
     }, "yerc.move.relative",
-    |this, link| this.distance.question(this.speed), this.distance.going(link, this.speed)
+    |this, context| this.distance.question(this.speed),
+    this.distance.going(context.link, this.speed)?.run(context, &this.distance.question(this.speed))
 }
 motion! {
     /// Moves to pulses, axes interpolated (0x8B, instance 1).
@@ -211,8 +250,8 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
     }, "yerc.move.pulse.joint",
-    |this, link| this.target.question("by its joints", this.speed),
-    this.target.going(link.model, MoveKind::Link, this.speed)
+    |this, context| this.target.question("by its joints", this.speed),
+    this.target.run(context, MoveKind::Link, "by its joints", this.speed)
 }
 motion! {
     /// Moves to pulses in a straight line (0x8B, instance 2).
@@ -220,8 +259,8 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: PulseTarget
     }, "yerc.move.pulse.linear",
-    |this, link| this.target.question("in a straight line", this.speed),
-    this.target.going(link.model, MoveKind::Straight, this.speed)
+    |this, context| this.target.question("in a straight line", this.speed),
+    this.target.run(context, MoveKind::Straight, "in a straight line", this.speed)
 }
 
 /// A distance with everything that goes with it.
@@ -254,11 +293,11 @@ impl Distance {
         Question {
             what: format!("move {} in a straight line", mover.group),
             preposition: "by",
-            kind: frame.coordinate.into(),
+            kind: frame.kind(),
             how: robot.map(|_| format!("in {}", frame.describe())).unwrap_or_default(),
             robot: robot.map(Vec::from),
             base: (base_axes.as_ref(), units::MILLIMETRE),
-            station: station_axes.as_ref(),
+            station: station_axes.as_ref().map(Cow::Borrowed),
             speed,
         }
     }
@@ -270,8 +309,8 @@ impl Distance {
             Part::Robot(by, base) => {
                 order.target = by;
                 order.base = base.map(Values::padded).unwrap_or_default();
-                match (PositionKind::from(frame.coordinate), by, base) {
-                    (PositionKind::Base, [x, y, z, 0, 0, 0], None) => Goal::Shift([x, y, z], frame.tool),
+                match (frame.kind(), by, base) {
+                    (PositionKind::Base, [x, y, z, 0, 0, 0], None) => Goal::Shift([x, y, z], frame.tool()),
                     _ => Goal::Unknown(Coordinates::Base),
                 }
             }
@@ -319,9 +358,19 @@ impl PulseTarget {
             how: format!("in pulses, tool {tool},"),
             robot: pulses.as_ref().map(|pulses| pulses.0.clone()),
             base: (base_axes.as_ref(), units::PULSE),
-            station: station_axes.as_ref(),
+            station: station_axes.as_ref().map(Cow::Borrowed),
             speed,
         }
+    }
+
+    async fn run(
+        &self,
+        context: Context<'_, Yerc>,
+        kind: MoveKind,
+        way: &'static str,
+        speed: Speed,
+    ) -> Result<MotionReport, Failure> {
+        self.going(context.link.model, kind, speed)?.run(context, &self.question(way, speed)).await
     }
 
     fn going(&self, model: Model, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {

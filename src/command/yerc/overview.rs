@@ -3,7 +3,7 @@
 use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
-use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
+use crate::command::face::overview::{Fault, LeftOver, OverviewReport, PositionMm};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
@@ -41,6 +41,20 @@ pub(super) fn report(status: ControllerStatus, fault: Fault, base: Option<&Posit
         error: Some(status.error()),
         fault,
         position,
+        left_over: left_over(status),
         ..OverviewReport::default()
     }
+}
+
+/// What a client that is gone left behind, as far as the status tells it.
+pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
+    let is_held = status.has(StatusBit::HoldCommand);
+    let with_power = is_held && status.servo_on();
+    [
+        LeftOver::new(is_held, "HOLD by a command is on", "`yerc hold off` releases it: what it holds may go on"),
+        LeftOver::new(with_power, "servo power is on meanwhile", "`yerc servo off` takes it away"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }

@@ -9,17 +9,19 @@ use serde::{Serialize, Serializer};
 use super::link::Link;
 use super::link::Yerc;
 use super::orders::usage;
+use super::var::{PositionData, held};
 use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::plot::{Past, Plot};
 use crate::command::{Command, Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{self, Axes, ExtendedForm, Form, MAX_AXES, PositionKind};
 use crate::controller::yerc::query::{Coordinates, ReadPosition};
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, Section, Table, View};
 
 /// Where a group stands (FS and DX 3.3.6).
 #[derive(Debug, Args)]
@@ -30,6 +32,11 @@ pub struct Position {
     /// In pulses, in base coordinates (robots only), or both [default: what the group has]
     #[arg(long, value_enum)]
     coordinates: Option<Which>,
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: Past,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -79,6 +86,8 @@ impl Command for Position {
             report.take(*coordinates, position);
         }
         items::nothing(wanted.len(), report.errors())?;
+        report.turned(link.pulses_per_degree(self.group));
+        report.plot = self.plot.then(|| self.past.add(report.values()));
         Ok(report)
     }
 }
@@ -99,6 +108,7 @@ pub(super) async fn ask(
     let mut report = PositionReport::nowhere(group);
     report.take(coordinates, Ok((position, fitted)));
     items::nothing(1, report.errors())?;
+    report.turned(link.pulses_per_degree(group));
     Ok((position, report))
 }
 
@@ -106,23 +116,35 @@ pub(super) async fn ask(
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PositionReport {
     /// Control group, such as `R1`.
-    group: String,
+    #[schemars(with = "String")]
+    #[serde(serialize_with = "as_text")]
+    group: Group,
     /// By axis; null if not asked for.
     pulse: Option<ItemOutcome<PulsePosition>>,
     /// In base coordinates; null if not asked for.
     base: Option<ItemOutcome<CartesianPosition>>,
+    #[serde(skip)]
+    plot: Option<Plot>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct PulsePosition {
+    /// As `var set` takes it: `P5=pulse:s=…`.
+    text: String,
     /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
     pulses: ByAxis,
+    /// The same in degrees, where the inventory says the pulses of a degree.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "std::collections::BTreeMap<String, f64>")]
+    degrees: Option<Degrees>,
     tool: u32,
 }
 
 /// Six coordinates and how the arm reaches them.
 #[derive(Debug, Serialize, JsonSchema)]
 struct CartesianPosition {
+    /// As `var set` takes it: `P5=base:x=…`.
+    text: String,
     x_mm: Option<f64>,
     y_mm: Option<f64>,
     z_mm: Option<f64>,
@@ -150,7 +172,7 @@ struct CartesianPosition {
 
 impl PositionReport {
     fn nowhere(group: Group) -> Self {
-        Self { group: group.to_string(), pulse: None, base: None }
+        Self { group, pulse: None, base: None, plot: None }
     }
 
     fn pulses(&self) -> Option<&PulsePosition> {
@@ -175,6 +197,30 @@ impl PositionReport {
         pulses.into_iter().chain(base).collect::<Vec<_>>().join(", ")
     }
 
+    /// What a chart shows: base coordinates, or pulses where there are none.
+    fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
+        let (kind, axes) = match (self.cartesian(), self.pulses()) {
+            (Some(base), _) => (PositionKind::Base, base.axes),
+            (None, Some(pulse)) => (PositionKind::Pulse, pulse.pulses.axes),
+            (None, None) => return Vec::new(),
+        };
+        let names = axis_names(kind, self.group).into_iter().zip(axes.as_slice()).enumerate();
+        let value = |(at, (name, value)): (usize, (&str, &i32))| {
+            let unit = kind.unit(at);
+            (name.to_owned(), unit.symbol, usize::from(unit.decimals), decimal(*value, unit))
+        };
+        names.map(value).collect()
+    }
+
+    /// Adds degrees, where the pulses of a degree are known.
+    fn turned(&mut self, per_degree: &[f64]) {
+        let pulse = self.pulse.as_mut().and_then(ItemOutcome::data_mut).filter(|_| !per_degree.is_empty());
+        if let Some(pulse) = pulse {
+            let rows = pulse.pulses.rows().zip(per_degree);
+            pulse.degrees = Some(Degrees(rows.map(|((name, pulses), per)| (name, f64::from(pulses) / per)).collect()));
+        }
+    }
+
     /// Takes the outcome for the coordinates that were asked for.
     fn take(&mut self, asked: Coordinates, position: Result<(payload::Position, Fitted), Failure>) {
         let what = |coordinates: &str| format!("position of {} in {coordinates}", self.group);
@@ -189,15 +235,17 @@ impl PositionReport {
         });
         match asked {
             Coordinates::Pulse => {
-                let is_robot = self.group.starts_with('R');
+                let is_robot = matches!(self.group, Group::Robot(_));
                 let pulse = position.map(|(position, fitted)| PulsePosition {
+                    text: text(self.group, position),
                     pulses: ByAxis::new(position.axes, is_robot, fitted),
+                    degrees: None,
                     tool: position.tool,
                 });
                 self.pulse = Some(ItemOutcome::new(what("pulses"), pulse));
             }
             Coordinates::Base => {
-                let base = position.map(|(position, fitted)| CartesianPosition::new(&position, fitted));
+                let base = position.map(|(position, fitted)| CartesianPosition::new(self.group, &position, fitted));
                 self.base = Some(ItemOutcome::new(what("base coordinates"), base));
             }
         }
@@ -205,13 +253,14 @@ impl PositionReport {
 }
 
 impl CartesianPosition {
-    fn new(position: &payload::Position, fitted: Fitted) -> Self {
+    fn new(group: Group, position: &payload::Position, fitted: Fitted) -> Self {
         let axes = position.axes.as_slice();
         let value = |axis: usize| {
             let value = axes.get(axis).filter(|_| fitted.has(axis));
             value.map(|value| decimal(*value, position.kind.unit(axis)))
         };
         Self {
+            text: text(group, *position),
             x_mm: value(0),
             y_mm: value(1),
             z_mm: value(2),
@@ -229,6 +278,28 @@ impl CartesianPosition {
             fitted,
         }
     }
+}
+
+/// Degrees under the names of the axes.
+#[derive(Debug, Clone)]
+struct Degrees(Vec<(&'static str, f64)>);
+
+impl Serialize for Degrees {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        // To a ten-thousandth, as controllers tell angles.
+        serializer
+            .collect_map(self.0.iter().map(|(name, degrees)| (name.to_lowercase(), (degrees * 1e4).round() / 1e4)))
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn as_text<S: Serializer>(group: &Group, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(group)
+}
+
+/// A position of a group as `var set` takes it.
+fn text(group: Group, position: payload::Position) -> String {
+    PositionData::of(&held(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
 }
 
 /// The value of a wire integer. It is the binary number nearest to the decimal one, so it prints with the same digits.
@@ -288,6 +359,9 @@ impl JsonSchema for ByAxis {
 
 impl Report for PositionReport {
     fn view(&self) -> View {
+        if let Some(plot) = &self.plot {
+            return View { sections: vec![plot.section()] };
+        }
         let pulses = self.pulses().into_iter().flat_map(|pulse| pulse.pulses.rows());
         let pulses: Vec<[Cell; 2]> = pulses.map(pulse_row).collect();
         let base: Vec<[Cell; 3]> = self.cartesian().into_iter().flat_map(CartesianPosition::rows).collect();
@@ -295,6 +369,10 @@ impl Report for PositionReport {
         let blank = || Cell::from("");
         if self.pulses().is_some() {
             table.columns.extend(["axis", "pulses"]);
+        }
+        let degrees = self.pulses().and_then(|pulse| pulse.degrees.as_ref());
+        if degrees.is_some() {
+            table.columns.push("deg");
         }
         if self.cartesian().is_some() {
             table.columns.extend(["base", "value", "unit"]);
@@ -304,12 +382,17 @@ impl Report for PositionReport {
             if self.pulses().is_some() {
                 row.extend(pulses.get(index).cloned().unwrap_or_else(|| [blank(), blank()]));
             }
+            if let Some(Degrees(degrees)) = degrees {
+                row.push(degrees.get(index).map_or_else(blank, |(_, degrees)| Cell::number(format!("{degrees:.4}"))));
+            }
             if self.cartesian().is_some() {
                 row.extend(base.get(index).cloned().unwrap_or_else(|| [blank(), blank(), blank()]));
             }
             table.rows.push(row);
         }
-        View::table(table)
+        let texts = self.pulses().map(|pulse| &pulse.text).into_iter();
+        let texts = texts.chain(self.cartesian().map(|base| &base.text)).map(|text| ("text", text.as_str().into()));
+        View { sections: vec![Section::Table(table), Section::Fields(texts.collect())] }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -2,32 +2,63 @@
 
 use super::connect::endpoint;
 use super::link::Yrcx;
+use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
-use crate::command::{Access, Family as _};
+use crate::command::frame::attach::is_held;
+use crate::command::{Access, ConnectMode, Family as _};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::{Robot, Sessions};
 
 /// The layers behind those of the fieldbus.
 const SIGNALS: [&str; 7] = ["CPU", "emergency stop", "alarm", "remote command", "mode", "servo", "origin"];
 
-/// Looks at them; reads only.
+/// Looks at them; reads only. What a session sees is asked of it, and no link besides.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
-    let of_bus = endpoint(robot)?.fieldbus().layers;
-    let mut layers = Layers::new(robot.label(), [of_bus, &SIGNALS].concat());
-    match Yrcx::connect(robot, access, screen).await {
-        Err(failure) => layers.fail(of_bus.first().copied().unwrap_or("name"), &failure),
-        Ok(mut link) => {
-            if let Some(image) = link.any_board()?.check(&mut layers).await {
-                signals(&image, &mut layers);
+    let fieldbus = endpoint(robot)?.fieldbus();
+    let [first, .., last] = fieldbus.layers else {
+        return Err(Failure::local("internal error: a fieldbus without layers"));
+    };
+    let mut layers = Layers::new(robot.label(), [fieldbus.layers, &SIGNALS].concat());
+    let held = is_held(robot);
+    let mut image = None;
+    if held && !fieldbus.has_room {
+        layers.ok(first, "a session holds the link, and nobody else can ask there");
+    } else {
+        match Yrcx::connect(robot, access.clone(), screen).await {
+            Err(failure) => layers.fail(first, &failure),
+            Ok(mut link) => {
+                image = link.any_board()?.check(&mut layers).await;
+                Yrcx::close(link, screen).await?;
             }
-            Yrcx::close(link, screen).await?;
         }
     }
+    if held && image.is_none() && layers.is_well() {
+        match through_session(robot, access, screen).await {
+            Err(failure) => layers.fail(last, &failure),
+            Ok(seen) => {
+                layers.ok(last, "seen through the session");
+                image = Some(seen);
+            }
+        }
+    }
+    if let Some(image) = image {
+        signals(&image, &mut layers);
+    }
     Ok(layers.finish())
+}
+
+/// What the controller shows to the session that holds its link.
+async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image, Failure> {
+    let robot = Robot { sessions: Sessions::Only, ..robot.clone() };
+    let access = Access { mode: ConnectMode::Monitor, trace: None, ..access };
+    let mut link = Yrcx::connect(&robot, access, screen).await?;
+    let image = link.look().await;
+    Yrcx::close(link, screen).await?;
+    image
 }
 
 fn signals(image: &Image, layers: &mut Layers) {
@@ -55,6 +86,7 @@ fn signals(image: &Image, layers: &mut Layers) {
         ("ready", &format!("its status is: {status}")),
         "another command runs, or was left over",
     );
+    layers.left_over(&left_over(image));
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),

@@ -4,7 +4,7 @@ use super::link::Yrcx;
 use super::motion::Moving;
 use super::{
     alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
-    profibus, profinet, program, raw, status, var,
+    profibus, profinet, program, raw, status, teach, var,
 };
 use crate::command::backup::words::{Diff, Restore};
 use crate::command::{Subcommands, commands};
@@ -83,7 +83,7 @@ commands! {
         Program(Subcommands<program::Program>),
         "Data":
         /// Teach: store the current position as a point
-        Teach(orders::Teach),
+        Teach(teach::Teach),
         /// Points
         Point(Subcommands<data::Point>),
         /// Point comments: get, set

@@ -16,7 +16,7 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::simulator::Start;
 use crate::failure::Failure;
 use crate::settings::Robot;
-use crate::settings::target::{Bus, Place, Sim, Target};
+use crate::settings::target::{Address, Bus, Place, Sim, Target};
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{ImageLink, LinkError};
 
@@ -33,6 +33,10 @@ pub struct Fieldbus {
     pub link_type: u16,
     /// The layers of `robots check` between the name and the signals, in order; the first is there whatever fails.
     pub layers: &'static [&'static str],
+    /// Whether there is room for questions beside a session of this machine: a network, not an adapter of its own.
+    pub has_room: bool,
+    /// All addresses of a controller, asked of its network; `None` where each has but one.
+    pub addresses: Option<fn(&Bus) -> Result<Vec<Address>, LinkError>>,
     /// Opens a link: one that commands the controller, which then is shown the resting image, or one that only looks and
     /// changes nothing for whoever commands it.
     pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,

@@ -13,6 +13,8 @@ use futures_util::FutureExt as _;
 use self::onlooker::Onlooker;
 use super::connect::{self, Endpoint, OpenBoard};
 use super::failure::{failure, stopped};
+use super::fieldbus::Fieldbus;
+use super::link_error::not_open;
 pub use super::overwrite::Done;
 use super::trace::{Recorder, Trace};
 use super::unit::Unit;
@@ -117,6 +119,15 @@ impl Family for Yrcx {
                  alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
             ))
+        }
+    }
+
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        match connect::endpoint(robot)? {
+            Endpoint::Bus(bus, Fieldbus { addresses: Some(addresses), .. }) => {
+                addresses(bus).map_err(|error| not_open(&robot.label(), bus.scheme, &error))
+            }
+            Endpoint::Bus(..) | Endpoint::Sim(_) => Ok(Vec::new()),
         }
     }
 

@@ -46,6 +46,7 @@ mod numbers;
 mod orders;
 mod overview;
 mod overwrite;
+mod panel;
 mod param;
 mod point_calc;
 mod port;
@@ -62,6 +63,7 @@ mod several;
 pub mod simulated;
 mod single;
 mod status;
+mod teach;
 #[cfg(test)]
 mod testing;
 pub mod top;

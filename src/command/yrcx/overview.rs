@@ -3,7 +3,7 @@
 use super::info::AlarmReport;
 use super::link::Link;
 use super::status::position_mm;
-use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
+use crate::command::face::overview::{Fault, LeftOver, OverviewReport, PositionMm};
 use crate::command::face::sample::Alarm;
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
@@ -75,6 +75,28 @@ pub(super) fn report(link: &Link, image: &Image, alarm: Option<&Alarm>) -> Overv
         held: link.shown().map(|shown| !input::STOP.is_on(shown)),
         alarm: Some(output::ALARM.is_on(image)),
         fault: Fault::new(output::ALARM.is_on(image), alarm),
+        left_over: left_over(image),
         ..OverviewReport::default()
     }
+}
+
+/// What a client that is gone left behind, as far as the signals tell it.
+pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
+    let status = Status::from_word(image.0[0]);
+    let is_command = !matches!(status, Status::Ready | Status::Running);
+    [
+        LeftOver::new(
+            output::PROGRAM_RUNNING.is_on(image),
+            "a program runs (SO(13))",
+            "`yrcx stop` stops it; `yrcx info tasks` tells which tasks there are",
+        ),
+        LeftOver::new(
+            is_command,
+            &format!("a remote command left its status: {status}"),
+            "`yrcx status-reset` clears it",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }

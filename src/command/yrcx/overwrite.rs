@@ -79,14 +79,28 @@ pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, int
         authority.confirm(&question(order, intent, &old)).await?;
         return Ok(Done { old, ..link.ask(order).await? });
     }
+    give_either(link, authority, order, order).await
+}
+
+/// The same of an order that overwrites something; `other` is it with other answers, to show what of it is known in a dry
+/// run.
+pub async fn give_either(
+    link: &mut Link,
+    authority: &Authority<'_>,
+    order: &Order,
+    other: &Order,
+) -> Result<Done, Failure> {
     let replaced = confirm(link, authority, order).await?;
     if replaced.is_there {
         return Ok(Done { replaced: Some(replaced), ..Done::default() });
     }
     if link.is_dry() {
-        let reason =
-            if may_be_there(order.command()) { Reason::default().depending_on(DIFFERS) } else { Reason::default() };
-        link.plan_depending(order, order, reason);
+        let reason = match order.command() {
+            _ if order != other => Reason::about("stores it").depending_on("the unit of the point"),
+            command if may_be_there(command) => Reason::default().depending_on(DIFFERS),
+            _ => Reason::default(),
+        };
+        link.plan_depending(order, other, reason);
         return Ok(Done::default());
     }
     let done = link.ask(order).await?;

@@ -57,6 +57,14 @@ impl Position {
         }
     }
 
+    /// Axes in a line with their unit.
+    pub fn in_a_line(&self) -> String {
+        let mm = self.position_mm.map(|axes| format!("{} mm", axes.map(|axis| format!("{axis:.3}")).join(", ")));
+        let pulses =
+            self.position_pulses.map(|axes| format!("{} pulses", axes.map(|axis| axis.to_string()).join(", ")));
+        mm.or(pulses).unwrap_or_default()
+    }
+
     /// A row an axis.
     pub fn table(&self) -> Option<Table> {
         let mut table = Table::new(&["axis", "position", "unit"], "");

@@ -1,5 +1,7 @@
 //! `yrcx program` (4.6): programs and the tasks they run in.
 
+mod run;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -21,7 +23,7 @@ commands! {
         /// Register a program in a task
         Select(Select),
         /// Run a program, or all of them
-        Run(Run),
+        Run(run::Run),
         /// Step into: run one line, also of a subroutine
         Step(Step),
         /// Skip one line
@@ -197,10 +199,6 @@ macro_rules! starts {
 }
 
 starts! {
-    /// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
-    #[command(after_help = "`yrcx io get program-running` tells whether a program runs; `yrcx stop` stops it, and so \
-        does the end of the connection.")]
-    Run "yrcx.program.run" ProgramRun WhichOrAll "run {}" "running" "started {}";
     /// Runs one line of a program, also of a subroutine.
     Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
     /// Skips one line of a program.

@@ -26,6 +26,15 @@ pub enum Address {
         /// Its number there.
         number: u8,
     },
+    /// A device on a network where each has names of several kinds.
+    Named {
+        /// The network: the fieldbus, and the interface that leads to it.
+        network: String,
+        /// What the name is: two names of one kind are two devices, of two kinds only the network can tell.
+        kind: &'static str,
+        /// The name.
+        name: String,
+    },
     /// A simulator of this process; two with the same parameters are not the same.
     Simulated,
 }
@@ -110,8 +119,19 @@ impl Address {
                 Self::Network { scheme: other_scheme, host: other_host, port: other_port },
             ) => scheme == other_scheme && port == other_port && host.meets(other_host, *port),
             (Self::Device(path), Self::Device(other)) => path == other,
+            (Self::Named { .. }, Self::Named { .. }) => self == other,
             (Self::Station { line, number }, Self::Station { line: other_line, number: other }) => {
                 number == other && line.meets(other_line)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether both may be one controller although they do not meet: only their network can tell.
+    pub fn may_meet(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Named { network, kind, .. }, Self::Named { network: other_network, kind: other_kind, .. }) => {
+                network == other_network && kind != other_kind
             }
             _ => false,
         }
@@ -123,6 +143,7 @@ impl Address {
             Self::Network { scheme, host: Host::Address(address), port } => Some(format!("{scheme} {address} {port}")),
             Self::Network { scheme, host: Host::Name(name), port } => Some(format!("{scheme} {name} {port}")),
             Self::Device(path) => Some(format!("device {path}")),
+            Self::Named { network, name, .. } => Some(format!("{network} {name}")),
             Self::Station { line, number } => line.key().map(|line| format!("{line} station {number}")),
             Self::Simulated => None,
         }
@@ -169,6 +190,7 @@ mod tests {
             ("can://can0?mac=5", "can://can1?mac=5"),
         ] {
             assert!(!address(one).meets(&address(other)), "{one} {other}");
+            assert!(!address(one).may_meet(&address(other)), "{one} {other}");
         }
     }
 }

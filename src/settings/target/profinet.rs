@@ -24,14 +24,10 @@ pub const SCHEME: Scheme = Scheme {
     about: "yrcx: name (or MAC address) of the station, and the Ethernet interface that leads to it",
     parse: |place, query| {
         let profinet = parse(place, query)?;
-        let station = match &profinet.station {
-            Station::Name(name) => name.clone(),
-            Station::Mac(mac) => mac.to_string(),
-        };
-        let short_name = format!("{station} on {}", profinet.interface);
+        let (_, name) = words(&profinet.station);
         Ok(Place {
-            address: Address::Device(format!("profinet {short_name}")),
-            short_name,
+            address: address(&profinet.interface, &profinet.station),
+            short_name: format!("{name} on {}", profinet.interface),
             is_owner: true,
             options: Arc::new(profinet),
         })
@@ -59,6 +55,20 @@ pub struct Profinet {
     pub startup: Startup,
     /// Whether the words of commands stand with their high byte first.
     pub is_big_endian: bool,
+}
+
+/// The address of a station on the network of an interface.
+pub fn address(interface: &str, station: &Station) -> Address {
+    let (kind, name) = words(station);
+    Address::Named { network: format!("profinet {interface}"), kind, name }
+}
+
+/// What a station is named by.
+fn words(station: &Station) -> (&'static str, String) {
+    match station {
+        Station::Name(name) => ("station", name.clone()),
+        Station::Mac(mac) => ("card", mac.to_string()),
+    }
 }
 
 /// Time between frames unless told otherwise.
@@ -241,6 +251,12 @@ mod tests {
         let address = |url: &str| Address::of(&url.parse().unwrap());
         let robot = address("profinet://robot-7@eth0?cycle=8ms");
         assert!(robot.meets(&address("profinet://ROBOT-7@eth0")));
-        assert!(!robot.meets(&address("profinet://robot-8@eth0")) && !robot.meets(&address("profinet://robot-7@eth1")));
+        for other in ["profinet://robot-8@eth0", "profinet://robot-7@eth1"].map(address) {
+            assert!(!robot.meets(&other) && !robot.may_meet(&other), "{other:?}");
+        }
+        let card = address("profinet://02:00:00:00:00:AB@eth0");
+        assert!(!robot.meets(&card) && robot.may_meet(&card), "only the network knows whether it is the same");
+        assert!(card.meets(&address("profinet://02:00:00:00:00:ab@eth0?cycle=8ms")));
+        assert!(!robot.may_meet(&address("profinet://02:00:00:00:00:AB@eth1")), "another network");
     }
 }

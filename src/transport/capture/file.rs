@@ -139,6 +139,11 @@ enum Format {
     Blocks(Vec<Interface>),
 }
 
+/// Whether a file that begins like this says of itself that it has packets, whatever their bytes are like.
+pub fn is_capture(beginning: &[u8]) -> bool {
+    matches!(Packets::open(beginning), Ok(_) | Err(OpenError::Compressed))
+}
+
 /// What is read at a time.
 const PIECE: usize = 1 << 16;
 

@@ -15,7 +15,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use self::dump::Form;
-use self::file::Packets;
+use self::file::{Packets, is_capture};
 use self::layers::{PacketContent, Payload, content_of};
 use self::stream::{Piece, Streams};
 use super::devicenet::can::Frame;
@@ -115,7 +115,8 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     if beginning.starts_with(b"(") {
         return Ok(candump(file, each));
     }
-    if let Some(form) = Form::of(beginning) {
+    // Packets of a capture may be telegrams.
+    if let Some(form) = Form::of(beginning).filter(|_| !is_capture(beginning)) {
         return Ok(dump::read(file, form, each));
     }
     let mut packets = Packets::open(file)?;
@@ -248,6 +249,22 @@ mod tests {
         let expected: Vec<_> = expected.into_iter().map(|(n, time, by, bytes)| (n, time, by, bytes.to_vec())).collect();
         assert_eq!(all, expected);
         assert_eq!(summary, Summary { packets: 5, first: Duration::from_millis(1500), ..Summary::default() });
+    }
+
+    #[test]
+    fn telegrams_in_a_capture_keep_their_times() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("line.pcapng");
+        let mut capture = CaptureWriter::append_packets(&path, crate::tap::LINKTYPE_PROFIBUS_DL).unwrap();
+        let telegrams: [&[u8]; 2] = [b"\x10\x05\x02\x49\x50\x16", b"\x10\x02\x05\x00\x07\x16"];
+        for (second, telegram) in (7..).zip(telegrams) {
+            capture.frame(Duration::from_secs(second), telegram).unwrap();
+        }
+        drop(capture);
+        let (all, summary) = messages_of(&std::fs::read(&path).unwrap());
+        let read: Vec<_> = all.iter().map(|(number, time, _, bytes)| (*number, time.as_secs(), &bytes[..])).collect();
+        assert_eq!(read, [(1, 7, telegrams[0]), (2, 8, telegrams[1])]);
+        assert_eq!((summary.packets, summary.first.as_secs()), (2, 7));
     }
 
     #[test]

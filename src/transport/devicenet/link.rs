@@ -247,7 +247,11 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
 /// What to do about an error, where that is more than its kind tells.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
-        Error::Duplicate { .. } => "choose another number for this master: master= of the URL (0 to 63)".into(),
+        Error::Duplicate { .. } => {
+            "close the session that has it (`armctl session list`), or choose another number for this master: master= of the \
+             URL (0 to 63)"
+                .into()
+        }
         Error::Owned { .. } => {
             "stop the other master's scan of this node, or look beside it: `yrcx status` and `yrcx io get` \
              listen to what passes"

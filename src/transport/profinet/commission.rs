@@ -81,6 +81,8 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
             };
             match &first {
                 _ if !is_it => {}
+                // There is no other one with its card.
+                None if matches!(wanted, settings::Station::Mac(_)) => return Ok(found),
                 None => {
                     until = until.min(frames.now() + TWIN);
                     first = Some(found);

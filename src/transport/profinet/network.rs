@@ -15,7 +15,7 @@ use tokio::sync::watch;
 
 use super::Now;
 use super::controller::numbers::Numbers;
-use super::controller::view::{View, Views};
+use super::controller::view::{Statistics, View, Views};
 use super::controller::{Action, Controller, Here};
 use super::error::ProfinetError;
 use super::interface::Interface;
@@ -135,6 +135,11 @@ impl Connection {
     /// What there is to see now.
     pub fn view(&self) -> View {
         self.views.now()
+    }
+
+    /// What was counted until now; a view has it as of the last change.
+    pub fn statistics(&self) -> Statistics {
+        self.with(|core, _| core.statistics()).unwrap_or_else(|| self.view().statistics)
     }
 
     /// Waits until the view is so, or the connection is closed.

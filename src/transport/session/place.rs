@@ -95,15 +95,19 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// Somewhere of a test's own.
-    #[cfg(test)]
-    pub(super) fn at(stem: PathBuf) -> Self {
+    /// Somewhere of one's own: the socket, lock and log begin with this path.
+    pub fn at(stem: PathBuf) -> Self {
         Self { stem }
     }
 
     /// Where clients connect.
     pub fn socket(&self) -> PathBuf {
         self.stem.with_extension(SOCKET)
+    }
+
+    /// What the session is named by.
+    pub fn key(&self) -> String {
+        self.stem.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     /// Whether somebody listens there, and nobody but this user can.

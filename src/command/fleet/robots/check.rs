@@ -45,6 +45,10 @@ impl Family for Checked {
         Plan::default()
     }
 
+    fn addresses(robot: &Robot) -> Result<Vec<target::Address>, Failure> {
+        families::of(robot.family).driver().addresses(robot)
+    }
+
     async fn close(_link: Access, _screen: &Screen) -> Result<(), Failure> {
         Ok(())
     }
@@ -62,7 +66,8 @@ impl Command for Check {
         if access.dry_run {
             return Err(Failure::usage("what a check asks next depends on the answers").hint("it only reads"));
         }
-        let layers = families::of(robot.family).check(robot, access, screen).await?;
+        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
+        layers.extend(layers::drafts());
         Ok(CheckReport { layers, family: robot.family.name() })
     }
 }

@@ -122,7 +122,8 @@ impl Remove {
 
 /// Changes settings of a robot; `KEY=` with nothing behind it removes one.
 #[derive(Debug, Args)]
-#[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, tags=A,B.")]
+#[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
+    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B.")]
 pub struct Set {
     /// Its name
     #[arg(add = ValueKind::Robot)]
@@ -136,7 +137,7 @@ pub struct Set {
 type Parse = fn(&str, Family) -> Result<Value, Failure>;
 
 /// The settings of an entry, with what they are.
-const SETTINGS: [(&str, &str, Parse); 9] = [
+const SETTINGS: [(&str, &str, Parse); 10] = [
     ("target", "where it is", |text, family| {
         let target = text.parse::<Given>()?.of(Some(family))?;
         Ok(target.url().into())
@@ -154,6 +155,14 @@ const SETTINGS: [(&str, &str, Parse); 9] = [
         let retries = text.parse::<u32>();
         let why = format!("'{text}' is not a number of repetitions");
         Ok(i64::from(retries.map_err(|_| wrong(why, "as in retries=3"))?).into())
+    }),
+    ("pulses_per_degree", "of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {
+        let values: Result<Vec<f64>, _> = text.split(',').map(|value| value.trim().parse::<f64>()).collect();
+        let values = values.ok().filter(|values| values.iter().all(|value| value.is_finite() && *value > 0.0));
+        let why = || {
+            wrong(format!("'{text}' is not numbers of pulses"), "as in pulses_per_degree=1360,1360,1360,1000,1000,500")
+        };
+        Ok(Value::Array(values.ok_or_else(why)?.into_iter().collect()))
     }),
     ("tags", "words to choose it by, such as line1,welding", |text, _| {
         Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))

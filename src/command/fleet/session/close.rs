@@ -7,11 +7,14 @@ use serde::Serialize;
 use super::list::spots;
 use crate::command::Report;
 use crate::command::ValueKind;
-use crate::command::frame::attach::{no_place, refused};
+use crate::command::families;
+use crate::command::frame::attach::{identify, no_place, refused};
 use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Table, View};
+use crate::settings::Robot;
+use crate::settings::target::Target;
 use crate::transport::session::client::{AttachError, close};
 use crate::transport::session::place::Spot;
 use crate::transport::session::wire::Info;
@@ -58,6 +61,15 @@ impl Close {
                 .hint("name a robot, or close them --all; `armctl session list` shows them")
                 .into());
         }
+        let mut meant = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
+        for robot in &mut meant {
+            // One that does not answer has the address that was typed.
+            let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
+        }
+        let is_named = |info: &Info, name: &str| {
+            let is_meant = |robot: &Robot| info.target.parse::<Target>().is_ok_and(|held| robot.is_at(&held.address()));
+            is_named(info, name) || target.as_deref() == Some(name) && meant.iter().any(is_meant)
+        };
         let found: Vec<(Spot, Info)> =
             spots()?.into_iter().filter_map(|spot| Some((spot.clone(), spot.owner()?))).collect();
         for name in &names {

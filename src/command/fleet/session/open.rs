@@ -13,7 +13,7 @@ use jiff::Timestamp;
 use super::host::{Attempt, SessionHost};
 use crate::command::ValueKind;
 use crate::command::families;
-use crate::command::frame::attach::{key_of, no_place, since};
+use crate::command::frame::attach::{identify, key_of, no_place, since};
 use crate::command::frame::background::{self, Opened, Start};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
@@ -47,15 +47,18 @@ impl Open {
     }
 
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
-        let robots = run.sources.robots(self.family)?;
-        let [robot] = &robots[..] else {
+        let mut robots = run.sources.robots(self.family)?;
+        let [robot] = &mut robots[..] else {
             return Err(Failure::usage("a session is for one robot").hint("open one for each").into());
         };
+        if !run.gate.dry_run {
+            identify(&run.sources, families::of(robot.family).driver(), robot, true)?;
+        }
         if robot.read_only.value && families::of(robot.family).session_commands() && !robot.target.value.is_simulated()
         {
             let message = format!("{} is read-only, and a session commands the controller", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("`yrcx status` and `yrcx io get` read without a command connection")
+                .hint("`yrcx status` and `yrcx io get` read without one, where the fieldbus lets more than one look")
                 .into());
         }
         if run.gate.dry_run {

@@ -25,9 +25,12 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
 use self::keys::{KeyAction, order};
-use self::model::Model;
-use self::poller::{Pace, Update, follow};
+pub use self::model::Model;
+pub use self::poller::{Pace, Update, follow};
 use self::view::Palette;
+pub use self::view::robot;
+use crate::command::families;
+use crate::command::frame::attach::identify;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind};
@@ -60,12 +63,16 @@ impl Top {
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
-        let robots = run.sources.robots(None)?;
+        let mut robots = run.sources.robots(None)?;
         let screen = run.screen;
         if !screen.can_fill() {
             return Err(Failure::usage("top draws on a terminal, and stdout is none that can be drawn on")
                 .hint("`armctl status --watch` prints a table again and again; -o jsonl is for programs")
                 .into());
+        }
+        for robot in &mut robots {
+            // One that does not answer is shown as that.
+            let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
         }
         // What links have to say would be written over the picture.
         let silent = screen.silenced();

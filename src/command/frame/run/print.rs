@@ -195,6 +195,7 @@ impl Run {
 
     /// Writes the fields of reports as CSV; later rounds of a watch below the columns of the first.
     fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
+        let is_round = self.repeat.is_wanted() && matches!(place, ReportPosition::First | ReportPosition::Next);
         let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
         let known = if is_later { self.redraw.columns.take() } else { Vec::new() };
         let count = known.len();
@@ -205,8 +206,12 @@ impl Run {
                 None if report.view().sections.iter().any(|part| matches!(part, Section::Table(_))) => Lists::All,
                 None => Lists::None,
             };
-            let before: Vec<(&str, &str)> = robot.iter().map(|robot| ("robot", robot.name.as_str())).collect();
-            rows.add(&before, &report.data()?, lists);
+            let data = report.data()?;
+            let time = is_round.then(|| Timestamp::now().to_string()).filter(|_| !tells_time(&data));
+            let time = time.iter().map(|time| ("time", time.as_str()));
+            let before: Vec<(&str, &str)> =
+                time.chain(robot.iter().map(|robot| ("robot", robot.name.as_str()))).collect();
+            rows.add(&before, &data, lists);
         }
         let has_header = !is_later || rows.columns().len() > count;
         self.redraw.columns.replace(rows.columns().to_vec());
@@ -225,6 +230,17 @@ impl Run {
             }
         };
         screen.data(&self.redraw.over(text))
+    }
+}
+
+/// Whether a report, or what it lists, has times of its own.
+fn tells_time(data: &Value) -> bool {
+    match data {
+        Value::Object(fields) => {
+            fields.contains_key("time") || fields.values().filter(|value| value.is_array()).any(tells_time)
+        }
+        Value::Array(items) => items.iter().any(tells_time),
+        _ => false,
     }
 }
 

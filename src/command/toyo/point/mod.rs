@@ -3,8 +3,10 @@
 mod get;
 mod list;
 mod set;
+mod teach;
 
 pub use list::AXES;
+pub use teach::Teach;
 
 use schemars::JsonSchema;
 use serde::Serialize;

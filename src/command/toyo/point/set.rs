@@ -1,24 +1,25 @@
 //! `toyo point set`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
 use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::teach::printed;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, runs};
-use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
+use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{files, link, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
-use crate::controller::toyo::bulk::points;
+use crate::controller::toyo::bulk::points::{self, Partial};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
@@ -30,8 +31,10 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(
     after_help = format!(
-        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it. All of it \
-         is checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
+        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it; with \
+         commas, semicolons or tabs, and with decimal commas where cells are not parted by commas. Coordinates that it \
+         has no column for stay as they are on the controller. Columns beginning with comment are yours. All of it is \
+         checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
          a million rewrites. If the work is cut off, it says what is done; the same command, or --resume, goes on.\n\n\
          {OTHER_TASK}"
     )
@@ -40,7 +43,8 @@ pub struct Set {
     /// Row of the coordinate table, 1 to 999
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
     point: Option<i32>,
-    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others
+    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others; or @FILE with what
+    /// `position --json` printed, @- for stdin, or here
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "MM", allow_negative_numbers = true)]
     values: Vec<String>,
     /// Write the points of this CSV file; - is stdin
@@ -54,7 +58,7 @@ pub struct Set {
     resume: Option<String>,
 }
 
-const WORK: StoreTask =
+pub(super) const WORK: StoreTask =
     StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
 
 impl Command for Set {
@@ -69,22 +73,22 @@ impl Command for Set {
         let Context { link, screen, authority, .. } = context;
         let Some(file) = &self.from else {
             let point = self.point.unwrap_or_default();
-            let changes = Changes::read(&format!("point {point}"), &points::table().body(), &self.values)?;
+            let given = printed_values(&self.values)?;
+            let values = given.as_ref().unwrap_or(&self.values);
+            let changes = Changes::read(&format!("point {point}"), &points::table().body(), values)?;
             let task = tasks::choose(link, self.task).await?;
             let stored = self.store_one(link, screen, &authority, (task, point), &changes).await;
             return tasks::done(link, stored).await;
         };
         let name = files::shown(file);
-        let read = points::read(&files::read(file)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
-        let points = read.into_iter().map(|(point, _)| store(point.values)).collect::<Result<Vec<Store>, Failure>>()?;
+        let points = points::read_partial(&files::read(file)?).map_err(|errors| files::faulty(&name, &errors))?;
         if points.is_empty() {
             return Err(
                 Failure::usage(format!("{name} has no points")).hint("`toyo point list --csv FILE` writes such a file")
             );
         }
-        let left_out = stores::left_out(&points, self.resume.as_deref())?;
         let task = tasks::choose(link, self.task).await?;
-        let stored = self.store_all(link, screen, &authority, (task, points), left_out).await;
+        let stored = self.store_file(link, screen, &authority, (task, &points)).await;
         tasks::done(link, stored).await
     }
 }
@@ -106,6 +110,41 @@ impl Set {
         self.store_all(link, screen, authority, (task, vec![stored.over(found)]), 0).await
     }
 
+    /// Stores the points of a file. What it has no column for is read first, and kept.
+    async fn store_file(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        (task, points): (u8, &[Partial]),
+    ) -> Result<Stored, Failure> {
+        // With zeros for what is not known yet.
+        let whole =
+            |point: &Partial| store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect());
+        let mut stores = points.iter().map(whole).collect::<Result<Vec<Store>, Failure>>()?;
+        let left_out = stores::left_out(&stores, self.resume.as_deref())?;
+        if points.iter().all(|point| point.values.iter().all(Option::is_some)) {
+            return self.store_all(link, screen, authority, (task, stores), left_out).await;
+        }
+        if link.is_dry() {
+            for point in &points[left_out..] {
+                let row = Some(point.row());
+                let read = Request::read_parameter(points::table(), row).map_err(|error| link::wrong(&error))?;
+                link.ask(&read).await.known()?;
+                link.plan_overwriting(&read, &parameter_sketch(points::table(), row, &point.values[1..])).await?;
+            }
+            return Err(unknown());
+        }
+        stores::look(link, screen, &mut stores[left_out..]).await?;
+        for (point, store) in points.iter().zip(&mut stores).skip(left_out) {
+            let CellState::This(found) = &store.found else { continue };
+            let whole = Changes::of(point.values[1..].to_vec()).over(found)?;
+            let number = std::iter::once(Value::Number(point.row()));
+            store.cell = self::store(number.chain(whole).collect())?.cell;
+        }
+        self.store_all(link, screen, authority, (task, stores), left_out).await
+    }
+
     /// Stores points once it is confirmed that they are replaced.
     async fn store_all(
         &self,
@@ -122,10 +161,25 @@ impl Set {
     }
 }
 
-fn store(values: Vec<Value>) -> Result<Store, Failure> {
+pub(super) fn store(values: Vec<Value>) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
     let row = cell.wanted.number("row").unwrap_or_default();
     Ok(Store::new(row.to_string(), cell))
+}
+
+/// The values of a position that another command printed, where a file of one is given.
+fn printed_values(values: &[String]) -> Result<Option<Vec<String>>, Failure> {
+    let [only] = values else { return Ok(None) };
+    let Some(file) = only.strip_prefix('@') else { return Ok(None) };
+    let position = printed(Path::new(file))?;
+    let value = |key: &str| {
+        let number = position.get(key).filter(|value| value.is_number());
+        number.map(ToString::to_string).ok_or_else(|| {
+            Failure::usage(format!("{file}: no number {key}"))
+                .hint("it holds a position as `toyo position --json` prints it")
+        })
+    };
+    ["x_mm", "y_mm", "z_mm", "r_mm"].into_iter().map(value).collect::<Result<_, _>>().map(Some)
 }
 
 /// Result of points.

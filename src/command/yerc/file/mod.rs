@@ -7,19 +7,23 @@ mod content;
 mod delete;
 mod deliver;
 mod diff;
+mod edit;
 mod get;
 mod list;
 mod lists;
 mod manifest;
 mod name;
+mod pattern;
 mod put;
 mod restore;
 mod results;
 mod transfer;
 
 pub use backup::back_up;
+pub use edit::Edit;
+pub(super) use name::{Shown, exact};
 pub use restore::Restore;
-pub(super) use transfer::taken as download_failed;
+pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed};
 
 use crate::command::commands;
 

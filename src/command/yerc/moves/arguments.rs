@@ -9,6 +9,7 @@ use crate::command::yerc::position::{extended_words, form_words, in_a_line};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
+use crate::controller::yerc::variables::Reference;
 use crate::failure::Failure;
 
 /// Who moves, and who waits.
@@ -43,10 +44,14 @@ fn mover(text: &str) -> Result<Group, String> {
 /// A whole target in coordinates.
 #[derive(Debug, Args)]
 pub(super) struct To {
-    /// The target: x, y, z in mm and rx, ry, rz in degrees
-    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ", allow_hyphen_values = true, value_parser = coordinates,
+    /// The target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2
+    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = typed,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
-    to: Option<[i32; 6]>,
+    to: Option<Typed>,
+    /// The target in degrees of the axes, by pulses_per_degree of its entry in robots.toml
+    #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = axis_degrees,
+        conflicts_with_all = ["to", "x", "y", "z", "rx", "ry", "rz"])]
+    deg: Option<Destination>,
     #[command(flatten)]
     single: Single<true>,
 }
@@ -54,9 +59,74 @@ pub(super) struct To {
 impl To {
     /// The six coordinates; `None` if there are none, which only a station may do without.
     pub(super) fn coordinates(&self) -> Option<[i32; 6]> {
+        if let Some(Typed::Coordinates(to)) = &self.to {
+            return Some(*to);
+        }
         let [x, y, z, rx, ry, rz] = self.single.values();
-        self.to.or_else(|| Some([x?, y?, z?, rx?, ry?, rz?]))
+        Some([x?, y?, z?, rx?, ry?, rz?])
     }
+
+    /// What else it leads to.
+    pub(super) fn destination(&self) -> Option<Destination> {
+        match &self.to {
+            Some(Typed::Variable(variable)) => Some(Destination::Variable(*variable)),
+            Some(Typed::Coordinates(_)) | None => self.deg.clone(),
+        }
+    }
+}
+
+/// What `--to` takes.
+#[derive(Debug, Clone, PartialEq)]
+enum Typed {
+    Coordinates([i32; 6]),
+    Variable(Reference),
+}
+
+/// Where a move leads to, other than to coordinates that were typed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Destination {
+    /// To what a position variable holds.
+    Variable(Reference),
+    /// To degrees of the axes.
+    Degrees(Vec<f64>),
+}
+
+impl fmt::Display for Destination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Variable(variable) => variable.fmt(f),
+            Self::Degrees(degrees) => {
+                let degrees: Vec<String> = degrees.iter().map(f64::to_string).collect();
+                write!(f, "{} deg", degrees.join(","))
+            }
+        }
+    }
+}
+
+fn typed(text: &str) -> Result<Typed, String> {
+    if !text.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        return coordinates(text).map(Typed::Coordinates);
+    }
+    let variable: Reference = text.parse().map_err(|error| format!("{error}"))?;
+    if !variable.kind.is_position() {
+        return Err(format!("{variable} holds no position; P and EX do"));
+    }
+    Ok(Typed::Variable(variable))
+}
+
+/// Degrees of as many axes as a robot must have named.
+fn axis_degrees(text: &str) -> Result<Destination, String> {
+    let degrees: Vec<f64> = text
+        .split(',')
+        .map(|angle| match angle.trim().parse::<f64>() {
+            Ok(degrees) if degrees.is_finite() => Ok(degrees),
+            _ => Err(format!("'{angle}' is not a number of degrees")),
+        })
+        .collect::<Result<_, _>>()?;
+    if ROBOT.contains(&degrees.len()) {
+        return Ok(Destination::Degrees(degrees));
+    }
+    Err(format!("{} to {} numbers of degrees are wanted, {} given", ROBOT.start(), ROBOT.end(), degrees.len()))
 }
 
 /// A distance in coordinates.
@@ -99,7 +169,7 @@ impl<const ALL: bool> Args for Single<ALL> {
                 0..=2 => arg.value_name("MM").value_parser(millimetres).help("A coordinate in mm"),
                 _ => arg.value_name("DEG").value_parser(degrees).help("An angle in degrees"),
             };
-            command.arg(if ALL { arg.required_unless_present_any(["to", "station_axes"]) } else { arg })
+            command.arg(if ALL { arg.required_unless_present_any(["to", "deg", "station_axes"]) } else { arg })
         })
     }
 
@@ -122,16 +192,15 @@ impl<const ALL: bool> clap::FromArgMatches for Single<ALL> {
 /// What the coordinates refer to.
 #[derive(Debug, Args)]
 pub(super) struct Frame {
-    /// Coordinates that the numbers are in
-    #[arg(long, value_enum, default_value = "base")]
-    pub(super) coordinate: Coordinate,
-    /// Tool number
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = within::<u32>(0, 63))]
-    pub(super) tool: u32,
-    /// User coordinate number
-    #[arg(long, value_name = "N", default_value_t = 0, required_if_eq("coordinate", "user"),
-        value_parser = within::<u32>(0, 63))]
-    pub(super) user: u32,
+    /// Coordinates that the numbers are in [default: base]
+    #[arg(long, value_enum)]
+    pub(super) coordinate: Option<Coordinate>,
+    /// Tool number [default: 0]
+    #[arg(long, value_name = "N", value_parser = within::<u32>(0, 63))]
+    pub(super) tool: Option<u32>,
+    /// User coordinate number [default: 0]
+    #[arg(long, value_name = "N", required_if_eq("coordinate", "user"), value_parser = within::<u32>(0, 63))]
+    pub(super) user: Option<u32>,
 }
 
 /// Coordinates of a move.
@@ -159,15 +228,28 @@ impl From<Coordinate> for PositionKind {
 }
 
 impl Frame {
+    /// What the numbers are.
+    pub(super) fn kind(&self) -> PositionKind {
+        self.coordinate.unwrap_or(Coordinate::Base).into()
+    }
+
+    pub(super) fn tool(&self) -> u32 {
+        self.tool.unwrap_or(0)
+    }
+
+    pub(super) fn user(&self) -> u32 {
+        self.user.unwrap_or(0)
+    }
+
     /// For the question before the motion.
     pub(super) fn describe(&self) -> String {
-        let name = match self.coordinate {
+        let name = match self.coordinate.unwrap_or(Coordinate::Base) {
             Coordinate::Base => "base coordinates".to_owned(),
             Coordinate::Robot => "robot coordinates".to_owned(),
-            Coordinate::User => format!("user coordinates {}", self.user),
+            Coordinate::User => format!("user coordinates {}", self.user()),
             Coordinate::Tool => "tool coordinates".to_owned(),
         };
-        format!("{name}, tool {}", self.tool)
+        format!("{name}, tool {}", self.tool())
     }
 }
 
@@ -175,20 +257,28 @@ impl Frame {
 #[derive(Debug, Args)]
 pub(super) struct Forms {
     /// Form of the arm; of each pair not named, the first: front|back, upper|lower, flip|noflip, r-lt180|r-ge180,
-    /// t-lt180|t-ge180, s-lt180|s-ge180
-    #[arg(long, value_name = "WORD,…", default_value = "front,upper,flip", value_parser = form)]
-    pub(super) form: Form,
-    /// More of the form, likewise: l-lt180|l-ge180, then u-, b-, e-, w-
-    #[arg(long, value_name = "WORD,…", default_value = "l-lt180", value_parser = extended_form)]
-    pub(super) extended_form: ExtendedForm,
+    /// t-lt180|t-ge180, s-lt180|s-ge180 [default: front,upper,flip]
+    #[arg(long, value_name = "WORD,…", value_parser = form)]
+    pub(super) form: Option<Form>,
+    /// More of the form, likewise: l-lt180|l-ge180, then u-, b-, e-, w- [default: l-lt180]
+    #[arg(long, value_name = "WORD,…", value_parser = extended_form)]
+    pub(super) extended_form: Option<ExtendedForm>,
 }
 
 impl Forms {
+    pub(super) fn form(&self) -> Form {
+        self.form.unwrap_or_default()
+    }
+
+    pub(super) fn extended_form(&self) -> ExtendedForm {
+        self.extended_form.unwrap_or_default()
+    }
+
     /// For the question before the motion.
     pub(super) fn describe(&self) -> String {
-        let extended = extended_words(self.extended_form);
+        let extended = extended_words(self.extended_form());
         let plus = if extended.is_empty() { "" } else { "+" };
-        format!("form {}{plus}{extended}", form_words(self.form))
+        format!("form {}{plus}{extended}", form_words(self.form()))
     }
 }
 

@@ -12,6 +12,7 @@ use crate::command::yerc::link::{Link, Refusal, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
+use crate::command::yerc::var::PositionData;
 use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
@@ -139,7 +140,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
             goal = goal.from(&position);
             start = Some(position);
         }
-        authority.confirm(&question.change(group, start.as_ref(), &goal)).await?;
+        authority.confirm(&question.change(group, start.as_ref(), &goal, link.pulses_per_degree(group))).await?;
         if let (Some(asked), true) = (&start, is_asked) {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !stands(asked, &now) {
@@ -151,8 +152,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         if link.is_dry() && !no_wait {
             plan_looks(link, group, coordinates)?;
         }
-        let mut moved =
-            MotionReport { accepted: true, group: group.to_string(), at_target: None, reached: None, elapsed_ms: None };
+        let mut moved = MotionReport { accepted: true, group: group.to_string(), ..MotionReport::default() };
         let Some(start) = start else { return Ok(moved) };
 
         let done = format!("the motion of {group} was accepted");
@@ -199,7 +199,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
 }
 
 /// Notes in a dry run what is asked while the robot moves.
-fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
+pub(super) fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
     let about = "again and again until the motion has ended";
     link.plan(&ReadStatus.request(), about);
     let question = ReadPosition::new(link.model, group, coordinates).map_err(usage)?;
@@ -324,24 +324,38 @@ impl Watch {
     }
 }
 
-fn stands(one: &Position, other: &Position) -> bool {
+/// Whether both are readings of a group that stands still.
+pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool {
     let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
 }
 
 /// Result of a motion.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct MotionReport {
     /// The controller took the order.
     accepted: bool,
     /// Who moved.
     group: String,
+    /// The variable whose position was the target.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    to: Option<String>,
+    /// What that held, or what --deg comes to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<PositionData>,
     /// Whether the position reached is the target; null if nobody waited, or if base coordinates do not tell.
     at_target: Option<bool>,
     /// Where it stands; null if nobody waited.
     reached: Option<PositionReport>,
     /// From the acceptance to the end; null if nobody waited.
     elapsed_ms: Option<u64>,
+}
+
+impl MotionReport {
+    /// Says which variable led where.
+    pub(super) fn leads_to(&mut self, name: Option<String>, target: Option<PositionData>) {
+        (self.to, self.target) = (name, target);
+    }
 }
 
 impl Report for MotionReport {

@@ -1,5 +1,7 @@
 //! What is asked before a motion: each axis with its value and unit, from where it stands as far as that can be compared.
 
+use std::borrow::Cow;
+
 use super::arguments::{Speed, Values, base_told, describe};
 use super::going::Goal;
 use crate::command::yerc::position::{axis_names, in_a_line};
@@ -23,7 +25,7 @@ pub(super) struct Question<'a> {
     /// Those of its base, and their unit.
     pub(super) base: (Option<&'a Values>, Unit),
     /// Those of a station.
-    pub(super) station: Option<&'a Values>,
+    pub(super) station: Option<Cow<'a, Values>>,
     /// `in base coordinates, tool 0`; nothing where there is nothing to say.
     pub(super) how: String,
     pub(super) speed: Speed,
@@ -33,27 +35,32 @@ impl Question<'_> {
     /// In a line: where nothing of the robot was read.
     pub(super) fn in_a_line(&self) -> String {
         let base = base_told(self.base.0, self.base.1);
-        let place = describe(self.kind, self.robot.as_deref(), base, self.station);
+        let place = describe(self.kind, self.robot.as_deref(), base, self.station.as_deref());
         let how = if self.how.is_empty() { String::new() } else { format!(" {}", self.how) };
-        format!("{} {} {place}{how} at {}", self.what, self.preposition, self.speed)
+        let place = if place.is_empty() { place } else { format!(" {} {place}", self.preposition) };
+        format!("{}{place}{how} at {}", self.what, self.speed)
     }
 
     /// An axis a line; with its present value where `start` can be compared with the goal.
-    pub(super) fn change(&self, group: Group, start: Option<&Position>, goal: &Goal) -> Change {
+    /// `per_degree` are the pulses of a degree of each axis, as far as they are known.
+    pub(super) fn change(&self, group: Group, start: Option<&Position>, goal: &Goal, per_degree: &[f64]) -> Change {
         let mut change = Change::new(format!("{} at {}", self.what, self.speed));
         match (goal, start) {
             (Goal::Base(target, tool), Some(start)) if start.tool == *tool && start.kind == PositionKind::Base => {
-                change = compared(change, group, start, target);
+                change = compared(change, group, start, target, &[]);
                 let [x, y, z] = [0, 1, 2].map(|axis| apart(start, target, axis));
                 let way = (x * x + y * y + z * z).sqrt() / 1000.0;
                 change = change.note(format!("The target is {way:.3} mm away{}.", self.time(way)));
             }
             (Goal::Pulses(target), Some(start)) if start.kind == PositionKind::Pulse => {
-                change = compared(change, group, start, target);
+                change = compared(change, group, start, target, per_degree);
+                if let Some(farthest) = farthest(group, start, target, per_degree) {
+                    change = change.note(farthest);
+                }
             }
             _ => {
                 let robot = (self.robot.as_deref().unwrap_or_default(), self.kind);
-                let station = (self.station.map_or(&[][..], |axes| &axes.0), PositionKind::Pulse);
+                let station = (self.station.as_ref().map_or(&[][..], |axes| &axes.0), PositionKind::Pulse);
                 for (axes, kind) in [robot, station] {
                     for (at, (name, value)) in axis_names(kind, group).iter().zip(axes).enumerate() {
                         change = change.item(format!("{name}: {} {}", self.preposition, shown(kind, at, *value)));
@@ -79,11 +86,29 @@ impl Question<'_> {
     }
 }
 
-fn compared(change: Change, group: Group, start: &Position, target: &[i32]) -> Change {
+/// Each axis with its old and its new value.
+pub(in crate::command::yerc) fn compared(
+    change: Change,
+    group: Group,
+    start: &Position,
+    target: &[i32],
+    per_degree: &[f64],
+) -> Change {
     let axes = axis_names(start.kind, group).into_iter().zip(start.axes.as_slice().iter().zip(target)).enumerate();
     axes.fold(change, |change, (at, (name, (old, new)))| {
-        change.replaces(name, start.kind.unit(at).show(*old).to_string().as_str(), &shown(start.kind, at, *new))
+        let degrees = per_degree.get(at).map(|per| [old, new].map(|pulses| f64::from(*pulses) / per));
+        let degrees = degrees.map(|[old, new]| format!(" ({old:.3} -> {new:.3} deg)")).unwrap_or_default();
+        let new = format!("{}{degrees}", shown(start.kind, at, *new));
+        change.replaces(name, start.kind.unit(at).show(*old).to_string().as_str(), &new)
     })
+}
+
+/// Which axis turns the most, where that is known in degrees.
+fn farthest(group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Option<String> {
+    let ways = axis_names(start.kind, group).into_iter().zip(per_degree).enumerate();
+    let ways = ways.map(|(at, (name, per))| (name, (apart(start, target, at) / per).abs()));
+    let (name, degrees) = ways.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+    Some(format!("The longest way is that of {name}: {degrees:.3} deg."))
 }
 
 /// A value with its unit.
@@ -100,7 +125,7 @@ fn apart(start: &Position, target: &[i32], axis: usize) -> f64 {
 }
 
 /// Where the robot stands is not where it stood when that was asked.
-pub(super) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
+pub(in crate::command::yerc) fn moved_meanwhile(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    outdated(format!("{group} has moved since the question, to {place}; nothing was ordered"))
+    outdated(format!("{group} has moved since the question, to {place}; nothing was sent"))
 }

@@ -290,13 +290,18 @@ pub fn position_in(json: &Json) -> Result<&Json, &'static str> {
     let inner = |object: &Map<String, Json>, key: &str| object.contains_key(key);
     match json {
         Json::Object(object) if inner(object, "text") || inner(object, "type") => Ok(json),
+        // Where a group stands: in pulses, which are complete whatever tool and frame are.
+        Json::Object(object) if inner(object, "pulse") || inner(object, "base") => {
+            let text = ["pulse", "base"].iter().find_map(|kind| object.get(*kind)?.get("text"));
+            text.ok_or("the file holds no position that was answered")
+        }
         Json::Object(object) if inner(object, "value") => Ok(&object["value"]),
         Json::Object(object) if inner(object, "data") => position_in(&object["data"]),
         Json::Object(object) if inner(object, "variables") => match object["variables"].as_array().map(Vec::as_slice) {
             Some([only]) => position_in(only),
             _ => Err("the file holds several variables; keep the one that is meant"),
         },
-        _ => Err("the file holds no position; `var get P1 --json` shows one"),
+        _ => Err("the file holds no position; `var get P1 --json` and `position --json` show one"),
     }
 }
 

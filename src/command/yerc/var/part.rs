@@ -131,23 +131,7 @@ pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
             }
             WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)
         };
-        // Two positions of which no byte is the same.
-        let one = Position {
-            kind: PositionKind::Pulse,
-            form: Form(0),
-            tool: 0,
-            user: 0,
-            extended: ExtendedForm(0),
-            axes: Axes::full([0; MAX_AXES]),
-        };
-        let other = Position {
-            kind: PositionKind::Base,
-            form: Form(u32::MAX),
-            tool: u32::MAX,
-            user: u32::MAX,
-            extended: ExtendedForm(u32::MAX),
-            axes: Axes::full([-1; MAX_AXES]),
-        };
+        let [one, other] = unlike();
         let named: Vec<String> = words.iter().map(|word| format!("{}={}", word.name(), word.value())).collect();
         let about =
             format!("writes {reference} with {}; words that are not named keep what was read", named.join(", "));
@@ -155,4 +139,17 @@ pub fn plan_writes(link: &mut Link, words: &Words) -> Result<(), Failure> {
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
     }
     Ok(())
+}
+
+/// Two positions of which no byte is the same: to show in a dry run what is known of one.
+pub fn unlike() -> [Position; 2] {
+    let position = |kind, word: u32, axis| Position {
+        kind,
+        form: Form(word),
+        tool: word,
+        user: word,
+        extended: ExtendedForm(word),
+        axes: Axes::full([axis; MAX_AXES]),
+    };
+    [position(PositionKind::Pulse, 0, 0), position(PositionKind::Base, u32::MAX, -1)]
 }

@@ -7,8 +7,21 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use crate::controller::units::{self, Quantity, Unit};
-use crate::controller::yerc::payload::{ExtendedForm, Form, NamedAxis, PositionKind};
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{
+    BasePosition, ExtendedForm, ExternalPosition, Form, NamedAxis, Position, PositionKind,
+};
 use crate::controller::yerc::variables::{Value, VariableKind};
+
+/// The position of a group as the variable that holds such: P of robots, BP of bases, EX of stations.
+pub fn held(group: Group, position: Position) -> Value {
+    let Position { kind, axes, .. } = position;
+    match group {
+        Group::Robot(_) => Value::Position(position),
+        Group::Base(_) => Value::Base(BasePosition { kind, axes }),
+        Group::Station(_) => Value::External(ExternalPosition { kind, axes }),
+    }
+}
 
 /// A position.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -196,6 +209,11 @@ fn key(axis: &NamedAxis) -> String {
     } else {
         format!("{}_{unit}", axis.key)
     }
+}
+
+/// Whether a field is an axis: `x_mm`, `s_pulses`, `axis_8_pulses`.
+pub fn is_axis(name: &str) -> bool {
+    axis_of(name).is_some()
 }
 
 /// `x` of `x_mm`, `8` of `axis_8_pulses`.

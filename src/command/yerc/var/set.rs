@@ -1,13 +1,11 @@
 //! `yerc var set`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::Context as _;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value as Json;
 
 use super::super::orders::usage;
 use super::super::writes::{WriteOrder, before, write_all};
@@ -17,6 +15,7 @@ use super::{in_form, listed};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders;
 use crate::command::frame::orders::Old;
+use crate::command::frame::teach::printed;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
@@ -30,7 +29,6 @@ use crate::controller::yerc::variables::{
     ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes,
 };
 use crate::failure::Failure;
-use crate::files;
 use crate::output::view::{Cell, Table, View};
 
 /// Variables to write.
@@ -38,7 +36,8 @@ use crate::output::view::{Cell, Table, View};
 #[command(
     after_help = "Every value is checked before the first is sent; runs of numbers go in one request. A position \
                         is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with \
-                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` printed. BP takes \
+                        tool=, user=, form=back+lower+noflip, or @FILE with what `var get P1 --json` or \
+                        `position --json` printed (of both coordinates the pulses; @- is stdin). P1=here is `teach P1`. BP takes \
                         base: or pulse:, EX pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change that word and keep \
                         the others (a P is read, changed and written back whole); axis words count steps of the wire \
                         (pulses, or 0.001 mm and 0.0001 degree)."
@@ -274,10 +273,10 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
         }
         Input::File(path) => {
             let wrong = |error: String| {
-                let hint = "the file holds a position as `yerc var get P1 --json` prints it";
+                let hint = "the file holds a position as `yerc var get P1 --json` or `yerc position --json` prints it";
                 Failure::usage(format!("{}: {error}", path.display())).hint(hint)
             };
-            let json: Json = serde_json::from_str(&read(path)?).map_err(|error| wrong(error.to_string()))?;
+            let json = printed(path)?;
             let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
             let reading = Reading { model: link.model, encoding: link.encoding };
             reading.value(reference.kind, position).map_err(|error| {
@@ -287,13 +286,6 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
         }
         Input::Field(_) | Input::Word(_) => Err(wrong("a part is no value".to_owned())),
     }
-}
-
-/// A position takes a kilobyte; this is room for a whole report around it.
-const MOST: u64 = 1 << 20;
-
-fn read(path: &Path) -> Result<String, Failure> {
-    Ok(files::text(path, MOST).with_context(|| path.display().to_string())?)
 }
 
 /// A request of `var set`.

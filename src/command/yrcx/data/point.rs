@@ -1,18 +1,27 @@
 //! `yrcx point` (4.3.1).
 
+use std::path::{Path, PathBuf};
+
 use clap::ArgGroup;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Four, four, mm};
-use crate::command::commands;
+use crate::command::frame::teach::printed;
+use crate::command::yrcx::backup::{Dump, Restore};
+use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
+use crate::command::yrcx::overwrite;
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::several::by_number;
-use crate::command::yrcx::single::{one_row, shown};
+use crate::command::yrcx::single::shown;
+use crate::command::{Command, Context, commands};
+use crate::controller::Risk;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::Cell;
 
 commands! {
@@ -22,6 +31,10 @@ commands! {
         Get(Get),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
+        /// Save points and their comments to a CSV file
+        Dump(Dump),
+        /// Write points and their comments from a CSV file
+        Restore(Restore),
     }
 }
 
@@ -46,7 +59,7 @@ by_number! {
 
 /// A point.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Coordinates {
+pub struct Coordinates {
     /// In the unit that it was defined in; the other one is null.
     #[serde(flatten)]
     position: Position,
@@ -55,10 +68,16 @@ struct Coordinates {
 }
 
 impl Coordinates {
-    fn of(values: &Values) -> Self {
+    /// Of the values of an answer.
+    pub fn of(values: &Values) -> Self {
         let unit = if values.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse };
         let hand = shown(table::Command::PointGet, values, Key::HandSystem).filter(|hand| hand != "none");
         Self { position: Position::of(values, Some(unit)), hand }
+    }
+
+    /// Its axes.
+    pub fn position(&self) -> &Position {
+        &self.position
     }
 
     fn cells(&self) -> [Cell; 6] {
@@ -72,44 +91,87 @@ impl Coordinates {
     }
 }
 
-one_row! {
-    /// Defines a point.
-    #[command(group = ArgGroup::new("coordinates").required(true),
-        after_help = "Give 0 for an axis that the robot has not. `yrcx teach` stores where the robot is.")]
-    Set(self) "yrcx.point.set" -> Stored {
-        /// Point, 0 to 29999
-        #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
-        point: i32,
-        /// Coordinates of axes 1 to 4 in mm, degrees of what turns
-        #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
-        mm: Option<Four>,
-        /// Coordinates of axes 1 to 4 in pulses
-        #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
-        pulse: Option<Four>,
-        /// Hand system of coordinates in mm
-        #[arg(long, value_name = "HAND", value_parser = ["right", "left"], conflicts_with = "pulse")]
-        hand: Option<String>,
+/// Defines a point.
+#[derive(Debug, clap::Args)]
+#[command(group = ArgGroup::new("coordinates").required(true),
+    after_help = "Give 0 for an axis that the robot has not. `yrcx teach 19`, also spelled `yrcx point set 19 here`, stores \
+        where the robot is; `yrcx point set 19 @FILE` what `yrcx position --json` printed, @- what stands on stdin.")]
+pub struct Set {
+    /// Point, 0 to 29999
+    #[arg(value_name = "POINT", value_parser = |text: &str| single(table::Command::PointSet, Key::Point, text))]
+    point: i32,
+    /// Coordinates of axes 1 to 4 in mm, degrees of what turns
+    #[arg(long, value_name = "MM,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+    mm: Option<Four>,
+    /// Coordinates of axes 1 to 4 in pulses
+    #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
+    pulse: Option<Four>,
+    /// Coordinates and hand system as `position --json` printed them into this file; - is stdin
+    #[arg(long, value_name = "FILE", group = "coordinates")]
+    position: Option<PathBuf>,
+    /// Hand system of coordinates in mm
+    #[arg(long, value_name = "HAND", value_parser = ["right", "left"], conflicts_with_all = ["pulse", "position"])]
+    hand: Option<String>,
+}
+
+impl Command for Set {
+    type Family = Yrcx;
+    type Report = Stored;
+    const ID: &'static str = "yrcx.point.set";
+
+    fn risk(&self) -> Risk {
+        table::Command::PointSet.row().risk
     }
-    gives table::Command::PointSet,
-    with draft => {
-        let (unit, four) = self.coordinates();
-        let draft = draft.with(Key::Point, self.point).with(Key::Unit, unit);
-        let draft = four.into_iter().fold(draft, |draft, four| four.put(draft));
-        draft.with_some(Key::HandSystem, self.hand.clone())
-    },
-    done {
-        let (unit, four) = self.coordinates();
-        let numbers = four.map(Four::describe).unwrap_or_default();
+
+    fn confirmation(&self) -> Confirmation {
+        overwrite::confirmation(table::Command::PointSet)
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Stored, Failure> {
+        let Context { link, authority, .. } = context;
+        let Given { unit, four, hand } = self.given()?;
+        let draft = link.draft(table::Command::PointSet)?.with(Key::Point, self.point).with(Key::Unit, unit);
+        let order = four.put(draft).with_some(Key::HandSystem, hand.clone()).build()?;
+        let done = overwrite::give(link, &authority, &order, Command::intent(self)).await?;
         let unit = if unit == "mm" { "mm" } else { "pulses" };
-        let hand = self.hand.as_ref().map(|hand| format!(", {hand}-handed")).unwrap_or_default();
-        format!("defined point {}: {numbers} {unit}{hand}", self.point)
-    };
+        let hand = hand.map(|hand| format!(", {hand}-handed")).unwrap_or_default();
+        let words = format!("defined point {}: {} {unit}{hand}", self.point, four.describe());
+        Ok(Stored::new(words, &done))
+    }
+}
+
+/// Coordinates to define a point by.
+struct Given {
+    unit: &'static str,
+    four: Four,
+    hand: Option<String>,
 }
 
 impl Set {
-    fn coordinates(&self) -> (&'static str, Option<&Four>) {
-        if self.mm.is_some() { ("mm", self.mm.as_ref()) } else { ("pulse", self.pulse.as_ref()) }
+    fn given(&self) -> Result<Given, Failure> {
+        match (&self.mm, &self.pulse, &self.position) {
+            (Some(mm), ..) => Ok(Given { unit: "mm", four: mm.clone(), hand: self.hand.clone() }),
+            (None, Some(pulse), _) => Ok(Given { unit: "pulse", four: pulse.clone(), hand: None }),
+            (None, None, file) => printed_point(file.as_deref().unwrap_or_else(|| Path::new("-"))),
+        }
     }
+}
+
+/// The point in what `position --json` printed, or an entry of `point get --json`.
+fn printed_point(file: &Path) -> Result<Given, Failure> {
+    let json = printed(file)?;
+    let of_unit = |(key, unit): (&str, &'static str)| {
+        let axes: Option<Vec<String>> =
+            json.get(key)?.as_array()?.iter().map(|axis| Some(axis.as_f64()?.to_string())).collect();
+        Some((unit, Four(axes?.try_into().ok()?)))
+    };
+    let found = [("position_mm", "mm"), ("position_pulses", "pulse")].into_iter().find_map(of_unit);
+    let (unit, four) = found.ok_or_else(|| {
+        Failure::usage(format!("{}: neither position_mm nor position_pulses with four numbers", file.display()))
+            .hint("it holds a position as `yrcx position --json` prints it")
+    })?;
+    let hand = json.get("hand").and_then(|hand| hand.as_str()).filter(|hand| unit == "mm" && *hand != "none");
+    Ok(Given { unit, four, hand: hand.map(ToOwned::to_owned) })
 }
 
 #[cfg(test)]

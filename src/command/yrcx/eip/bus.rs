@@ -18,6 +18,8 @@ pub const BUS: Fieldbus = Fieldbus {
     link_alarm: Alarm::new(12, 551),
     link_type: LINKTYPE_RAW,
     layers: check::LAYERS,
+    has_room: true,
+    addresses: None,
     open: |at, purpose| connect::open(at, purpose).boxed_local(),
     board: |at| async move { boxed(Board::open(&at).await) }.boxed_local(),
     explain: |_| None,

@@ -6,6 +6,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::frame::plot::{Past, Plot};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::position::{Position, Unit};
 use crate::command::yrcx::single::shown;
@@ -34,6 +35,11 @@ pub struct Where {
     within: Option<Duration>,
     #[arg(from_global)]
     until: Option<String>,
+    /// Show a small chart of each axis over the rounds of --watch
+    #[arg(long)]
+    plot: bool,
+    #[arg(skip)]
+    past: Past,
 }
 
 /// The same below `yrcx info`.
@@ -79,8 +85,18 @@ impl Command for Where {
         };
         let order = link.draft(command)?.with(Key::Continuous, self.continuous).build()?;
         let done = if self.continuous { link.next_output(&order).await? } else { link.ask(&order).await? };
+        let position = Position::of(&done.values, Some(self.report));
+        let values = done.values.axes().into_iter().flatten().enumerate().map(|(at, value)| {
+            let (decimals, value) = match self.report {
+                Unit::Mm => (3, f64::from(value) / 1000.0),
+                Unit::Pulse => (0, f64::from(value)),
+            };
+            (format!("axis {}", at + 1), self.report.symbol(), decimals, value)
+        });
+        let plot = self.plot.then(|| self.past.add(values));
         Ok(Place {
-            position: Position::of(&done.values, Some(self.report)),
+            position,
+            plot,
             hand: shown(table::Command::PositionMm, &done.values, Key::HandSystem),
             elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)),
         })
@@ -100,6 +116,8 @@ pub struct Place {
     hand: Option<String>,
     /// Since the output began; null unless it is continuous.
     elapsed_ms: Option<u64>,
+    #[serde(skip)]
+    plot: Option<Plot>,
 }
 
 impl Place {
@@ -118,6 +136,9 @@ impl Place {
 
 impl Report for Place {
     fn view(&self) -> View {
+        if let Some(plot) = &self.plot {
+            return View { sections: vec![plot.section()] };
+        }
         if let Some(elapsed_ms) = self.elapsed_ms {
             return View::table(self.line(elapsed_ms));
         }

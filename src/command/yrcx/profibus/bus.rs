@@ -18,6 +18,8 @@ pub const BUS: Fieldbus = Fieldbus {
     link_alarm: Alarm::new(12, 561),
     link_type: LINKTYPE_PROFIBUS_DL,
     layers: check::LAYERS,
+    has_room: false,
+    addresses: None,
     open: |at, purpose| connect::open(at, purpose).boxed_local(),
     board: |at| async move { boxed(Board::new(&at)) }.boxed_local(),
     explain: |_| None,

@@ -33,7 +33,7 @@ pub struct Board {
 impl Board {
     /// The station of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
-        Ok(Self { profinet: connect::options(at)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+        Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
     /// What its URL says.

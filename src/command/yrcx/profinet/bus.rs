@@ -19,6 +19,8 @@ pub const BUS: Fieldbus = Fieldbus {
     link_alarm: Alarm::new(12, 571),
     link_type: LINKTYPE_ETHERNET,
     layers: check::LAYERS,
+    has_room: true,
+    addresses: Some(connect::addresses),
     open: |at, purpose| connect::open(at, purpose).boxed_local(),
     board: |at| async move { boxed(Board::new(&at)) }.boxed_local(),
     explain,

@@ -6,22 +6,26 @@ use std::time::Duration;
 use crate::command::yrcx::fieldbus::{At, Purpose};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
+use crate::failure::plain;
 use crate::files;
-use crate::settings::target::profinet::Profinet;
+use crate::settings::target::profinet::{Profinet, address};
+use crate::settings::target::{Address, Bus};
 use crate::transport::image::tap::Tap;
 use crate::transport::image::{Cause, ImageLink, LinkError};
+use crate::transport::profinet::commission;
 use crate::transport::profinet::error::ProfinetError;
 use crate::transport::profinet::gsdml::{Gsdml, Head, MOST_BYTES};
+use crate::transport::profinet::interface::Interface;
 use crate::transport::profinet::layout::{Direction, Layout};
 use crate::transport::profinet::link::Link;
 use crate::transport::profinet::network;
-use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup};
+use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup, Station};
 use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::record::Parameter;
 
 /// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let profinet = options(&at)?;
+    let profinet = options(at.bus)?;
     if purpose == Purpose::Look {
         // A connection that only looks and ends is one whose loss stops the controller.
         let cause = Cause::new("a device of PROFINET shows its signals only to the controller it is connected to");
@@ -44,9 +48,18 @@ pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -
     network::Network::shared(&profinet.interface)?.open(settings, tap).await?.close().await
 }
 
+/// The addresses of a station, which is asked: its name and its card.
+pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
+    let profinet = options(bus)?;
+    let interface = Interface::find(&profinet.interface)?;
+    let found = commission::find(&interface, &profinet.station)?;
+    let names = [Station::Name(found.station.name), Station::Mac(found.mac)];
+    Ok(names.iter().map(|name| address(&profinet.interface, name)).collect())
+}
+
 /// What the URL says.
-pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profinet, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFINET", at.bus))))
+pub(super) fn options(bus: &Bus) -> Result<&Profinet, LinkError> {
+    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is not a URL of PROFINET"))))
 }
 
 /// The settings of the link. Whoever only looks now and then needs no images in shorter intervals than `calm`.
@@ -147,7 +160,9 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 /// Reads a file of the maker.
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MOST_BYTES).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
+    let bytes = files::read(path, MOST_BYTES).map_err(|error| {
+        LinkError::Local(wrong(plain(&error)).advice("name the maker's file: gsdml= of the URL, or FILE"))
+    })?;
     Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }
 

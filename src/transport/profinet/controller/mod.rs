@@ -168,7 +168,8 @@ impl Controller {
         view
     }
 
-    fn statistics(&self) -> Statistics {
+    /// What was counted until now.
+    pub fn statistics(&self) -> Statistics {
         let mut all = self.before;
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             all.sent += io.producer.sent;

@@ -188,6 +188,8 @@ impl Controller {
         }
         match &mut self.phase {
             Phase::Resolve(search) if dcp.xid == search.xid => match &search.found {
+                // There is no other one with its card.
+                None if matches!(self.settings.station, Station::Mac(_)) => self.found(now, Found { mac, station }),
                 None => {
                     search.found = Some(Found { mac, station });
                     search.until = now + TWIN;

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use crate::command::frame::local::Target;
-use crate::controller::toyo::findings::Finding;
+use super::local::Target;
+use crate::controller::findings::Finding;
 use crate::failure::Failure;
 use crate::files;
 
@@ -13,8 +13,7 @@ const MOST: u64 = 16 << 20;
 
 /// The bytes of a file, or of stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    let read = if path == Path::new("-") { files::stdin(MOST) } else { files::read(path, MOST) };
-    read.map_err(|error| match error.kind() {
+    files::input(path, MOST).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             Failure::usage(format!("{} is larger than all that a controller can hold", shown(path)))
                 .hint("check that it is the file that was meant")
@@ -32,10 +31,15 @@ pub fn shown(path: &Path) -> String {
 pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
     let Some(file) = file else { return Ok(None) };
     if several {
-        return Err(Failure::usage(format!("{} is for one robot", file.display()))
-            .hint("run the command once for each robot, with a file each"));
+        return Err(of_one_robot(file));
     }
     Target::new(file.to_owned(), force).map(Some)
+}
+
+/// A file cannot take what several robots have.
+pub fn of_one_robot(file: &Path) -> Failure {
+    Failure::usage(format!("{} is for one robot", file.display()))
+        .hint("run the command once for each robot, with a file each")
 }
 
 /// Writes a file, whole or not at all, and says where.

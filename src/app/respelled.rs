@@ -1,0 +1,76 @@
+//! Teaching has one manner and several spellings: `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`,
+//! `toyo point teach 5` and `yrcx point set 19 here` are `teach`; `yrcx point set 19 @FILE` is `--position FILE`.
+
+use std::ffi::OsString;
+
+use clap::Command;
+
+use super::typed::Typed;
+
+/// What stands for the position of the robot.
+const HERE: &str = "here";
+
+/// The line in the words of its command, if it is spelled in another way.
+pub fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
+    let typed = Typed::new(args, whole);
+    let (family, path) = typed.path.split_first()?;
+    let replaced = match (path, &typed.rest[..]) {
+        (["position" | "point"], ["teach", ..]) => [Some("teach".to_owned())].into(),
+        (["var" | "point", "set"], [one]) => vec![Some(one.strip_suffix(&format!("={HERE}"))?.to_owned())],
+        (["point", "set"], [point, HERE]) => vec![Some((*point).to_owned()), None],
+        (["point", "set"], [point, file]) if *family == "yrcx" => {
+            vec![Some((*point).to_owned()), Some(format!("--position={}", file.strip_prefix('@')?))]
+        }
+        _ => return None,
+    };
+    let is_file = replaced.iter().flatten().any(|word| word.starts_with("--position"));
+    let mut line: Vec<Option<OsString>> = args.iter().cloned().map(Some).collect();
+    for (at, word) in typed.at.iter().zip(replaced) {
+        *line.get_mut(*at)? = word.map(OsString::from);
+    }
+    // `position teach` and `point teach` lose their noun, `var set` and `point set` become the verb.
+    let path: &[Option<&str>] = if is_file {
+        &[]
+    } else if typed.path.len() == 2 {
+        &[None]
+    } else {
+        &[Some("teach"), None]
+    };
+    for (at, word) in typed.said_at.iter().skip(1).zip(path) {
+        *line.get_mut(*at)? = word.map(OsString::from);
+    }
+    Some(line.into_iter().flatten().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    #[test]
+    fn every_spelling_is_the_command() {
+        let whole = Cli::command();
+        let line = |text: &str| {
+            let args: Vec<OsString> = text.split(' ').map(Into::into).collect();
+            let line = taught(&args, &whole)?;
+            Some(line.join(std::ffi::OsStr::new(" ")).into_string().unwrap())
+        };
+        for (spelled, own) in [
+            ("armctl yerc position teach P5", "armctl yerc teach P5"),
+            ("armctl -r position yerc position --json teach P5 --yes", "armctl -r position yerc --json teach P5 --yes"),
+            ("armctl yerc var set P5=here", "armctl yerc teach P5"),
+            ("armctl toyo point set 5 here --task 2", "armctl toyo teach 5 --task 2"),
+            ("armctl toyo point set 5=here", "armctl toyo teach 5"),
+            ("armctl toyo point teach 5", "armctl toyo teach 5"),
+            ("armctl yrcx point set 19 here", "armctl yrcx teach 19"),
+            ("armctl yrcx point set 19 @-", "armctl yrcx point set 19 --position=-"),
+        ] {
+            assert_eq!(line(spelled).as_deref(), Some(own), "{spelled}");
+        }
+        for other in ["armctl yerc position", "armctl yerc var set P5=here B0=1", "armctl toyo point set 5 @here"] {
+            assert_eq!(line(other), None, "{other}");
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! `yerc job start`: the selected job, or a job by its name, once or several times, and waiting for its end.
+
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::Instant;
+
+use super::{Select, without_suffix};
+use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
+use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::yerc::chosen::Chosen;
+use crate::command::yerc::complete;
+use crate::command::yerc::link::{Link, Yerc};
+use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
+use crate::command::yerc::numbers::within;
+use crate::command::yerc::orders::usage;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
+use crate::controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation, outdated};
+use crate::output::Screen;
+use crate::output::view::{Cell, Section, Tone, View};
+use crate::settings::duration;
+
+/// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "One question names the job; it is selected and started after the yes. --wait and --repeat look at the \
+    status until the job has ended: END, or what stopped it. --repeat starts it again only after an end that was seen, with \
+    the same job at the same line; whatever else happens ends it, and an answer that is lost is never followed by a start."
+)]
+pub struct Start {
+    /// The job, without .JBI; the selected one unless given
+    #[arg(add = complete::JOB)]
+    name: Option<String>,
+    /// Line to start at
+    #[arg(long, value_name = "N", requires = "name", conflicts_with = "repeat", value_parser = within::<u32>(0, 9999))]
+    line: Option<u32>,
+    /// Wait until the job has ended, at most TIME; with --repeat each run
+    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
+    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
+    wait: Option<Option<Duration>>,
+    #[command(flatten)]
+    repeat: Repeat,
+}
+
+impl Command for Start {
+    type Family = Yerc;
+    type Report = Started;
+    const ID: &'static str = "yerc.job.start";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    fn risk(&self) -> Risk {
+        StartJob.risk()
+    }
+
+    fn intent(&self) -> String {
+        let times = self.repeat.in_words();
+        match &self.name {
+            Some(name) => format!("select and start job {}{times}", without_suffix(name)),
+            None => format!("start the selected job{times}"),
+        }
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
+        let Context { link, screen, authority, .. } = context;
+        let named = self.name.as_deref().map(|name| self.selection(link, without_suffix(name))).transpose()?;
+        if self.repeat.repeat.is_some() {
+            check_cycle(link).await?;
+        }
+        let mut chosen = Chosen::ask(link).await?;
+        let is_asked = authority.asks();
+        authority.confirm(&self.change(&chosen, link)).await?;
+        if is_asked {
+            chosen.check_again(link).await?;
+        }
+        if let Some((name, select)) = named {
+            link.is_for("selects it").ask(&select).await?;
+            if let Some(now) = Chosen::ask(link.is_for("whether it is selected")).await.known()?
+                && !link.is_dry()
+            {
+                check_selected(link, &name, &chosen, &now)?;
+                chosen = now;
+            }
+        }
+        let job = chosen.name(link.encoding);
+        let limit = self.wait.or(self.repeat.repeat.map(|_| None));
+        let mut times_ms = Vec::new();
+        let mut line = None;
+        for run in 1..=self.repeat.count() {
+            // What ended is started again only if it stands as it did before.
+            if run > 1 {
+                chosen.check_again(link).await.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
+            }
+            let started = link.is_for("starts it").ask(&StartJob).await;
+            started.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
+            let Some(limit) = limit else {
+                return Ok(Started { accepted: true, job, ..Started::default() });
+            };
+            if link.is_dry() {
+                return Err(self.plan(link)?);
+            }
+            let what = self.repeat.repeat.map_or("the job runs".to_owned(), |count| format!("run {run} of {count}"));
+            let ended = wait(link, screen, limit, &what).await;
+            let (elapsed_ms, at) = ended.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
+            times_ms.push(elapsed_ms);
+            line = at;
+        }
+        let cycle = if self.repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
+        let elapsed_ms = times_ms.last().copied();
+        let with_stats = self.repeat.stats;
+        Ok(Started { accepted: true, job, ended: Some(true), line, elapsed_ms, cycle, with_stats })
+    }
+}
+
+impl Start {
+    fn selection(&self, link: &Link, name: &str) -> Result<(Vec<u8>, SelectJob), Failure> {
+        let select = Select { name: name.to_owned(), line: self.line.unwrap_or(0), task: None };
+        let query = select.query(name, link.encoding, link.model)?;
+        Ok((link.encode("the job name", name)?, query))
+    }
+
+    /// What the question says.
+    fn change(&self, chosen: &Chosen, link: &Link) -> Change {
+        let times = self.repeat.in_words();
+        let Some(name) = &self.name else { return chosen.change(link.encoding, &times) };
+        let from = self.line.filter(|line| *line > 0).map(|line| format!(" from line {line} on")).unwrap_or_default();
+        let change = Change::new(format!("select and start job {}{from}{times}", without_suffix(name)));
+        chosen.noted(change, link.encoding)
+    }
+
+    /// Notes in a dry run what follows a start.
+    fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
+        link.plan(&ReadStatus.request(), "again and again until the job has ended");
+        let job = ReadJob::new(link.model, 0).map_err(usage)?;
+        link.plan(&job.request(), "at which line it ended");
+        plan_alarm(link)?;
+        if let Some(count) = self.repeat.repeat {
+            link.then(&format!(
+                "after each end that was seen the job is looked at and started again, {count} starts in all"
+            ));
+        }
+        Ok(unknown())
+    }
+}
+
+/// Refuses to repeat what does not end, or ends after a line.
+async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
+    let Some(status) = link.is_for("whether the cycle ends by itself").ask(&ReadStatus).await.known()? else {
+        return Ok(());
+    };
+    let why = if status.has(StatusBit::Continuous) {
+        "the cycle is continuous: the job does not end by itself"
+    } else if status.has(StatusBit::Step) {
+        "the cycle is step: each start runs a line"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(Kind::ConditionNotMet, format!("{why}; nothing was started"))
+        .hint("`yerc cycle once` has a start run the job once"))
+}
+
+/// Refuses to start another job than the one that was asked about.
+fn check_selected(link: &Link, name: &[u8], before: &Chosen, now: &Chosen) -> Result<(), Failure> {
+    let shown = |chosen: &Chosen| chosen.name(link.encoding).unwrap_or_else(|| "no job that could be read".to_owned());
+    if !now.is(name) {
+        return Err(outdated(format!(
+            "{} is selected now, not {}; nothing was started",
+            shown(now),
+            link.encoding.decode(name)
+        )));
+    }
+    match (before.speed_override(), now.speed_override()) {
+        (Some(before), Some(now)) if before != now => {
+            Err(outdated("the speed override changed since the question; nothing was started"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Waits for the end of what was started: the time it took and the line it ended at.
+async fn wait(
+    link: &mut Link,
+    screen: &Screen,
+    limit: Option<Duration>,
+    what: &str,
+) -> Result<(u64, Option<u32>), Failure> {
+    let progress = screen.spinner(what);
+    let began = Instant::now();
+    let mut watch = Watch::new(limit);
+    loop {
+        let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
+        match watch.look(began.elapsed(), status) {
+            Look::Running => {}
+            Look::Ended => break,
+            Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
+            Look::NotSeen => return Err(not_seen()),
+            Look::Late(limit) => {
+                let message = format!("the job still runs after {}", duration::display(limit));
+                return Err(Failure::new(Kind::ConditionNotMet, message)
+                    .hint("it goes on; `yerc status` and `yerc job show` tell how far it is"));
+            }
+        }
+        if let Some(line) = line(link, screen.can_redraw()).await? {
+            progress.say(&format!("{what}: {line}"));
+        }
+        tokio::time::sleep(LOOK_EVERY).await;
+    }
+    let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
+    // That it has ended is known whatever the controller says of its line.
+    let at = link.ask(&ReadJob::new(link.model, 0).map_err(usage)?).await;
+    Ok((elapsed_ms, at.ok().map(|job| job.line)))
+}
+
+/// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
+async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
+    if !is_seen {
+        return Ok(None);
+    }
+    let question = ReadJob::new(link.model, 0).map_err(usage)?;
+    let answer = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
+    let encoding = link.encoding;
+    Ok(answer.ok().map(|job| format!("{} line {}", encoding.decode(job.name.as_bytes()), job.line)))
+}
+
+fn not_seen() -> Failure {
+    let message = format!(
+        "the start was accepted, but no running job was seen within {}: it may have ended at once, or not begun",
+        duration::display(START_WITHIN)
+    );
+    Failure::new(Kind::ConditionNotMet, message).hint("`yerc job show` tells the line, `yerc status` what holds it")
+}
+
+/// Watches a job from its start to its end.
+#[derive(Debug)]
+pub(super) struct Watch {
+    limit: Option<Duration>,
+    seen: bool,
+}
+
+/// What a look at the status says about the job.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Look {
+    /// Look again.
+    Running,
+    /// It has ended.
+    Ended,
+    /// Something stopped it.
+    Stopped(StandstillCause),
+    /// It was not seen running in time.
+    NotSeen,
+    /// It runs for longer than wanted.
+    Late(Duration),
+}
+
+impl Watch {
+    pub(super) fn new(limit: Option<Duration>) -> Self {
+        Self { limit, seen: false }
+    }
+
+    pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
+        self.seen |= status.running();
+        match StandstillCause::of(status) {
+            // An error is a message on the pendant; a job may run on under it.
+            Some(StandstillCause::Error) if status.running() => {}
+            Some(trouble) => return Look::Stopped(trouble),
+            None if self.seen && !status.running() => return Look::Ended,
+            None => {}
+        }
+        match self.limit {
+            _ if !self.seen && elapsed >= START_WITHIN => Look::NotSeen,
+            Some(limit) if elapsed >= limit => Look::Late(limit),
+            _ => Look::Running,
+        }
+    }
+}
+
+/// Result of a start.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct Started {
+    /// The controller took the order.
+    accepted: bool,
+    /// Its name, as the controller told it before; null if it did not.
+    job: Option<String>,
+    /// Whether it has ended; null if nobody waited.
+    ended: Option<bool>,
+    /// The line it ended at, 0 being its head, to which END leads; null if nobody waited, or if it was not told.
+    line: Option<u32>,
+    /// From the acceptance to the end, of the last run if there were several; null if nobody waited.
+    elapsed_ms: Option<u64>,
+    /// What the runs took; null unless there were several.
+    cycle: Option<CycleTimes>,
+    #[serde(skip)]
+    with_stats: bool,
+}
+
+impl Report for Started {
+    fn view(&self) -> View {
+        match self.elapsed_ms {
+            None => View::fields([
+                ("job", Cell::maybe(self.job.as_deref())),
+                ("state", Cell::from("started").tone(Tone::Good)),
+            ]),
+            Some(ms) => {
+                let mut fields = vec![
+                    ("job", Cell::maybe(self.job.as_deref())),
+                    ("state", Cell::from("ended").tone(Tone::Good)),
+                    ("line", Cell::maybe(self.line)),
+                    ("elapsed (ms)", ms.into()),
+                ];
+                fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
+                View { sections: vec![Section::Fields(fields)] }
+            }
+        }
+    }
+}

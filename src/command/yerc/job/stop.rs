@@ -1,0 +1,35 @@
+//! `yerc job stop`.
+
+use clap::Args;
+
+use crate::command::frame::orders::{Done, New, Old};
+use crate::command::yerc::link::Yerc;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yerc::query::{self, Query as _};
+use crate::failure::Failure;
+
+/// Stops the running job, and all that moves: HOLD on, as `yerc hold on` (FS and DX 3.3.20).
+#[derive(Debug, Args)]
+pub struct Stop {}
+
+impl Command for Stop {
+    type Family = Yerc;
+    type Report = Done;
+    const ID: &'static str = "yerc.job.stop";
+
+    fn risk(&self) -> Risk {
+        query::Hold(true).risk()
+    }
+
+    fn is_stop(&self) -> bool {
+        true
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+        context.link.ask(&query::Hold(true)).await?;
+        let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
+        // A stop waits for nothing, as `hold on` does.
+        Ok(New::new("held", true, words).replaces(Old::UNREAD))
+    }
+}

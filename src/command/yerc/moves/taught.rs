@@ -1,0 +1,284 @@
+//! Moves to what a position variable holds (`--to P2`), and to degrees of the axes (`--deg`).
+
+use super::arguments::{Destination, Speed, Values};
+use super::going::{Goal, Going, MotionReport, plan_looks};
+use super::question::Question;
+use super::{Target, plain, unnamed_base};
+use crate::command::Context;
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::yerc::each::Denied;
+use crate::command::yerc::link::{Link, Yerc};
+use crate::command::yerc::orders::usage;
+use crate::command::yerc::position;
+use crate::command::yerc::var::{PositionData, is_undefined, unlike};
+use crate::controller::units;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{
+    Axes, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind, PulseMove,
+};
+use crate::controller::yerc::query::{
+    Coordinates, MoveCartesian, MoveKind, MovePulse, Query, ReadPosition, ReadVariable,
+};
+use crate::controller::yerc::variables::{Reference, Value, VariableKind};
+use crate::failure::{Failure, Kind};
+
+/// What a move to a variable or to degrees is about.
+pub(super) struct Motion<'a> {
+    pub(super) target: &'a Target,
+    pub(super) kind: MoveKind,
+    /// `in a straight line`.
+    pub(super) way: &'static str,
+    pub(super) speed: Speed,
+}
+
+impl Motion<'_> {
+    /// Reads what it leads to, has it confirmed and moves.
+    pub(super) async fn run(
+        &self,
+        context: Context<'_, Yerc>,
+        destination: &Destination,
+    ) -> Result<MotionReport, Failure> {
+        let link = &mut *context.link;
+        let (name, value) = match destination {
+            Destination::Degrees(degrees) => {
+                self.target.refuse_besides("--deg", self.target.frame.user.is_some())?;
+                (None, Value::Position(self.turned(link, degrees)?))
+            }
+            Destination::Variable(variable) => {
+                let has_frame = self.target.frame.tool.is_some() || self.target.frame.user.is_some();
+                self.target.refuse_besides(&format!("--to {variable}"), has_frame)?;
+                let group = self.target.mover.group;
+                suits(*variable, group)?;
+                match read(link, *variable).await.known()? {
+                    Some(value) => (Some(*variable), value),
+                    None => return Err(self.plan(link, *variable)?),
+                }
+            }
+        };
+        let data = PositionData::of(&value);
+        let mut report = match value {
+            Value::Position(position) if position.kind.is_cartesian() => {
+                self.cartesian(context.link, position, name)?.run(context, &self.question(name, &value)).await?
+            }
+            _ => self.pulses(context.link, &value, name)?.run(context, &self.question(name, &value)).await?,
+        };
+        report.leads_to(name.map(|name| name.to_string()), data);
+        Ok(report)
+    }
+
+    fn question(&self, name: Option<Reference>, value: &Value) -> Question<'static> {
+        let (kind, how, robot, station) = match value {
+            Value::Position(position) => {
+                let Position { kind, tool, user, form, extended, .. } = *position;
+                let how = match kind {
+                    PositionKind::Pulse => format!("in pulses, tool {tool},"),
+                    PositionKind::User => format!("in user coordinates {user}, tool {tool},"),
+                    kind => format!("in {} coordinates, tool {tool},", word(kind)),
+                };
+                let forms = position::form_words(form);
+                let more = position::extended_words(extended);
+                let plus = if more.is_empty() { "" } else { "+" };
+                let how = if kind == PositionKind::Pulse { how } else { format!("{how} form {forms}{plus}{more}") };
+                (kind, how, Some(position.axes.padded()[..position.shown_axes()].to_vec()), None)
+            }
+            Value::External(ExternalPosition { axes, .. }) => {
+                (PositionKind::Pulse, "in pulses".to_owned(), None, Some(Values(axes.as_slice().to_vec())))
+            }
+            _ => (PositionKind::Pulse, String::new(), None, None),
+        };
+        let to = name.map(|name| format!(" to {name}")).unwrap_or_default();
+        Question {
+            what: format!("move {} {}{to}", self.target.mover.group, self.way),
+            preposition: "to",
+            kind,
+            how,
+            robot,
+            base: (None, units::PULSE),
+            station: station.map(std::borrow::Cow::Owned),
+            speed: self.speed,
+        }
+    }
+
+    fn pulses(&self, link: &Link, value: &Value, name: Option<Reference>) -> Result<Going<MovePulse>, Failure> {
+        let group = self.target.mover.group;
+        let (robot, station) = self.target.mover.words();
+        let mut order = PulseMove {
+            robot,
+            station,
+            class: self.speed.class,
+            speed: self.speed.word,
+            axes: [0; 8],
+            tool: 0,
+            base: [0; 3],
+            station_axes: [0; 6],
+        };
+        let (axes, unnamed) = match value {
+            Value::Position(position) if position.kind == PositionKind::Pulse => {
+                (order.axes, order.tool) = (position.axes.padded(), position.tool);
+                (position.axes, unnamed_base(group, None))
+            }
+            Value::External(external) if external.kind == PositionKind::Pulse => {
+                let [first @ .., seventh, eighth] = external.axes.padded();
+                if (seventh, eighth) != (0, 0) {
+                    return Err(not_a_target(name, "it has more axes than a move of a station has words for"));
+                }
+                order.station_axes = first;
+                (external.axes, Vec::new())
+            }
+            _ => return Err(not_a_target(name, "it is neither pulses nor coordinates that the manual defines")),
+        };
+        let order = MovePulse::new(link.model, self.kind, order).map_err(usage)?;
+        let goal = Goal::Pulses(axes.as_slice().to_vec());
+        Ok(Going { order, group, goal, unnamed, no_wait: self.target.mover.no_wait })
+    }
+
+    fn cartesian(
+        &self,
+        link: &Link,
+        position: Position,
+        name: Option<Reference>,
+    ) -> Result<Going<MoveCartesian>, Failure> {
+        let group = self.target.mover.group;
+        let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
+        if (re, eighth) != (0, 0) {
+            return Err(not_a_target(name, "a move to coordinates has no word for the seventh axis that it names")
+                .hint("teach it in pulses, which a move takes whole"));
+        }
+        let target = [x, y, z, rx, ry, rz];
+        let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
+        order.coordinate = position.kind;
+        (order.target, order.form, order.extended) = (target, position.form, position.extended);
+        // The user coordinate number is of use with user coordinates alone; a move elsewhere takes 0.
+        (order.tool, order.user) = (position.tool, if position.kind == PositionKind::User { position.user } else { 0 });
+        let order = MoveCartesian::new(link.model, self.kind, order).map_err(|error| {
+            let why = error.to_string();
+            not_a_target(name, &format!("a move cannot say it: {why}"))
+                .hint("teach it in pulses, which a move takes whole")
+        })?;
+        let goal = match position.kind {
+            PositionKind::Base => Goal::Base(target, position.tool),
+            _ => Goal::Unknown(Coordinates::Base),
+        };
+        Ok(Going { order, group, goal, unnamed: unnamed_base(group, None), no_wait: self.target.mover.no_wait })
+    }
+
+    /// Degrees in pulses, by what the inventory says of the robot.
+    fn turned(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
+        let group = self.target.mover.group;
+        let per_degree = link.pulses_per_degree(group);
+        if per_degree.len() < degrees.len() {
+            let known = per_degree.len();
+            let message =
+                format!("pulses_per_degree is known of {known} axes of {group}, and --deg names {}", degrees.len());
+            return Err(Failure::usage(message).hint(
+                "its entry in robots.toml says it of R1: pulses_per_degree = [S, L, U, R, B, T]; the pendant shows both",
+            ));
+        }
+        let pulses = degrees.iter().zip(per_degree).map(|(degrees, per_degree)| whole(degrees * per_degree));
+        let pulses: Vec<i32> =
+            pulses.collect::<Option<_>>().ok_or_else(|| Failure::usage("--deg: too many degrees"))?;
+        let mut words = [0; MAX_AXES];
+        words.iter_mut().zip(&pulses).for_each(|(word, pulses)| *word = *pulses);
+        Ok(Position {
+            kind: PositionKind::Pulse,
+            form: Form(0),
+            tool: self.target.frame.tool.unwrap_or(0),
+            user: 0,
+            extended: ExtendedForm(0),
+            axes: Axes::new(&pulses).unwrap_or_else(|| Axes::full(words)),
+        })
+    }
+
+    /// Notes in a dry run what follows: nobody knows which of the two moves it is.
+    fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
+        let group = self.target.mover.group;
+        if let Group::Robot(number) = group {
+            let base = ReadPosition::new(link.model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
+            link.plan(&base.request(), "where axes stand that were not named");
+        }
+        let reason = Reason::about("where it stands").depending_on("whether the variable holds pulses");
+        let pulse = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
+        let base = ReadPosition::new(link.model, group, Coordinates::Base).unwrap_or(pulse);
+        link.plan_depending(&pulse.request(), &base.request(), reason);
+        link.plan_fit(group, Coordinates::Pulse);
+        let holds = format!("orders the motion, if {variable} holds");
+        let [one, other] = unlike();
+        let (robot, station) = self.target.mover.words();
+        let pulses = |word: i32| PulseMove {
+            robot,
+            station,
+            class: self.speed.class,
+            speed: self.speed.word,
+            axes: if robot == 0 { [0; 8] } else { [word; 8] },
+            tool: if robot == 0 { 0 } else { word.unsigned_abs() },
+            base: [0; 3],
+            station_axes: if robot == 0 { [word; 6] } else { [0; 6] },
+        };
+        let order = |word| MovePulse::new(link.model, self.kind, pulses(word)).map_err(usage);
+        let (first, second) = (order(0)?, order(-1)?);
+        let about = format!("{holds} pulses");
+        link.plan_depending(&first.request(), &second.request(), Reason::about(&about).depending_on("what it holds"));
+        if robot != 0 {
+            let coordinates = |position: Position, kind, flag: u32| {
+                let mut order = plain(link, &self.target.mover, self.speed, &self.target.frame);
+                (order.coordinate, order.target) = (kind, [position.axes.padded()[0]; 6]);
+                (order.form, order.extended) = (Form(flag), ExtendedForm(flag));
+                (order.tool, order.user) = (flag, flag);
+                MoveCartesian::new(link.model, self.kind, order).map_err(usage)
+            };
+            let first = coordinates(one, PositionKind::Base, 0)?;
+            let second = coordinates(other, PositionKind::User, 1)?;
+            let about = format!("{holds} coordinates");
+            let reason = Reason::about(&about).depending_on("what it holds");
+            link.plan_depending(&first.request(), &second.request(), reason);
+        }
+        if !self.target.mover.no_wait {
+            plan_looks(link, group, Coordinates::Pulse)?;
+        }
+        Ok(unknown())
+    }
+}
+
+/// What a variable holds, which must be something.
+async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
+    let question = ReadVariable::new(variable.kind, variable.number);
+    match link.is_for("where it leads to").try_ask(&question).await? {
+        Ok(value) => Ok(value),
+        Err(refusal) if is_undefined(&Denied::Refused(refusal)) => {
+            let message = format!("{variable} was never taught: it leads nowhere; nothing was sent that moves");
+            Err(Failure { message, ..Failure::from(refusal) }
+                .hint(format!("`yerc teach {variable}` stores where the robot stands")))
+        }
+        Err(refusal) => Err(refusal.into()),
+    }
+}
+
+/// Refuses a variable of other groups.
+fn suits(variable: Reference, group: Group) -> Result<(), Failure> {
+    let is_right = match group {
+        Group::Robot(_) => variable.kind == VariableKind::P,
+        Group::Station(_) => variable.kind == VariableKind::Ex,
+        Group::Base(_) => false,
+    };
+    if is_right {
+        return Ok(());
+    }
+    let message = format!("{variable} holds no position that {group} can move to");
+    Err(Failure::usage(message).hint("a robot moves to P, a station to EX (--group S1); a base moves with its robot"))
+}
+
+fn not_a_target(name: Option<Reference>, why: &str) -> Failure {
+    let name = name.map_or_else(|| "this".to_owned(), |name| name.to_string());
+    Failure::new(Kind::Usage, format!("{name} is no target: {why}; nothing was sent that moves"))
+}
+
+/// What coordinates are called.
+fn word(kind: PositionKind) -> &'static str {
+    PositionKind::ALL.iter().find(|row| row.0 == kind).map_or("other", |row| row.2)
+}
+
+/// The nearest whole number of pulses.
+fn whole(pulses: f64) -> Option<i32> {
+    let text = format!("{pulses:.0}");
+    text.parse().ok()
+}

@@ -1,0 +1,208 @@
+//! `yerc teach`: stores where a group stands in a position variable. `position teach P5` and `var set P5=here` are this.
+
+use clap::{Args, ValueEnum};
+
+use super::complete;
+use super::link::{Link, Yerc};
+use super::moves::{compared, moved_meanwhile, stands};
+use super::orders::usage;
+use super::position::{self, PositionReport};
+use super::var::{PositionData, held, is_undefined, unlike};
+use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::teach::{Taught, mismatch, not_read_back};
+use crate::command::yerc::each::Denied;
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yerc::group::Group;
+use crate::controller::yerc::payload::{ExtendedForm, Form, Position, PositionKind};
+use crate::controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
+use crate::controller::yerc::variables::{Reference, Value, VariableKind};
+use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
+
+/// Stores where a group stands in a position variable, and reads it back (FS and DX 3.3.6, 3.3.16 to 3.3.18).
+#[derive(Debug, Args)]
+#[command(
+    after_help = "What is stored is what `yerc position` tells at that moment, with servo power on or off. A robot is \
+    taught in P, its base in BP, a station in EX. Without --coordinates the variable keeps its kind; one that is not \
+    defined gets pulses. `yerc position teach P5` and `yerc var set P5=here` are the same."
+)]
+pub struct Teach {
+    /// The variable: P5, BP1, EX1
+    #[arg(value_name = "REF", value_parser = variable, add = complete::VARIABLE)]
+    variable: Reference,
+    /// Control group whose position it is [default: R1 for P, B1 for BP, S1 for EX]
+    #[arg(long)]
+    group: Option<Group>,
+    /// Store pulses or base coordinates [default: what the variable holds]
+    #[arg(long, value_enum)]
+    coordinates: Option<StoredAs>,
+}
+
+/// What is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum StoredAs {
+    /// Pulses of each axis
+    Pulse,
+    /// X Y Z Rx Ry Rz in base coordinates
+    Base,
+}
+
+impl From<StoredAs> for Coordinates {
+    fn from(stored: StoredAs) -> Self {
+        match stored {
+            StoredAs::Pulse => Self::Pulse,
+            StoredAs::Base => Self::Base,
+        }
+    }
+}
+
+fn variable(text: &str) -> Result<Reference, String> {
+    let reference: Reference = text.parse().map_err(|error| format!("{error}"))?;
+    if reference.kind.is_position() {
+        Ok(reference)
+    } else {
+        Err(format!("{reference} holds no position; P, BP and EX do"))
+    }
+}
+
+impl Command for Teach {
+    type Family = Yerc;
+    type Report = Taught<PositionData, PositionReport>;
+    const ID: &'static str = "yerc.teach";
+    const RISK: Risk = Risk::Destroy;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    fn intent(&self) -> String {
+        format!("overwrite {}", self.variable)
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
+        let Context { link, authority, .. } = context;
+        let (name, group) = (self.variable.to_string(), self.group()?);
+        let Some(old) = self.read(link.is_for("what the variable holds")).await.known()? else {
+            return Err(self.plan(link, group)?);
+        };
+        let coordinates = self.coordinates(old.as_ref())?;
+        let (here, report) = position::ask(link, group, coordinates).await?;
+        let new = held(group, here);
+        let is_unchanged = old.as_ref().map(Value::emit) == Some(new.emit());
+        let is_asked = authority.asks();
+        authority.confirm(&self.change(link, group, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
+        if is_asked {
+            let (now, _) = position::ask(link, group, coordinates).await?;
+            if !stands(&here, &now) {
+                return Err(moved_meanwhile(group, &now));
+            }
+        }
+        let shown = |value: &Value| PositionData::of(value).map(|data| data.text().to_owned()).unwrap_or_default();
+        if !is_unchanged {
+            link.ask(&WriteVariable::new(self.variable.number, new.clone()).map_err(usage)?).await?;
+            let read_back = self.read(link).await;
+            let read_back =
+                read_back.map_err(|failure| not_read_back(&name, failure, &format!("yerc var get {name}")))?;
+            if read_back.as_ref().map(Value::emit) != Some(new.emit()) {
+                let held = read_back.as_ref().map_or_else(|| "nothing".to_owned(), shown);
+                return Err(mismatch(&name, &shown(&new), &held));
+            }
+        }
+        let new = PositionData::of(&new).ok_or_else(|| Failure::local("internal error: no position was read"))?;
+        let old = old.as_ref().and_then(PositionData::of);
+        Ok(Taught::new(name, old, new, report, |data| data.text().to_owned()).unchanged(is_unchanged))
+    }
+}
+
+impl Teach {
+    /// Whose position it is: the group must be of the variable's kind.
+    fn group(&self) -> Result<Group, Failure> {
+        let (first, what) = match self.variable.kind {
+            VariableKind::Bp => (Group::Base(1), "bases, such as B1"),
+            VariableKind::Ex => (Group::Station(1), "stations, such as S1"),
+            _ => (Group::R1, "robots, such as R1"),
+        };
+        let group = self.group.unwrap_or(first);
+        if std::mem::discriminant(&group) == std::mem::discriminant(&first) {
+            return Ok(group);
+        }
+        let message = format!("{} holds no position of {group}: {} are for {what}", self.variable, self.letters());
+        Err(Failure::usage(message).hint("a robot is taught in P, its base in BP, a station in EX"))
+    }
+
+    fn letters(&self) -> &'static str {
+        self.variable.kind.letters()
+    }
+
+    /// What the variable holds; nothing where it is not defined.
+    async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
+        match link.try_ask(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
+            Ok(value) => Ok(Some(value)),
+            Err(refusal) if is_undefined(&Denied::Refused(refusal)) => Ok(None),
+            Err(refusal) => Err(refusal.into()),
+        }
+    }
+
+    /// What is stored: as asked for, as it was, or pulses.
+    fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
+        match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
+            (Some(stored), _) => Ok(stored.into()),
+            (None, None | Some(PositionKind::Pulse)) => Ok(Coordinates::Pulse),
+            (None, Some(PositionKind::Base)) => Ok(Coordinates::Base),
+            (None, Some(_)) => {
+                let text = old.and_then(PositionData::of).map(|data| data.text().to_owned()).unwrap_or_default();
+                let message = format!("{} holds {text}, and a position is told as pulses or base", self.variable);
+                Err(Failure::usage(message).hint("add --coordinates pulse or --coordinates base to change its kind"))
+            }
+        }
+    }
+
+    /// What the question says.
+    fn change(&self, link: &Link, group: Group, old: Option<&Value>, here: &Position) -> Change {
+        let Some(old) = old.map(as_position) else { return Change::nothing() };
+        let per_degree = link.pulses_per_degree(group);
+        let change = Change::new(format!("overwrite {} with the position of {group}", self.variable));
+        if old.kind != here.kind {
+            let shown = |position| PositionData::of(&held(group, position)).map(|data| data.text().to_owned());
+            return change.replaces(
+                &self.variable.to_string(),
+                &shown(old).unwrap_or_default(),
+                &shown(*here).unwrap_or_default(),
+            );
+        }
+        let change = compared(change, group, &old, here.axes.as_slice(), per_degree);
+        [("tool", old.tool, here.tool), ("user", old.user, here.user)]
+            .into_iter()
+            .filter(|(_, old, new)| old != new)
+            .fold(change, |change, (what, old, new)| change.replaces(what, &old.to_string(), &new.to_string()))
+    }
+
+    /// Notes in a dry run what follows the first question.
+    fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
+        let asked = |coordinates| ReadPosition::new(link.model, group, coordinates).map_err(usage);
+        let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
+        let one = asked(coordinates)?;
+        let is_open = self.coordinates.is_none() && group.cartesian_instance().is_some();
+        let other = if is_open { asked(Coordinates::Base)? } else { one };
+        let reason = Reason::about("where it stands");
+        let reason = if is_open { reason.depending_on("what the variable holds") } else { reason };
+        link.plan_depending(&one.request(), &other.request(), reason);
+        link.plan_fit(group, coordinates);
+        let [one, other] = unlike();
+        let write = |position| WriteVariable::new(self.variable.number, held(group, position)).map_err(usage);
+        let reason = Reason::about("stores it").depending_on("where it stands, and whether it is there already");
+        link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
+        let back = ReadVariable::new(self.variable.kind, self.variable.number);
+        link.plan_if(&back.request(), Reason::about("reads it back").depending_on("whether it was written"));
+        Ok(unknown())
+    }
+}
+
+/// A value in the form of a robot's position: of a base or a station only kind and axes mean something.
+fn as_position(value: &Value) -> Position {
+    let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
+    match value {
+        Value::Position(position) => *position,
+        Value::Base(base) => bare(base.kind, base.axes),
+        Value::External(station) => bare(station.kind, station.axes),
+        _ => unlike()[0],
+    }
+}

@@ -1,0 +1,185 @@
+//! `yrcx program run` (4.6.2): starts a program, and waits for its end where that is wanted.
+
+use std::time::Duration;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use tokio::time::{Instant, timeout};
+
+use super::{describe, named, put};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::orders::{Done, New, Old};
+use crate::command::yrcx::complete;
+use crate::command::yrcx::link::{Link, Yrcx};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::Key;
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Section, Tone, View};
+use crate::settings::duration;
+
+/// Runs a program, or all that are registered. The controller answers as soon as it has accepted that.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "--wait looks at SO(13) until no program runs. `yrcx io get program-running` tells the same; `yrcx \
+    stop` stops programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
+)]
+pub struct Run {
+    #[command(flatten)]
+    which: What,
+    /// Wait until no program runs any more, at most TIME
+    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
+    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
+    wait: Option<Option<Duration>>,
+}
+
+/// A program, or all of them.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct What {
+    /// Program by its name or its number
+    #[arg(value_name = "NAME|NUMBER", add = complete::PROGRAM_NAME)]
+    what: Option<String>,
+    /// Program by its number, 1 to 100
+    #[arg(long, value_name = "N", add = complete::PROGRAM)]
+    program: Option<String>,
+    /// Program by its name: the first 16 of A-Z, 0-9 and _
+    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
+    name: Option<String>,
+    /// Program by the task that it is registered in, 1 to 16
+    #[arg(long, value_name = "N", add = complete::TASK)]
+    task: Option<String>,
+    /// All programs that are registered
+    #[arg(long)]
+    all_programs: bool,
+}
+
+impl What {
+    fn program(&self) -> Option<&String> {
+        self.program.as_ref().or_else(|| self.what.as_ref().filter(|what| is_number(what)))
+    }
+
+    fn name(&self) -> Option<&String> {
+        self.name.as_ref().or_else(|| self.what.as_ref().filter(|what| !is_number(what)))
+    }
+
+    fn describe(&self) -> String {
+        describe(self.program(), self.name(), self.task.as_ref())
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// How long a program may take to show that it runs; what was not seen by then was over before.
+const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+
+impl Command for Run {
+    type Family = Yrcx;
+    type Report = Ran;
+    const ID: &'static str = "yrcx.program.run";
+
+    fn risk(&self) -> Risk {
+        table::Command::ProgramRun.row().risk
+    }
+
+    fn intent(&self) -> String {
+        format!("run {}", self.which.describe())
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
+        let Context { link, screen, .. } = context;
+        let draft = link.draft(table::Command::ProgramRun)?;
+        let draft = draft.with_some(Key::Selection, self.which.all_programs.then_some(0));
+        let order = put(draft, self.which.program(), self.which.name(), self.which.task.as_ref()).build()?;
+        link.ask(&order).await?;
+        let began = Instant::now();
+        let what = self.which.describe();
+        let done = New::new("program_state", "running", format!("started {what}"));
+        let done = named(done, self.which.program(), self.which.name(), self.which.task.as_ref());
+        let done = if self.which.all_programs { done.with("all_programs", true) } else { done };
+        let done = done.replaces(Old::UNREAD);
+        let Some(limit) = self.wait else { return Ok(Ran { done, ended: None, elapsed_ms: None }) };
+        if link.is_dry() {
+            link.then("what the controller shows is looked at until SO(13) tells that no program runs");
+            return Err(unknown());
+        }
+        let _progress = screen.spinner(&format!("{what} runs"));
+        let seen = wait(link, &what, began, limit).await?;
+        let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
+        Ok(Ran { done, ended: Some(true), elapsed_ms: seen.then_some(elapsed_ms) })
+    }
+}
+
+/// Waits until no program runs; whether one was seen running.
+async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
+    let lost = |failure: Failure| {
+        let message = format!("{what} was started, but its end was not seen: {}", failure.message);
+        Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
+            "do not send it again; `yrcx status` tells what came of it. A controller whose master goes away stops",
+        )
+    };
+    let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
+    let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let seen = match timeout(BEGIN_WITHIN, begins).await {
+        Ok(image) => output::PROGRAM_RUNNING.is_on(&image.map_err(lost)?),
+        Err(_) => false,
+    };
+    let ends = link.look_until(|image| !output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let rest = limit.map(|limit| limit.saturating_sub(began.elapsed()));
+    let image = match rest {
+        None => ends.await,
+        Some(rest) => match timeout(rest, ends).await {
+            Ok(image) => image,
+            Err(_) => {
+                let limit = duration::display(limit.unwrap_or_default());
+                return Err(Failure::new(Kind::ConditionNotMet, format!("{what} still runs after {limit}"))
+                    .hint("`yrcx info line` tells how far it is; the end of this connection stops it"));
+            }
+        },
+    };
+    let image = image.map_err(lost)?;
+    let stopped = if output::EMERGENCY_STOP.is_on(&image) {
+        Some(("the emergency stop came on", "release it, then `yrcx recover`"))
+    } else if output::ALARM.is_on(&image) {
+        Some(("an alarm came up", "`yrcx alarm list` names it, `yrcx alarm reset` resets it"))
+    } else {
+        None
+    };
+    match stopped {
+        None => Ok(seen),
+        Some((why, hint)) => {
+            Err(Failure::new(Kind::ConditionNotMet, format!("{what} was started, but {why}")).hint(hint))
+        }
+    }
+}
+
+/// A program that was started.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Ran {
+    #[serde(flatten)]
+    done: Done,
+    /// Whether it has ended; null if nobody waited.
+    ended: Option<bool>,
+    /// From the acceptance to the end; null if nobody waited, or if it was over before it was seen.
+    elapsed_ms: Option<u64>,
+}
+
+impl Report for Ran {
+    fn view(&self) -> View {
+        if self.ended.is_none() {
+            return self.done.view();
+        }
+        let state = Cell::from("ended").tone(Tone::Good);
+        let fields = vec![
+            ("program", self.done.words().into()),
+            ("state", state),
+            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+        ];
+        View { sections: vec![Section::Fields(fields)] }
+    }
+}

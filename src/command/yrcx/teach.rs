@@ -1,0 +1,110 @@
+//! `yrcx teach` (4.2.9): stores where the robot is in a point. `point set 19 here` is this.
+
+use clap::Args;
+
+use super::data::Coordinates;
+use super::link::{Link, Yrcx};
+use super::overwrite::{self, confirmation, there};
+use super::position::{Position, Unit};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::teach::{Taught, mismatch, not_read_back};
+use crate::command::{Command, Context};
+use crate::controller::Risk;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Values};
+use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
+
+/// Stores where the robot is in a point, in place of what the point was, and reads it back.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The controller stores its position by itself, with servos on or off. Without --in the point keeps \
+    its unit; one that is not defined gets mm. `yrcx point set 19 here` is the same."
+)]
+pub struct Teach {
+    /// Point to store it in, 0 to 29999
+    #[arg(value_name = "POINT", required_unless_present = "flag")]
+    point: Option<String>,
+    /// The same as a flag
+    #[arg(id = "flag", long = "point", value_name = "POINT", conflicts_with = "point", hide = true)]
+    flag: Option<String>,
+    /// Unit of the point [default: what it has]
+    #[arg(long = "in", value_name = "UNIT")]
+    unit_of_point: Option<Unit>,
+}
+
+/// How far readings of a robot that stands may be apart: 0.1 mm, or 100 pulses.
+const NEAR: i32 = 100;
+
+impl Command for Teach {
+    type Family = Yrcx;
+    type Report = Taught<Coordinates, Position>;
+    const ID: &'static str = "yrcx.teach";
+
+    fn risk(&self) -> Risk {
+        table::Command::Teach.row().risk
+    }
+
+    fn intent(&self) -> String {
+        format!("overwrite point {}", self.number())
+    }
+
+    fn confirmation(&self) -> Confirmation {
+        confirmation(table::Command::Teach)
+    }
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
+        let Context { link, authority, .. } = context;
+        let read = table::Command::PointGet.order().with(Key::Point, self.number()).build()?;
+        let is_read = !link.is_dry() || self.unit_of_point.is_none();
+        let old = if is_read { there(link, &read, "what the point is").await? } else { None };
+        let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
+        let order = self.order(link, unit)?;
+        // In a dry run nobody knows the unit of the point.
+        let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
+        overwrite::give_either(link, &authority, &order, &other).await?;
+        if link.is_dry() {
+            link.plan(&read, "reads it back");
+            return Err(unknown());
+        }
+        let name = self.number();
+        let unread = |failure| not_read_back(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
+        let held = there(link, &read, "").await.map_err(unread)?;
+        let held = held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the controller has no such point")))?;
+        let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
+        let here = link.draft(row)?.build()?;
+        let here = link.ask(&here).await.map_err(unread)?.values;
+        let place = Position::of(&here, Some(unit));
+        let (new, is_same) = (Coordinates::of(&held), unit_of(&held) == unit && is_near(&held, &here));
+        if !is_same {
+            return Err(mismatch(&format!("point {name}"), &place.in_a_line(), &new.position().in_a_line()));
+        }
+        let old = old.as_ref().map(Coordinates::of);
+        let taught = Taught::new(name, old, new, place, |point| point.position().in_a_line());
+        Ok(taught.with("set", "point").with("point", held.int(Key::Point)))
+    }
+}
+
+impl Teach {
+    fn number(&self) -> &str {
+        self.point.as_deref().or(self.flag.as_deref()).unwrap_or_default()
+    }
+
+    fn order(&self, link: &Link, unit: Unit) -> Result<Order, Failure> {
+        let draft = link.draft(table::Command::Teach)?.with(Key::Point, self.number());
+        Ok(draft.with(Key::Unit, i32::from(unit == Unit::Mm)).build()?)
+    }
+}
+
+/// The unit that a point is defined in.
+fn unit_of(point: &Values) -> Unit {
+    if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
+}
+
+fn is_near(held: &Values, here: &Values) -> bool {
+    let axes = held.axes().zip(here.axes());
+    axes.is_some_and(|(held, here)| {
+        held.iter().zip(here).all(|(held, here)| held.abs_diff(here) <= NEAR.unsigned_abs())
+    })
+}
