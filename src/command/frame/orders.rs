@@ -11,7 +11,7 @@ use crate::gate::Change;
 use crate::output::view::View;
 
 /// What a read before a write is for, in a dry run.
-pub const BEFORE: &str = "what it replaces";
+pub const BEFORE: &str = "the value before";
 
 /// What failed before anything was written.
 pub fn unwritten(failure: Failure) -> Failure {

@@ -88,10 +88,15 @@ pub fn planned<F: Family>(
 
 /// The frames of [`planned`] without those that only read what is replaced.
 pub fn frames(planned: &Value) -> Vec<Value> {
-    planned["frames"].as_array().expect("frames").iter().filter(|frame| frame["about"] != BEFORE).cloned().collect()
+    all_frames(planned).into_iter().filter(|frame| frame["about"] != BEFORE).collect()
+}
+
+/// All frames of [`planned`].
+pub fn all_frames(planned: &Value) -> Vec<Value> {
+    planned["frames"].as_array().expect("frames").clone()
 }
 
 /// How many frames of [`planned`] only read what is replaced.
 pub fn count_before(planned: &Value) -> usize {
-    planned["frames"].as_array().expect("frames").iter().filter(|frame| frame["about"] == BEFORE).count()
+    all_frames(planned).len() - frames(planned).len()
 }

@@ -90,10 +90,12 @@ pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
 #[track_caller]
 pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
-    let (outcome, peer) =
-        run_on(Scripted::new(examples.iter().map(|example| Reply::Ends(1, numbers(corrected(example, "wo"))))), line);
+    let before = undefined(line);
+    let count = before.len();
+    let answers = examples.iter().map(|example| Reply::Ends(1, numbers(corrected(example, "wo"))));
+    let (outcome, peer) = run_on(Scripted::new(before.into_iter().chain(answers)), line);
     let sent = examples.iter().map(|example| numbers(corrected(example, "wi")));
-    assert_eq!(peer.taken, sent.collect::<Vec<_>>());
+    assert_eq!(peer.taken[count..], sent.collect::<Vec<_>>());
     outcome.unwrap()
 }
 
