@@ -36,7 +36,7 @@ pub struct Fieldbus {
     /// Whether there is room for questions beside a session of this machine: a network, not an adapter of its own.
     pub has_room: bool,
     /// All addresses of a controller, asked of its network; `None` where each has but one.
-    pub addresses: Option<fn(&Bus) -> Result<Vec<Address>, LinkError>>,
+    pub addresses: Option<Addresses>,
     /// Opens a link: one that commands the controller, which then is shown the resting image, or one that only looks and
     /// changes nothing for whoever commands it.
     pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
@@ -49,6 +49,9 @@ pub struct Fieldbus {
     /// Starts a simulated controller on it, with what the URL of a simulator wants to go wrong.
     pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
 }
+
+/// Asks a network for all addresses of a controller.
+pub type Addresses = fn(&Bus) -> Result<Vec<Address>, LinkError>;
 
 /// What comes when it is open.
 pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
