@@ -79,14 +79,16 @@ fn read_wanted(bytes: &[u8], axes: usize, wanted: &[&str]) -> Result<Vec<Partial
     let expected = format!("the first line is {}", COLUMNS[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
+        // A row that is wrong hides no other mistake.
+        let before = findings.errors();
         let places = sheet.columns(&COLUMNS, &expected, &mut findings);
         for (name, _) in COLUMNS.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
             findings.error(sheet.end_of_head(), format!("column {name} is missing"), Some(expected.clone()));
         }
-        if findings.errors() == 0 && places[1..].iter().all(Option::is_none) {
+        if findings.errors() == before && places[1..].iter().all(Option::is_none) {
             findings.error(sheet.end_of_head(), "there is no column of coordinates", Some(expected));
         }
-        if findings.errors() == 0 {
+        if findings.errors() == before {
             points = read_rows(&sheet, &places, &mut findings);
         }
     }
