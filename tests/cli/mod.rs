@@ -48,6 +48,7 @@ transcripts! {
     repl
     robots
     robots_check
+    running
     sessions
     signals
     simulator
