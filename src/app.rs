@@ -11,6 +11,7 @@ mod parser;
 mod prepared;
 mod repl;
 mod respelled;
+mod teach;
 mod typed;
 mod words;
 
@@ -93,6 +94,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
         Invocation::Task(task) => Box::pin(PreparedCommand::new(globals, None, task, None)?.go()).await,
         Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
         Invocation::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
+        Invocation::Teach(teach) => Box::pin(teach::run(globals, teach)).await,
         Invocation::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
         Invocation::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),
     }

@@ -8,6 +8,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches, Parser, Subcommand};
 
 use crate::command::face::words::Typed;
 use crate::command::families::{self, FAMILIES};
+use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::repl::Repl;
 use crate::command::{ValueKind, common};
@@ -66,6 +67,8 @@ pub enum Top {
     Repl(Repl),
     /// Run commands from a file
     Batch(Batch),
+    /// Full-screen jog and teach panel
+    Teach(Teach),
     /// Commands that every family shares
     #[command(flatten)]
     Common(common::Common),

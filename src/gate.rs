@@ -10,7 +10,7 @@ use crate::client::NotAuthorized;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::settings::{Origin, Robot};
 
 /// What Ctrl-C does to a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -95,9 +95,15 @@ impl Gate {
         if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
         }
+        let way = |name: &str| {
+            format!("it is so on purpose; where it may be changed: `armctl robots set {name} read_only=off`")
+        };
         Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(match &robot.bound_by {
-            Some(entry) => format!("its address is that of '{entry}' in robots.toml, which is read-only"),
-            None => "remove read_only from its entry in robots.toml if it may be changed".to_owned(),
+            Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", way(entry)),
+            None if robot.read_only.origin == Origin::Defaults => {
+                "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
+            }
+            None => way(&robot.name),
         }))
     }
 

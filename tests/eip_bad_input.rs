@@ -129,7 +129,7 @@ fn an_owner_that_is_there_already() {
         "yrcx info servo",
         3,
         "0x0106",
-        "another master, such as a PLC, commands the controller",
+        "another master, such as a PLC, commands the controller: ForwardOpen was refused: ownership conflict (0x01/0x0106)",
         "`yrcx io get` and `yrcx status` see its signals beside the owner; to command from here, stop the owner's \
          connection first: take the controller out of the PLC's scan list, or close the session",
     );

@@ -343,15 +343,19 @@ fn the_date_in_a_header_can_be_left_out() {
     let other = job.replace("///DATE 2026/03/14 08:00", "///DATE 2027/01/01 09:30");
     assert_ne!(job, other);
     std::fs::write(&path, other).unwrap();
-    assert_eq!(run(folder.path(), &target, "file diff TESTJOB.JBI").0, 8);
-    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --ignore-header");
-    assert_eq!((exit, &diff["data"]["equal"]), (0, &json!(true)), "{diff}");
+    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --exact");
+    assert_eq!((exit, &diff["data"]["ignored"]), (8, &json!([])), "{diff}");
+    for line in ["file diff TESTJOB.JBI", "file diff TESTJOB.JBI --ignore-header"] {
+        let (exit, diff, _) = run(folder.path(), &target, line);
+        assert_eq!(exit, 0, "{diff}");
+        assert_eq!((&diff["data"]["equal"], &diff["data"]["ignored"]), (&json!(true), &json!(["///DATE"])), "{diff}");
+    }
     std::fs::write(
         &path,
         job.replace("///DATE 2026/03/14 08:00", "///DATE 2027").replace("TIMER T=0.50", "TIMER T=0.60"),
     )
     .unwrap();
-    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI --ignore-header");
+    let (exit, diff, _) = run(folder.path(), &target, "file diff TESTJOB.JBI");
     assert_eq!((exit, diff["data"]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
 }
 

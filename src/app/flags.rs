@@ -46,12 +46,12 @@ impl Uses {
             | Common::Robots(Robots::Check(_)) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
+            Common::Explain(_) => Self { robots: true, link: true, ..NONE },
             // What settings would be in force; what a check needs.
             Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
             Common::Robots(_)
             | Common::Sim(_)
             | Common::Decode(_)
-            | Common::Explain(_)
             | Common::Completions(_)
             | Common::Man(_)
             | Common::Schema(_)

@@ -10,6 +10,7 @@ use crate::command::common::Common;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
+use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
 use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
@@ -19,7 +20,6 @@ use crate::gate::Gate;
 use crate::output::Format;
 use crate::output::jq::Filter;
 use crate::output::redraw::Redraw;
-use crate::settings::alarms;
 use crate::settings::duration;
 use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::Given;
@@ -31,6 +31,8 @@ pub enum Invocation {
     Task(Task),
     /// The commands of a file.
     Batch(Batch),
+    /// The panel with which keys move a robot.
+    Teach(Teach),
     /// A prompt; these words stand before each line.
     Prompt(Vec<String>),
     /// Nothing but the name of a family was typed: a prompt, where somebody can type.
@@ -59,6 +61,7 @@ impl From<Top> for Invocation {
             }
             Top::Common(common) => Self::Task(Task::Common(common)),
             Top::Batch(batch) => Self::Batch(batch),
+            Top::Teach(teach) => Self::Teach(teach),
             Top::Repl(_) => Self::Prompt(Vec::new()),
         }
     }
@@ -81,7 +84,12 @@ impl PreparedCommand {
             Some(all) => globals.within(all),
             None => globals,
         };
-        let need = task.need();
+        let need = match task.need() {
+            Need::Names if matches!(task, Task::Common(Common::Explain(_))) && names_robots(&globals) => {
+                Need::Inventory
+            }
+            need => need,
+        };
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
@@ -137,10 +145,18 @@ impl Task {
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
+            // The path of the inventory tells where alarms.toml is.
+            Self::Common(Common::Explain(_)) => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
         }
     }
+}
+
+/// Whether flags name robots.
+fn names_robots(globals: &Globals) -> bool {
+    let Globals { sim, target, robot, all, tag, .. } = globals;
+    *sim || target.is_some() || !robot.is_empty() || *all || !tag.is_empty()
 }
 
 /// What a command wants of inventory and environment.
@@ -164,7 +180,6 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
     let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
     let trace = globals.trace.clone();
-    alarms::beside(location(globals.config.clone())?.path());
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }

@@ -231,6 +231,9 @@ impl Repl {
                 Err(failure) => Err(failure.into()),
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+            Invocation::Teach(_) => Err(Failure::usage("the panel has the terminal for itself")
+                .hint("leave the prompt, then `armctl teach`")
+                .into()),
             Invocation::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };

@@ -6,8 +6,11 @@
 
 use std::time::Duration;
 
+pub mod findings;
 pub mod nearest;
+pub mod sheet;
 pub mod simulator;
+mod source;
 #[cfg(test)]
 mod testing;
 pub mod text;

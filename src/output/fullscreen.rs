@@ -126,6 +126,8 @@ impl Keys {
         let thread = std::thread::spawn(move || {
             while !watched.load(Ordering::Relaxed) {
                 match event::poll(GLANCE) {
+                    // Where hanging up is ignored, as under `nohup`, no signal tells it, and what waits for keys goes on.
+                    Ok(_) if !is_terminal_there() => return,
                     Ok(false) => {}
                     Ok(true) => {
                         let Ok(event) = event::read() else { return };
@@ -149,6 +151,17 @@ impl Drop for Keys {
         // Whoever reads keys next gets all of them. One that broke down has ended as well.
         let _ended = self.thread.take().map(JoinHandle::join);
     }
+}
+
+/// Whether there is still a terminal behind stdin.
+#[cfg(unix)]
+fn is_terminal_there() -> bool {
+    rustix::termios::tcgetattr(io::stdin()).is_ok()
+}
+
+#[cfg(not(unix))]
+fn is_terminal_there() -> bool {
+    true
 }
 
 fn take() -> io::Result<()> {

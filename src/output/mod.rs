@@ -11,6 +11,7 @@ pub mod fullscreen;
 pub mod jq;
 pub mod leave;
 mod pager;
+pub mod painter;
 pub mod progress;
 pub mod prompt;
 mod question;

@@ -51,6 +51,14 @@ impl Screen {
         self.progress(what, Some(total), "{msg} {bar:24} {percent}% {pos}/{len} {eta} left", next_line)
     }
 
+    /// The same of parts that show their own progress on a terminal, and stand in the report at the end: elsewhere a line
+    /// for each tenth.
+    pub fn parts_progress(&self, what: &str, total: usize) -> Progress {
+        let next_line = NextLine::Tenths { total: total as u64, began: Instant::now(), told: 0, in_kib: false };
+        let lines = !self.can_redraw() && !self.quiet && !self.is_json();
+        Progress { bar: None, lines, what: what.to_owned(), done: 0, next_line }
+    }
+
     /// Starts to show that `what` takes its time.
     pub fn spinner(&self, what: &str) -> Progress {
         self.progress(what, None, "{msg} {spinner} {elapsed}", NextLine::Bytes(LINE_EVERY))

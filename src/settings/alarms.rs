@@ -15,7 +15,6 @@
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,32 +73,39 @@ impl<'a> Origin<'a> {
 
     /// Of this robot.
     pub fn of(robot: &'a Robot) -> Self {
-        Self { robot: Some(&robot.name), ..Self::any(robot.family) }
+        let model = (robot.family == Family::Yerc).then_some(robot.model.value);
+        Self { robot: Some(&robot.name), model, ..Self::any(robot.family) }
     }
 }
 
-/// The file of this process.
-static PATH: Mutex<Option<PathBuf>> = Mutex::new(None);
+/// The file of an inventory, which may not be there.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Alarms(Option<PathBuf>);
 
-/// Has the file looked for beside this inventory.
-pub fn beside(inventory: Option<&Path>) {
-    let path = inventory.map(|path| path.with_file_name(FILE_NAME));
-    *PATH.lock().unwrap_or_else(PoisonError::into_inner) = path;
+impl Alarms {
+    /// The one beside this inventory.
+    pub fn beside(inventory: Option<&Path>) -> Self {
+        Self(inventory.map(|path| path.with_file_name(FILE_NAME)))
+    }
+
+    /// What it says of an alarm; nothing if there is no file.
+    pub fn find(&self, origin: Origin<'_>, code: &str) -> Result<Option<Explanation>, Failure> {
+        let Some(path) = &self.0 else { return Ok(None) };
+        let text = match files::text(path, files::SETTINGS) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => {
+                return Err(Failure::usage(format!("{}: {}", path.display(), plain(&error)))
+                    .hint("correct it, or move it away: armctl works without"));
+            }
+        };
+        Ok(Table::parse(&text, &path.display().to_string())?.find(origin, code))
+    }
 }
 
-/// What the file says of an alarm; nothing if there is no file.
-pub fn find(origin: Origin<'_>, code: &str) -> Result<Option<Explanation>, Failure> {
-    let path = PATH.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let Some(path) = path else { return Ok(None) };
-    let text = match files::text(&path, files::SETTINGS) {
-        Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => {
-            return Err(Failure::usage(format!("{}: {}", path.display(), plain(&error)))
-                .hint("correct it, or move it away: armctl works without"));
-        }
-    };
-    Ok(Table::parse(&text, &path.display().to_string())?.find(origin, code))
+/// What the file of a robot's inventory says of an alarm of its.
+pub fn find(robot: &Robot, code: &str) -> Result<Option<Explanation>, Failure> {
+    robot.alarms.find(Origin::of(robot), code)
 }
 
 /// The whole file.

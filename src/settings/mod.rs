@@ -15,6 +15,7 @@ use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::failure::Failure;
+use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
 use target::{Address, Family, Given, Target};
 
@@ -88,6 +89,8 @@ pub struct Robot {
     pub tags: Vec<String>,
     /// Which sessions commands to it go through.
     pub sessions: Sessions,
+    /// What alarms mean at its site.
+    pub alarms: Alarms,
 }
 
 impl Robot {
@@ -224,6 +227,11 @@ impl Sources {
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
              set ARMCTL_TARGET or ARMCTL_ROBOT"
         )))
+    }
+
+    /// What alarms mean at the site of the inventory.
+    pub fn alarms(&self) -> Alarms {
+        Alarms::beside(self.inventory.path.as_deref())
     }
 
     /// Where nothing is said about robots, takes all of the inventory instead of its default.
@@ -389,6 +397,7 @@ impl Sources {
             pulses_per_degree: Vec::new(),
             tags,
             sessions: self.selection.sessions,
+            alarms: self.alarms(),
         };
         self.bind(&mut robot);
         robot

@@ -478,7 +478,7 @@ mod tests {
             ("tcp://h", "port is missing"),
             ("tcp://:4001", "host is missing"),
             ("tcp://h:0", "1 to 65535"),
-            ("tcp://h:4001?parity=odd", "unknown parameter 'parity'"),
+            ("tcp://h:4001?parity=odd", "unknown parameter 'parity'; there are baud"),
         ] {
             let failure = url.parse::<Target>().unwrap_err();
             assert!(failure.message.contains(part), "{url}: {}", failure.message);

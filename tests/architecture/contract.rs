@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 47] = [
+const YERC: [&str; 48] = [
     "status",
     "backup",
     "restore",
@@ -19,6 +19,7 @@ const YERC: [&str; 47] = [
     "job stop",
     "job select",
     "job start",
+    "job edit",
     "file list",
     "file get",
     "file put",
@@ -55,7 +56,7 @@ const YERC: [&str; 47] = [
     "raw",
 ];
 
-const TOYO: [&str; 79] = [
+const TOYO: [&str; 80] = [
     "status",
     "home",
     "position",
@@ -101,6 +102,7 @@ const TOYO: [&str; 79] = [
     "program list",
     "program get",
     "program put",
+    "program edit",
     "program insert",
     "program delete",
     "program copy",

@@ -80,11 +80,18 @@ fn five_a_host_that_answers_garbage() {
     );
 }
 
+/// A controller that refuses what only reads, and answers nothing else.
+fn refuses_to_tell(request: &[u8]) -> Option<Vec<u8>> {
+    let mut refused = done(request);
+    refused[25] = 0x08;
+    [0x01, 0x0E, 0x33].contains(&request[29]).then_some(refused)
+}
+
 #[test]
 fn six_a_change_whose_answer_is_lost() {
     let desk = Desk::new();
     for change in [&["servo", "off"][..], &["var", "set", "B0=1"], &["hold", "on"], &["job", "select", "MAIN"]] {
-        let target = peer(|_| None);
+        let target = peer(refuses_to_tell);
         let mut line = vec!["-t", &target, "--json", "--timeout", "100ms", "yerc"];
         line.extend(change);
         let output = desk.armctl(&line).output().expect("it runs");
@@ -96,9 +103,19 @@ fn six_a_change_whose_answer_is_lost() {
 }
 
 #[test]
+fn four_what_a_change_replaces_is_not_answered() {
+    let target = peer(|_| None);
+    let line = ["-t", &target, "--json", "--timeout", "100ms", "--retries", "0", "yerc", "var", "set", "B0=1"];
+    let output = Desk::new().armctl(&line).output().expect("it runs");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    let message = failure(&output)["message"].as_str().map(ToOwned::to_owned);
+    assert!(message.is_some_and(|message| message.ends_with("; nothing was written")), "{output:?}");
+}
+
+#[test]
 fn six_in_words() {
     let desk = Desk::new();
-    let target = peer(|_| None);
+    let target = peer(refuses_to_tell);
     let line = ["-t", &target, "--timeout", "100ms", "yerc", "servo", "off"];
     let output = desk.armctl(&line).output().expect("it runs");
     let stderr = String::from_utf8_lossy(&output.stderr).replace(&target, "udp://127.0.0.1:10040");

@@ -30,6 +30,7 @@ transcripts! {
     batch
     captures
     decode
+    edit
     exit_codes
     explain
     files
@@ -50,6 +51,7 @@ transcripts! {
     robots_check
     running
     sessions
+    sheets
     signals
     simulator
     status

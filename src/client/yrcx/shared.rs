@@ -52,11 +52,13 @@ impl Client {
         link.claim_motion().await.map_err(Error::Session)
     }
 
-    /// Waits until nobody else gives a remote command.
+    /// Waits until nobody else gives a remote command. What others gave until then is known when this returns: whoever
+    /// begins with what was shown before it would take his own command for one that is shown already, or for none.
     pub(super) async fn acquire(&mut self) -> Result<(), Error> {
         self.is_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
-        link.take(Instant::now() + self.timeout).await.map_err(Error::Session)
+        link.take(Instant::now() + self.timeout).await.map_err(Error::Session)?;
+        self.catch_up().await
     }
 
     /// Lets others give a remote command once the last one has ended.

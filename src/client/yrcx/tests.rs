@@ -9,6 +9,11 @@ use armctl_controller::yrcx::session::Silence;
 use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::value::Key;
 use armctl_transport::image::ImagePeer;
+use armctl_transport::session::client::{Found, attach_at};
+use armctl_transport::session::host::Host;
+use armctl_transport::session::host::held::Held;
+use armctl_transport::session::place::Spot;
+use armctl_transport::session::wire::Info;
 use tokio::time::{sleep, timeout};
 
 use super::*;
@@ -54,6 +59,37 @@ impl ImagePeer for Deaf {
 async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
     let link = ImageLink::in_process(Box::new(Deaf(gone)));
     Client::connect(link, Options::default().granting(risk)).await.unwrap()
+}
+
+/// A client of the session at a spot.
+async fn attached(spot: &Spot) -> Client {
+    let Found::Session(attached) = attach_at(spot, "cell", "test").await.unwrap() else { panic!("nobody holds it") };
+    Client::connect(ImageLink::in_session(attached), Options::default()).await.unwrap()
+}
+
+#[tokio::test]
+async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
+    let folder = tempfile::tempdir().unwrap();
+    let spot = Spot::at(folder.path().join("cell"));
+    let info = Info { pid: 1, robot: "cell".to_owned(), family: "yrcx".to_owned(), target: "sim:".to_owned() };
+    let claim = spot.claim(&info).unwrap().unwrap();
+    let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
+    let held = Held::Images(hold(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
+    let mut host = Host::new(claim, "cell".to_owned(), info, held, |_| {}).unwrap();
+    let work = async {
+        let (mut one, mut other) = (attached(&spot).await, attached(&spot).await);
+        let (here, there) = (point(1), point(2));
+        for _ in 0..100 {
+            // Both want the line at once: one of them waits, while the words of the other come and go.
+            let (first, second) = tokio::join!(one.ask(&here), other.ask(&there));
+            first.unwrap();
+            second.unwrap();
+        }
+    };
+    tokio::select! {
+        () = host.serve() => panic!("nobody closed it"),
+        () = work => {}
+    }
 }
 
 #[tokio::test(start_paused = true)]

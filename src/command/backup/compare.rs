@@ -7,6 +7,7 @@ use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::dated::{DATE_LINE, aligned};
 use super::tolerance::Tolerance;
 use crate::command::Report;
 use crate::command::backup::manifest::{Entry, Manifest, Saved};
@@ -29,12 +30,30 @@ pub struct Side {
     pub is_controller: bool,
 }
 
+/// What counts as a difference.
+#[derive(Debug, Clone, Copy)]
+pub struct Manner {
+    tolerance: Tolerance,
+    /// Whether every byte counts, the dates of jobs as well.
+    exact: bool,
+}
+
+impl Manner {
+    /// Every byte counts.
+    pub const EXACT: Self = Self { tolerance: Tolerance::NONE, exact: true };
+
+    /// Neither near positions nor what controllers rewrite by themselves.
+    pub const fn usual(tolerance: Tolerance) -> Self {
+        Self { tolerance, exact: false }
+    }
+}
+
 /// How two backups, or a backup and a controller, differ.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Differences {
     old: Of,
     new: Of,
-    /// Whether nothing differs by more than the tolerance.
+    /// Whether nothing differs by more than the tolerance and by what is ignored.
     equal: bool,
     tolerance: Tolerance,
     files: Vec<FileDifference>,
@@ -56,6 +75,9 @@ struct FileDifference {
     /// Its name on the controller, or the name of the part; `controller` for what the lists say of model and versions.
     name: String,
     state: State,
+    /// Lines that differ and do not count: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ignored: Vec<&'static str>,
     /// Changes from the old one to the new one; null if one of them is no text, too large or missing.
     #[serde(skip_serializing_if = "Option::is_none")]
     hunks: Option<Vec<Hunk>>,
@@ -75,6 +97,8 @@ struct FileDifference {
 enum State {
     /// Byte for byte.
     Same,
+    /// But for the line `///DATE`.
+    SameButDate,
     /// But for positions that are near each other.
     WithinTolerance,
     /// They differ.
@@ -87,12 +111,14 @@ enum State {
     Unknown,
 }
 
+/// What an entry holds that is a job, with a header.
+const JOB: &str = "jbi";
 /// The part that stands for what a list says of the controller itself.
 const CONTROLLER: &str = "controller";
 
 impl Differences {
     /// Compares.
-    pub fn of(old: &Side, new: &Side, only: &Only, tolerance: Tolerance) -> Result<Self, Failure> {
+    pub fn of(old: &Side, new: &Side, only: &Only, manner: Manner) -> Result<Self, Failure> {
         let (a, b) = (&old.manifest, &new.manifest);
         if a.family != b.family {
             return Err(Failure::usage(format!(
@@ -109,13 +135,14 @@ impl Differences {
         }
         let partner = |entry: &Entry, of: &Manifest| of.files.iter().find(|other| key(other) == key(entry)).cloned();
         for entry in a.files.iter().filter(|entry| only.has(&entry.name)) {
-            files.push(of_files(old, new, Some(entry), partner(entry, b).as_ref(), tolerance));
+            files.push(of_files(old, new, Some(entry), partner(entry, b).as_ref(), manner));
         }
         for entry in b.files.iter().filter(|entry| only.has(&entry.name) && partner(entry, a).is_none()) {
-            files.push(of_files(old, new, None, Some(entry), tolerance));
+            files.push(of_files(old, new, None, Some(entry), manner));
         }
-        let equal = files.iter().all(|file| matches!(file.state, State::Same | State::WithinTolerance));
-        Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance, files })
+        let equal =
+            files.iter().all(|file| matches!(file.state, State::Same | State::SameButDate | State::WithinTolerance));
+        Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance: manner.tolerance, files })
     }
 
     fn count(&self, states: &[State]) -> usize {
@@ -126,6 +153,7 @@ impl Differences {
         let named = [
             (self.count(&[State::Changed, State::OnlyOld, State::OnlyNew]), "different"),
             (self.count(&[State::Unknown]), "not compared"),
+            (self.count(&[State::SameButDate]), "the same but for ///DATE"),
             (self.count(&[State::WithinTolerance]), "the same within the tolerance"),
             (self.count(&[State::Same]), "the same"),
         ];
@@ -184,19 +212,13 @@ fn of_controllers(old: &Manifest, new: &Manifest) -> Result<Option<FileDifferenc
 }
 
 /// Compares a file that one or both have.
-fn of_files(
-    old: &Side,
-    new: &Side,
-    entry: Option<&Entry>,
-    partner: Option<&Entry>,
-    tolerance: Tolerance,
-) -> FileDifference {
+fn of_files(old: &Side, new: &Side, entry: Option<&Entry>, partner: Option<&Entry>, manner: Manner) -> FileDifference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
     let state = match (entry, partner) {
         (Some(_), None) if covers(&new.manifest, &old.manifest, &name) => State::OnlyOld,
         (None, Some(_)) if covers(&old.manifest, &new.manifest, &name) => State::OnlyNew,
         (Some(entry), Some(partner)) => {
-            return match both(old, new, entry, partner, tolerance) {
+            return match both(old, new, entry, partner, manner) {
                 Ok(file) => FileDifference { name, ..file },
                 Err(failure) => FileDifference::unknown(name, failure),
             };
@@ -220,13 +242,7 @@ fn covers(backup: &Manifest, other: &Manifest, name: &str) -> bool {
         && backup.scope.iter().all(|word| is_common(word) || other.scope.contains(word))
 }
 
-fn both(
-    old: &Side,
-    new: &Side,
-    entry: &Entry,
-    partner: &Entry,
-    tolerance: Tolerance,
-) -> Result<FileDifference, Failure> {
+fn both(old: &Side, new: &Side, entry: &Entry, partner: &Entry, manner: Manner) -> Result<FileDifference, Failure> {
     let (ours, theirs) = (copy(old, entry)?, copy(new, partner)?);
     let file = |state| FileDifference { file: ours.file.clone(), ..FileDifference::new(String::new(), state) };
     if ours.sha256.eq_ignore_ascii_case(&theirs.sha256) {
@@ -236,13 +252,26 @@ fn both(
     if ours.bytes > most || theirs.bytes > most {
         return Ok(file(State::Changed));
     }
-    let (before, after) = (read(&old.folder, ours)?, read(&new.folder, theirs)?);
+    let (mut before, mut after) = (read(&old.folder, ours)?, read(&new.folder, theirs)?);
+    let mut ignored = Vec::new();
+    if !manner.exact && entry.holds == JOB {
+        let dates_differ;
+        ([before, after], dates_differ) = aligned(before, after);
+        if dates_differ {
+            ignored.push(DATE_LINE);
+        }
+        if before == after {
+            return Ok(FileDifference { ignored, ..file(State::SameButDate) });
+        }
+    }
     let encoding = old.manifest.controller.get("encoding").and_then(|name| name.as_str()?.parse().ok());
-    let after = tolerance.align(entry, &before, &after);
+    let after = if manner.exact { after } else { manner.tolerance.align(entry, &before, &after) };
     Ok(match TextDifference::of(encoding.unwrap_or(Encoding::Utf8), &before, &after) {
-        Some(TextDifference { hunks, .. }) if hunks.is_empty() => file(State::WithinTolerance),
+        Some(TextDifference { hunks, .. }) if hunks.is_empty() => {
+            FileDifference { ignored, ..file(State::WithinTolerance) }
+        }
         Some(TextDifference { hunks, only_line_endings }) => {
-            FileDifference { hunks: Some(hunks), only_line_endings, ..file(State::Changed) }
+            FileDifference { hunks: Some(hunks), only_line_endings, ignored, ..file(State::Changed) }
         }
         None => file(State::Changed),
     })
@@ -270,7 +299,15 @@ fn read(folder: &Path, copy: &Saved) -> Result<Vec<u8>, Failure> {
 
 impl FileDifference {
     fn new(name: String, state: State) -> Self {
-        Self { name, state, hunks: None, only_line_endings: false, error: None, file: String::new() }
+        Self {
+            name,
+            state,
+            ignored: Vec::new(),
+            hunks: None,
+            only_line_endings: false,
+            error: None,
+            file: String::new(),
+        }
     }
 
     fn unknown(name: String, failure: Failure) -> Self {
@@ -288,6 +325,7 @@ impl FileDifference {
         };
         match (self.state, &self.error) {
             (State::Same, _) => Cell::from("the same").tone(Tone::Good),
+            (State::SameButDate, _) => Cell::from("the same but for ///DATE, which is ignored").tone(Tone::Good),
             (State::WithinTolerance, _) => Cell::from("the same within the tolerance").tone(Tone::Good),
             (State::OnlyOld, _) => only(old),
             (State::OnlyNew, _) => only(new),
@@ -299,7 +337,8 @@ impl FileDifference {
             (State::Changed, _) if self.only_line_endings => Cell::from("only line endings differ").tone(Tone::Bad),
             (State::Changed, _) => {
                 let (less, more) = (count(Change::Removed), count(Change::Added));
-                Cell::from(format!("differs: -{less} +{more} lines")).tone(Tone::Bad)
+                let date = if self.ignored.is_empty() { "" } else { "; ///DATE is ignored" };
+                Cell::from(format!("differs: -{less} +{more} lines{date}")).tone(Tone::Bad)
             }
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 
-use super::compare::{Differences, Side};
+use super::compare::{Differences, Manner, Side};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
 use super::{BackedUp, Making, Only};
@@ -29,6 +29,9 @@ pub struct DiffOptions {
     /// How far apart positions may be: 0.05, or 0.1mm,0.05deg,5pulses
     #[arg(long, value_name = "LIMIT", value_delimiter = ',', value_parser = Limit::parse)]
     tolerance: Vec<Limit>,
+    /// Compare byte for byte: no tolerance, and the line ///DATE of jobs counts
+    #[arg(long, conflicts_with = "tolerance")]
+    exact: bool,
 }
 
 impl DiffOptions {
@@ -65,7 +68,8 @@ impl DiffOptions {
     }
 
     fn compare(&self, old: &Side, new: &Side) -> Result<Differences, Failure> {
-        Differences::of(old, new, &Only(self.only.clone()), Tolerance::of(&self.tolerance))
+        let manner = if self.exact { Manner::EXACT } else { Manner::usual(Tolerance::of(&self.tolerance)) };
+        Differences::of(old, new, &Only(self.only.clone()), manner)
     }
 
     /// What is read of the controller: what the backup was asked for, or of that what is asked for now.

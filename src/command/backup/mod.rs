@@ -2,6 +2,7 @@
 
 pub mod check;
 mod compare;
+pub mod dated;
 mod diff;
 pub mod manifest;
 pub mod options;
@@ -256,7 +257,8 @@ impl Items {
         self.failed + self.not_tried == 0
     }
 
-    fn view(&self, words: [&str; 2]) -> View {
+    /// A row each; `words` say that it was done, now or before.
+    pub fn view(&self, words: [&str; 2]) -> View {
         let mut table = Table::new(&["name", "result"], "nothing");
         for item in &self.files {
             table.row([item.name.as_str().into(), item.result(words)]);
@@ -279,7 +281,7 @@ impl Items {
     }
 
     /// The same with how it goes on.
-    fn failure(&self, again: &str) -> Option<Failure> {
+    pub fn failure(&self, again: &str) -> Option<Failure> {
         Some(with_hint(self.gravest()?, again))
     }
 }

@@ -51,6 +51,9 @@ impl Limit {
 }
 
 impl Tolerance {
+    /// None at all.
+    pub const NONE: Self = Self { mm: 0.0, deg: 0.0, pulses: 0.0 };
+
     /// The usual one, but for what was given.
     pub fn of(limits: &[Limit]) -> Self {
         let mut tolerance = DEFAULT;

@@ -126,7 +126,8 @@ impl<F: Backups> Command for Restore<F> {
                   is shown is what changed since: - is the backup, + the controller. Texts are compared by lines, other \
                   files by their hashes.\n\nPositions (points, shifts, hands, positions of jobs) that are no further apart than \
                   the tolerance are the same: 0.001 mm, 0.001 degrees and 1 pulse, unless --tolerance says otherwise; \
-                  such files are named. Exit code 0: the same; 8: different."
+                  such files are named. So are jobs that differ in the line ///DATE alone, which \
+                  controllers rewrite: it is ignored. --exact compares every byte. Exit code 0: the same; 8: different."
 )]
 pub struct Diff<F: Backups> {
     #[command(flatten)]

@@ -6,8 +6,10 @@ use clap::{ArgMatches, Args, Subcommand};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
+use super::explain::{Explain, Recorded};
 use super::layers::Layer;
 use super::overview::OverviewReport;
+use super::panel::Panel;
 use super::sample::{Detail, Sample};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
@@ -17,7 +19,7 @@ use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
 use crate::command::frame::connection;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyContext, CommandSet, Driver, OfflineCommand, Own, SchemaEntry};
+use crate::command::{Access, AnyContext, Command, CommandSet, Driver, Own, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -32,7 +34,11 @@ pub trait Declaration: Backups {
     /// `armctl decode`.
     type Decode: Decode + Args + 'static;
     /// `armctl explain`.
-    type Explain: OfflineCommand + Args + 'static;
+    type Explain: Explain + Args + 'static;
+    /// What lists the alarms that are present.
+    type Alarms: Command<Family = Self, Report: Recorded> + Args;
+    /// What lists those of the past.
+    type AlarmHistory: Command<Family = Self, Report: Recorded> + Args;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Looks for `top`.
@@ -52,6 +58,8 @@ pub trait Declaration: Backups {
     const START_STATE: &'static str;
     /// See [`Face::guard`].
     const GUARD: Guard;
+    /// See [`Face::panel`].
+    const PANEL: Panel;
     /// See [`Face::session_records`].
     const SESSION_RECORDS: bool = false;
     /// See [`Face::session_commands`].
@@ -147,7 +155,7 @@ impl<F: Declaration> Face for Declared<F> {
     fn tool(&self, kind: ToolKind) -> Tool {
         match kind {
             ToolKind::Decode => Tool::decode::<F::Decode>(),
-            ToolKind::Explain => Tool::explain::<F::Explain>(),
+            ToolKind::Explain => Tool::explain::<F>(),
             ToolKind::Simulate => Tool::simulate::<F::Serve>(),
         }
     }
@@ -188,6 +196,10 @@ impl<F: Declaration> Face for Declared<F> {
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
         F::hold(robot, access, screen).boxed_local()
+    }
+
+    fn panel(&self) -> Panel {
+        F::PANEL
     }
 
     fn guard(&self) -> Guard {

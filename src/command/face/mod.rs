@@ -1,8 +1,10 @@
 //! What the rest of the house may ask of a family. Each has its own in `face.rs`; [`families`](super::families) lists them.
 
 pub mod declared;
+pub mod explain;
 pub mod layers;
 pub mod overview;
+pub mod panel;
 pub mod sample;
 pub mod tool;
 pub mod words;
@@ -12,6 +14,7 @@ use futures_util::future::LocalBoxFuture;
 
 use self::layers::Layer;
 use self::overview::OverviewReport;
+use self::panel::Panel;
 use self::sample::{Detail, Sample};
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
@@ -57,6 +60,8 @@ pub trait Face: Sync {
     fn driver(&self) -> &'static dyn Driver;
     /// A line for `status`.
     fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
+    /// The keys of `armctl teach`.
+    fn panel(&self) -> Panel;
     /// What `robots check` finds.
     fn check<'a>(
         &self,

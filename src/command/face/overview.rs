@@ -8,11 +8,13 @@ use crate::command::Report;
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{self, Origin};
+use crate::settings::alarms;
 
 /// The state of one robot in a line.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct OverviewReport {
+    /// The family.
+    pub family: &'static str,
     /// Where it is false, all that follows is null.
     pub reachable: bool,
     /// `teach` or `play` (yerc); `auto` or `manual` (yrcx); `automatic`, `step` or `program` (toyo); null if unknown.
@@ -37,9 +39,6 @@ pub struct OverviewReport {
     /// What somebody left behind, and how to undo it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_over: Vec<LeftOver>,
-    /// The family, for the table; envelopes have it.
-    #[serde(skip)]
-    pub family: &'static str,
     /// Why it is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
@@ -86,7 +85,7 @@ impl Fault {
     /// Takes the text that the operator's `alarms.toml` has for the code, if it has one.
     pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
         if let Some(code) = &self.fault_code
-            && let Some(explained) = alarms::find(Origin::of(robot), code)?
+            && let Some(explained) = alarms::find(robot, code)?
         {
             self.fault_text = Some(explained.text);
         }

@@ -72,12 +72,12 @@ pub struct Indicator {
 }
 
 impl Indicator {
-    /// A indicator that means this while it is on, and nothing while it is off.
+    /// An indicator that means this while it is on, and nothing while it is off.
     pub fn new(name: &'static str, is_on: bool, tone: Tone) -> Self {
         Self { name, is_on, tone: if is_on { tone } else { Tone::Plain } }
     }
 
-    /// A indicator that is on in good times, and means this while it is off.
+    /// An indicator that is on in good times, and means this while it is off.
     pub fn should(name: &'static str, is_on: bool, off: Tone) -> Self {
         Self { name, is_on, tone: if is_on { Tone::Good } else { off } }
     }
@@ -107,11 +107,11 @@ pub struct Axis {
 pub struct Bank {
     /// `inputs`, `outputs`.
     pub name: &'static str,
-    /// SignalByte at a time.
+    /// Eight at a time.
     pub groups: Vec<SignalByte>,
 }
 
-/// SignalByte signals that stand together.
+/// Eight signals that stand together.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SignalByte {
     /// The number of the first one shown, or the name of all.

@@ -1,13 +1,15 @@
 //! What a family does behind a common word: `armctl decode FAMILY`, `explain FAMILY`, `sim FAMILY`.
 
-use clap::{ArgMatches, Args, Command};
+use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
+use super::declared::Declaration;
+use super::explain::{Explain, Explained, Explaining};
+use crate::command::SchemaEntry;
 use crate::command::decode::{self, Decode};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::serve::{self, Serve};
-use crate::command::{OfflineCommand, SchemaEntry};
 
 /// Which of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,11 +55,11 @@ impl Tool {
     }
 
     /// Explains a code.
-    pub fn explain<C: OfflineCommand + Args + 'static>() -> Self {
+    pub fn explain<F: Declaration>() -> Self {
         Self {
-            augment: C::augment_args,
-            read: |matches| Ok(Box::new(Explaining(C::from_arg_matches_mut(matches)?))),
-            schemas: || vec![SchemaEntry::of::<C::Report>(C::ID)],
+            augment: F::Explain::augment_args,
+            read: |matches| Ok(Box::new(Explaining::<F>(F::Explain::from_arg_matches_mut(matches)?))),
+            schemas: || vec![SchemaEntry::of::<Explained<<F::Explain as Explain>::Report>>(F::Explain::ID)],
         }
     }
 
@@ -72,18 +74,11 @@ impl Tool {
 }
 
 struct Decoding<D>(D);
-struct Explaining<C>(C);
 struct Serving<S>(S);
 
 impl<D: Decode + 'static> ToolTask for Decoding<D> {
     fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
         async move { decode::run(&self.0, run) }.boxed_local()
-    }
-}
-
-impl<C: OfflineCommand + 'static> ToolTask for Explaining<C> {
-    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
-        async move { run.local(C::ID, &self.0.run(&run.screen)?) }.boxed_local()
     }
 }
 

@@ -5,5 +5,6 @@ pub mod robots;
 pub mod session;
 pub mod setup;
 pub mod status;
+pub mod teach;
 pub mod tools;
 pub mod top;

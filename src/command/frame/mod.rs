@@ -13,6 +13,7 @@ pub mod command_set;
 pub mod connection;
 pub mod cycle;
 pub mod dry_run;
+pub mod edited;
 pub mod interrupt;
 pub mod items;
 pub mod kind;
@@ -25,9 +26,11 @@ pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod sheet;
 pub mod teach;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod text_files;
 pub mod trace;
 pub mod watch;
 

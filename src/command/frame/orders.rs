@@ -6,11 +6,18 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::report::Report;
+use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
 
 /// What a read before a write is for, in a dry run.
 pub const BEFORE: &str = "what it replaces";
+
+/// What failed before anything was written.
+pub fn unwritten(failure: Failure) -> Failure {
+    let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
+    Failure { message, ..failure }
+}
 
 /// A value before a write: null where nobody asked, or where the controller refused to tell.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]

@@ -11,6 +11,7 @@ use futures_util::StreamExt as _;
 use futures_util::stream;
 use tokio::time::timeout_at;
 
+pub use self::print::as_value;
 use self::print::{ReportPosition, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;

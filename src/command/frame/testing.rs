@@ -10,6 +10,7 @@ use super::authority::Authority;
 use super::command::{AnyCommand, AnyContext, Context};
 use super::connection::{self, Access, ConnectMode, Connection, Family};
 use super::dry_run::{DryRun, Plan, is_end};
+use super::orders::BEFORE;
 use super::report::{AnyReport as _, Outcome};
 use crate::controller::Risk;
 use crate::failure::Failure;
@@ -85,7 +86,12 @@ pub fn planned<F: Family>(
     }
 }
 
-/// The frames of [`planned`].
+/// The frames of [`planned`] without those that only read what is replaced.
 pub fn frames(planned: &Value) -> Vec<Value> {
-    planned["frames"].as_array().expect("frames").clone()
+    planned["frames"].as_array().expect("frames").iter().filter(|frame| frame["about"] != BEFORE).cloned().collect()
+}
+
+/// How many frames of [`planned`] only read what is replaced.
+pub fn count_before(planned: &Value) -> usize {
+    planned["frames"].as_array().expect("frames").iter().filter(|frame| frame["about"] == BEFORE).count()
 }

@@ -8,6 +8,7 @@ use super::link::Link;
 use super::link::Toyo;
 use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
+use crate::command::face::explain::{Occurrence, Recorded};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
@@ -21,7 +22,7 @@ use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, Tone, View};
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{self, Explanation};
 
 commands! {
     /// Alarms.
@@ -59,7 +60,7 @@ impl Command for List {
         }
         let mut error = present(link).await?.map(Explained::of);
         if let Some(error) = &mut error {
-            error.explained = alarms::find(Origin::of(context.robot), &error.code.code)?;
+            error.explained = alarms::find(context.robot, &error.code.code)?;
         }
         Ok(Present { alarms: error.iter().cloned().collect(), error })
     }
@@ -223,6 +224,34 @@ impl Report for Past {
             table.row([entry.number.into(), code, meaning, Cell::maybe(entry.time()).whole()]);
         }
         View::table(table)
+    }
+}
+
+impl Recorded for Present {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let of = |error: &Explained| Occurrence {
+            place: "present".to_owned(),
+            code: error.code.code.clone(),
+            data: error.code.axis.map(|axis| format!("axis {axis}")),
+            ..Occurrence::default()
+        };
+        self.alarms.iter().map(of).collect()
+    }
+}
+
+impl Recorded for Past {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let of = |entry: &Entry| {
+            let error = entry.error.as_ref()?;
+            Some(Occurrence {
+                place: format!("history {}", entry.number),
+                code: error.code.clone(),
+                text: None,
+                data: error.axis.map(|axis| format!("axis {axis}")),
+                time: entry.time(),
+            })
+        };
+        self.entries.iter().filter_map(of).collect()
     }
 }
 

@@ -157,9 +157,29 @@ mod tests {
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
-        let silent = |block: &str, _| if block == "@MCNT CN=05" { Fault::Lost } else { Fault::None };
+        let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
+    }
+
+    #[test]
+    fn what_is_replaced_is_told() {
+        let mut bench = Bench::new("sim:");
+        bench.data(&["counter", "set", "5", "7"]);
+        let set = bench.data(&["counter", "set", "5", "8"]);
+        assert_eq!((&set["old"], &set["new"]), (&7.into(), &8.into()), "{set}");
+        // A controller that does not tell it takes it nevertheless; one that is not there is not written to.
+        let refuses = |block: &str, count| {
+            if block == "@MCNT CN=05" && count == 1 { Fault::Answered("@NG") } else { Fault::None }
+        };
+        assert_eq!(
+            Bench::with_faults("", refuses).0.data(&["counter", "set", "5", "7"])["old"],
+            serde_json::Value::Null
+        );
+        let silent = |block: &str, _| if block.starts_with("@MC") { Fault::Lost } else { Fault::None };
+        let (mut bench, heard) = Bench::with_faults("", silent);
+        assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::NoAnswer);
+        assert!(!heard.borrow().iter().any(|block| block.starts_with("@MCST")), "nothing was written");
     }
 
     #[test]
@@ -175,7 +195,7 @@ mod tests {
         heard.borrow_mut().clear();
         // No `@OK` of its own came: whether it was done is open, not done.
         assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
-        assert_eq!(heard.borrow()[..2], ["@STAS SNO=0", "@MCST CN06=0001"], "something harmless is asked first");
+        assert_eq!(heard.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
     }
 
     #[test]

@@ -4,13 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{OfflineCommand, Report, ValueKind};
+use crate::command::face::explain as face;
+use crate::command::{Report, ValueKind};
 use crate::controller::toyo::errors;
 use crate::controller::typed;
 use crate::failure::Failure;
-use crate::output::Screen;
 use crate::output::view::{Section, View};
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Error code of a Toyo controller
@@ -26,14 +26,18 @@ fn code(text: &str) -> Result<u8, String> {
     typed::code(text).ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
 }
 
-impl OfflineCommand for Explain {
+impl face::Explain for Explain {
     type Report = ToyoCode;
     const ID: &'static str = "explain.toyo";
 
-    fn run(&self, _screen: &Screen) -> Result<ToyoCode, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<ToyoCode, Failure> {
         let code = ToyoCode::from(self.code);
-        let explained = alarms::find(Origin::any(Family::Toyo), &code.code)?;
+        let explained = alarms.find(origin, &code.code)?;
         Ok(ToyoCode { explained, ..code })
+    }
+
+    fn alarm(&self) -> Option<String> {
+        (self.code != errors::NONE).then(|| format!("{:02X}", self.code))
     }
 }
 

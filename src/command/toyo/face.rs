@@ -1,5 +1,6 @@
 //! What the rest of the house may ask of `toyo`.
 
+use super::alarm;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
@@ -7,13 +8,14 @@ use super::explain::Explain;
 use super::link::{Link, Toyo};
 use super::serve::Serve;
 use super::top::Poller;
-use super::{check, connect, overview};
+use super::{check, connect, overview, panel};
 use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
+use crate::command::face::panel::Panel;
 use crate::command::{Access, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::{errors, passing, simulator};
@@ -28,6 +30,8 @@ impl Declaration for Toyo {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
     type Serve = Serve;
     type Poller = Poller;
 
@@ -38,6 +42,7 @@ impl Declaration for Toyo {
         "Cable, settings and first contact: `armctl help toyo-setup`; the ports there are: `armctl toyo ports`.";
     const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = panel::PANEL;
     const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {

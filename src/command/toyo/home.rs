@@ -4,7 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::link::Toyo;
+use super::link::{Link, Toyo};
 use super::position::Coordinates;
 use super::waiting::{Accepted, Work};
 use crate::command::{Command, Context, Report};
@@ -12,7 +12,8 @@ use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
 use crate::output::view::{Cell, Tone, View};
 
 /// Returns all axes to their origin, and waits until they are there (TO 2-7).
@@ -49,6 +50,7 @@ impl Command for Home {
     type Report = HomeReport;
     const ID: &'static str = "toyo.home";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         match self.sync {
@@ -58,15 +60,29 @@ impl Command for Home {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport, Failure> {
-        let link = context.link;
+        let Context { link, screen, authority, .. } = context;
         let (order, accepted) = self.order();
+        let change = Change::new(self.intent());
+        let change = if authority.asks() { from_where(link, change).await? } else { change };
+        authority.confirm(&change).await?;
         link.ask(&order).await?;
         if self.no_wait {
             return Ok(HomeReport { accepted: true, position: None, elapsed_ms: None });
         }
-        let end = accepted.wait(link, context.screen).await?;
+        let end = accepted.wait(link, screen).await?;
         Ok(HomeReport { accepted: true, position: end.place, elapsed_ms: end.elapsed_ms })
     }
+}
+
+/// With each axis and where it is now, as far as the controller tells; a busy one may refuse to.
+async fn from_where(link: &mut Link, change: Change) -> Result<Change, Failure> {
+    let place = match link.place().await {
+        Ok(record) => Coordinates::of(&record),
+        Err(failure) if failure.kind == Kind::Refused => return Ok(change.note("Where the axes are was not told.")),
+        Err(failure) => return Err(failure),
+    };
+    let axes = ["X", "Y", "Z", "R"].into_iter().zip(place.mm());
+    Ok(axes.fold(change, |change, (axis, mm)| change.replaces(axis, &format!("{mm:.2} mm"), "origin")))
 }
 
 /// Result of a return to the origin.

@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn the_order_goes_out_alone() {
-        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@STAS SNO=0", "@HSON", "@STAS SNO=2"]);
+        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
         assert_eq!(blocks(&["position"]).unwrap(), ["@SYSP", "@RPAR E01", "@MPST"]);
         assert!(objection(&["host", "maybe"]).contains("maybe"));
         assert_eq!(intent(&["host", "off"]), "");

@@ -20,7 +20,7 @@ use super::write_log::WriteLog;
 use crate::client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
 pub use crate::client::toyo::{Moving, Refusal, jog};
 use crate::command::frame::dry_run::Plan;
-use crate::command::frame::orders::BEFORE;
+use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::toyo::layout::Record;
@@ -159,7 +159,7 @@ impl Link {
             self.plan(question, BEFORE);
             return Ok(None);
         }
-        Ok(self.try_ask(question).await?.ok())
+        Ok(self.try_ask(question).await.map_err(unwritten)?.ok())
     }
 
     /// The same of a page of the status; the others are 0.

@@ -21,7 +21,7 @@ mod eeprom;
 mod explain;
 pub mod face;
 mod failure;
-mod files;
+use super::frame::text_files as files;
 #[cfg(test)]
 mod gate;
 mod home;
@@ -39,6 +39,7 @@ mod orders;
 mod overrides;
 mod overview;
 mod palletizing;
+mod panel;
 mod param;
 mod point;
 pub mod ports;

@@ -9,7 +9,7 @@ use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::orders::{Old, Written};
+use crate::command::frame::orders::{Old, Written, unwritten};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
@@ -147,12 +147,6 @@ pub async fn look(link: &mut Link, screen: &Screen, stores: &mut [Store]) -> Res
         Ok(())
     });
     looked.await.and_then(|looked| looked).map_err(unwritten)
-}
-
-/// What failed before anything was written.
-pub fn unwritten(failure: Failure) -> Failure {
-    let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
-    Failure { message, ..failure }
 }
 
 async fn found(link: &mut Link, store: &Store) -> Result<CellState, Failure> {

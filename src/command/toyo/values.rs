@@ -192,6 +192,11 @@ impl Changes {
         Ok(Self(changes))
     }
 
+    /// What shall become of each field.
+    pub fn of(values: Vec<Option<Value>>) -> Self {
+        Self(values)
+    }
+
     /// All values, if none is left as it is.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()

@@ -1,5 +1,7 @@
 //! `yerc alarm list|history|reset|cancel`.
 
+mod recorded;
+
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -25,7 +27,7 @@ use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -377,7 +379,7 @@ impl AlarmEntry {
     /// With what `alarms.toml` says of it.
     fn explained(mut self, robot: &Robot, model: Model) -> Result<Self, Failure> {
         let origin = Origin { model: Some(model), ..Origin::of(robot) };
-        self.explained = alarms::find(origin, &self.code.to_string())?;
+        self.explained = robot.alarms.find(origin, &self.code.to_string())?;
         Ok(self)
     }
 

@@ -4,12 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::{OfflineCommand, Report, ValueKind};
+use crate::command::face::explain as face;
+use crate::command::{Report, ValueKind};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
-use crate::output::Screen;
 use crate::output::view::{Cell, Section, View};
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Status code (1 byte) or added status code (2 bytes) of an FS100 or DX200
@@ -20,11 +20,11 @@ pub struct Explain {
     code: String,
 }
 
-impl OfflineCommand for Explain {
+impl face::Explain for Explain {
     type Report = Codes;
     const ID: &'static str = "explain.yerc";
 
-    fn run(&self, _screen: &Screen) -> Result<Codes, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes, Failure> {
         let mut found = status::lookup(&self.code).map_err(|error| {
             Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
         })?;
@@ -35,9 +35,13 @@ impl OfflineCommand for Explain {
         }
         let mut codes: Vec<Code> = found.into_iter().map(Code::from).collect();
         if let Some(number) = number {
-            codes.push(Code::of_alarm(number)?);
+            codes.push(Code::of_alarm(number, alarms, origin)?);
         }
         Ok(Codes { codes })
+    }
+
+    fn alarm(&self) -> Option<String> {
+        alarm_number(&self.code).map(|number| number.to_string())
     }
 }
 
@@ -72,9 +76,9 @@ fn alarm_number(text: &str) -> Option<u32> {
 
 impl Code {
     /// An alarm number: what `alarms.toml` says of it, or where to look.
-    fn of_alarm(number: u32) -> Result<Self, Failure> {
+    fn of_alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Self, Failure> {
         let code = number.to_string();
-        let found = alarms::find(Origin::any(Family::Yerc), &code)?;
+        let found = alarms.find(origin, &code)?;
         let known = found.is_some();
         let (name, cause, remedy) = match found {
             Some(Explanation { text, cause, remedy }) => (text, cause, remedy),

@@ -1,5 +1,6 @@
 //! What the rest of the house may ask of `yerc`.
 
+use super::alarm;
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
@@ -7,13 +8,14 @@ use super::file::{Restore, back_up};
 use super::link::{Link, Yerc};
 use super::serve::Serve;
 use super::top::Poller;
-use super::{check, connect, overview};
+use super::{check, connect, overview, panel};
 use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Items, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
+use crate::command::face::panel::Panel;
 use crate::command::{Access, Command as _, Context};
 use crate::controller::yerc::{passing, simulator, status};
 use crate::failure::Failure;
@@ -27,6 +29,8 @@ impl Declaration for Yerc {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarm::List;
+    type AlarmHistory = alarm::History;
     type Serve = Serve;
     type Poller = Poller;
 
@@ -36,6 +40,7 @@ impl Declaration for Yerc {
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of an FS100 or DX200", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = panel::PANEL;
     const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {

@@ -31,6 +31,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("job list", Read, Read),
     ("job show --source", Read, Read),
     ("job stop", Write, Write),
+    ("job edit A", Destroy, Destroy),
     ("file list", Read, Read),
     ("file get A.JBI --dir DIR/new", Read, Read),
     ("file put DIR/A.JBI", Destroy, Destroy),

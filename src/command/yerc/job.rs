@@ -1,4 +1,4 @@
-//! `yerc job list|show|select|start|stop`.
+//! `yerc job list|show|select|start|stop|edit`.
 
 mod list;
 mod source;
@@ -13,6 +13,7 @@ use serde::Serialize;
 
 use self::source::Source;
 use super::each::{Denied, Outcome};
+use super::file::Edit;
 use super::link::{Link, Yerc};
 use super::numbers::within;
 use super::orders::{refuse_controls, usage};
@@ -45,6 +46,8 @@ commands! {
         Start(start::Start),
         /// Stop the running job: HOLD on
         Stop(stop::Stop),
+        /// Edit a job in your editor, and write it back
+        Edit(Edit),
     }
 }
 

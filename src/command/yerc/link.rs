@@ -13,7 +13,7 @@ use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
 use crate::client::yerc::{Cause, Client, Event, TransferError};
 use crate::command::frame::dry_run::{Known as _, Plan};
-use crate::command::frame::orders::BEFORE;
+use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
@@ -106,7 +106,8 @@ impl Link {
     /// Reads what a write replaces; nothing where the controller refuses to tell, and in a dry run, which notes the
     /// question. A line that is lost is a failure: nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
-        Ok(self.is_for(BEFORE).try_ask(question).await.known()?.and_then(Result::ok))
+        let answer = self.is_for(BEFORE).try_ask(question).await.known().map_err(unwritten)?;
+        Ok(answer.and_then(Result::ok))
     }
 
     /// Asks several questions; each has its own outcome. A dry run notes them all.

@@ -25,6 +25,7 @@ mod moves;
 mod numbers;
 mod orders;
 mod overview;
+mod panel;
 mod parts;
 mod position;
 mod raw;

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::info::AlarmReport;
 use super::info::message::{Message, Past, rows};
 use super::link::Yrcx;
+use crate::command::face::explain::{Occurrence, Recorded};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
@@ -18,7 +19,7 @@ use crate::controller::yrcx::table::Command as Row;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
 use crate::output::view::View;
-use crate::settings::alarms::{self, Origin};
+use crate::settings::alarms;
 
 commands! {
     /// Alarms.
@@ -62,7 +63,7 @@ impl Command for List {
             alarms.retain(|alarm| alarm.code.is_some());
             for alarm in &mut alarms {
                 let code = alarm.code.as_deref().unwrap_or_default();
-                alarm.explained = alarms::find(Origin::of(context.robot), code)?;
+                alarm.explained = alarms::find(context.robot, code)?;
             }
         }
         Ok(ActiveAlarms { alarm, warning, alarms })
@@ -128,6 +129,19 @@ impl Report for PastAlarms {
 
     fn failure(&self) -> Option<Failure> {
         self.alarms.failure()
+    }
+}
+
+impl Recorded for ActiveAlarms {
+    fn recorded(&self) -> Vec<Occurrence> {
+        self.alarms.iter().map(|alarm| alarm.occurrence("present".to_owned())).collect()
+    }
+}
+
+impl Recorded for PastAlarms {
+    fn recorded(&self) -> Vec<Occurrence> {
+        let known = self.alarms.known();
+        known.map(|(which, alarm)| alarm.occurrence(format!("history {}", which.number))).collect()
     }
 }
 

@@ -6,7 +6,7 @@ use super::link::Link;
 use super::overwrite::there;
 use super::single::shown;
 use super::var::held;
-use crate::command::frame::orders::{BEFORE, Old};
+use crate::command::frame::orders::{BEFORE, Old, unwritten};
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
 use crate::controller::yrcx::value::{Key, Values};
@@ -16,7 +16,7 @@ use crate::gate::Change;
 /// Reads what an order replaces; what is not told stays unknown. A dry run notes the question.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
-    let values = there(link, &read.build()?, BEFORE).await?;
+    let values = there(link, &read.build()?, BEFORE).await.map_err(unwritten)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 

@@ -376,12 +376,12 @@ mod tests {
     #[test]
     fn a_time_that_is_set_is_told_where_the_date_is_refused() {
         let line = ["clock", "set", "2014-02-02T08:45:00"];
-        let (set, failure, _) = report_on(Scripted::new([answer([0; 3]), no()]), &line);
+        let (set, failure, _) = report_on(Scripted::new([no(), no(), answer([0; 3]), no()]), &line);
         assert_eq!((&set["date"], &set["time"]), (&json!(null), &json!("08:45:00")));
         assert_eq!((&set["errors"][0]["asked"], &set["errors"][0]["code"]), (&json!("date"), &json!("5.1")));
         assert_eq!(failure.unwrap().kind.exit(), 9);
-        let (refused, peer) = run_on(Scripted::new([no()]), &line);
-        assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 1), "the date does not go alone");
+        let (refused, peer) = run_on(Scripted::new([no(), no(), no()]), &line);
+        assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 3), "the date does not go alone");
     }
 
     #[test]

@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use super::buses::BUSES;
 use super::fieldbus::Explained;
-use crate::command::{OfflineCommand, Report, ValueKind};
+use crate::command::face::explain as face;
+use crate::command::{Report, ValueKind};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
-use crate::output::Screen;
 use crate::output::view::{Section, View};
-use crate::settings::alarms::{self, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Explanation, Origin};
 use crate::settings::target::Family;
 
 /// Alarm number of a YRCX, or error of a PROFINET device
@@ -37,18 +37,22 @@ fn code(text: &str) -> Result<Code, String> {
     text.parse().map(Code::Alarm).map_err(|error| format!("{error}"))
 }
 
-impl OfflineCommand for Explain {
+impl face::Explain for Explain {
     type Report = YrcxAlarm;
     const ID: &'static str = "explain.yrcx";
 
-    fn run(&self, _screen: &Screen) -> Result<YrcxAlarm, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<YrcxAlarm, Failure> {
         Ok(match self.code.clone() {
             Code::Alarm(alarm) => {
-                let explained = alarms::find(Origin::any(Family::Yrcx), &alarm.to_string())?;
+                let explained = alarms.find(origin, &alarm.to_string())?;
                 YrcxAlarm { explained, ..alarm.into() }
             }
             Code::Bus(explained) => explained.into(),
         })
+    }
+
+    fn alarm(&self) -> Option<String> {
+        if let Code::Alarm(alarm) = &self.code { Some(alarm.to_string()) } else { None }
     }
 }
 

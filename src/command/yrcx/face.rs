@@ -2,6 +2,7 @@
 
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
+use super::alarm as alarms;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
@@ -11,13 +12,14 @@ use super::serve::ServeArgs;
 use super::top::Poller;
 use super::trace::Recorder;
 use super::unit::Unit;
-use super::{check, hold, overview};
+use super::{check, hold, overview, panel};
 use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::HeldLink;
 use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
+use crate::command::face::panel::Panel;
 use crate::command::{Access, Context, Own};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
@@ -31,6 +33,8 @@ impl Declaration for Yrcx {
     type Commands = Commands;
     type Decode = Decode;
     type Explain = Explain;
+    type Alarms = alarms::List;
+    type AlarmHistory = alarms::History;
     type Serve = ServeArgs;
     type Poller = Poller;
 
@@ -40,6 +44,7 @@ impl Declaration for Yrcx {
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yrcx-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of a YRCX", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
+    const PANEL: Panel = panel::PANEL;
     const GUARD: Guard = Guard { sends: |_| false, shows: passing::only_stops };
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;

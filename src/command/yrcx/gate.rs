@@ -29,6 +29,7 @@ const READS: &[&str] = &[
     "status --full",
     "status-reset",
     "point get 0..3",
+    "point dump @/new.csv 0..3",
     "comment get 50",
     "pallet-data get 10",
     "shift-data get 4,5",
@@ -127,6 +128,7 @@ const DESTROYS: &[(&str, &str)] = &[
     ("shift-data set 7 --mm 1,2,3,4", "point-calc shift-element 7 --element 1 --mm 9"),
     ("point set 7 --mm 9,9,9,9", "raw --wi 0x100,1,7,0,1"),
     ("pallet-data set 10 --nx 3 --ny 3 --first-point 1", "restore @/saved"),
+    ("point set 7 --mm 9,9,9,9", "point restore @/points.csv"),
 ];
 
 const MOTIONS: &[&str] = &[
@@ -168,6 +170,7 @@ impl Desk {
         let desk = Self(tempfile::tempdir().unwrap());
         let mut bench = Bench::new();
         bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
+        std::fs::write(desk.0.path().join("points.csv"), "point;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n").unwrap();
         desk
     }
 

@@ -10,7 +10,7 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
     let options = listed(cause.options);
     let (kind, hint) = match error {
         LinkError::Owned(_) => {
-            let message = format!("{label}: another master, such as a PLC, commands the controller");
+            let message = format!("{label}: another master, such as a PLC, commands the controller: {error}");
             let failure = Failure { code: cause.code.clone(), ..Failure::new(Kind::Refused, message) };
             return failure.hint(cause.advice.as_deref().unwrap_or(OWNED));
         }
@@ -65,7 +65,10 @@ mod tests {
         ] {
             let failure = not_open("cell", &scheme, &error);
             assert_eq!((failure.kind, failure.code.as_deref()), (kind, Some("0x0106")), "{error:?}");
-            assert!(failure.message.starts_with("cell: "), "{failure}");
+            assert!(
+                failure.message.starts_with("cell: ") && failure.message.ends_with("asked, and refused"),
+                "{failure}"
+            );
             assert!(failure.hint.as_ref().unwrap().contains(hint), "{failure:?}");
         }
     }

@@ -46,6 +46,7 @@ mod numbers;
 mod orders;
 mod overview;
 mod overwrite;
+mod panel;
 mod param;
 mod point_calc;
 mod port;

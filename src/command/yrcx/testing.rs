@@ -82,6 +82,7 @@ pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     let mut refused = [0; COMMAND_WORDS];
     refused[..3].copy_from_slice(&[0x4000, 2, 904]);
     let count = if risk(line) == Risk::Destroy { words(line).unwrap().len() - written(line).unwrap().len() } else { 0 };
+    let count = count + testing::count_before(&plan(line).unwrap());
     vec![Reply::Ends(0, refused); count]
 }
 
@@ -131,8 +132,13 @@ pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
 
 /// All that `armctl yrcx WORDS…` would send.
 pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
+    Ok(testing::frames(&plan(words)?))
+}
+
+/// The report of a dry run.
+fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved(DRY, words)?;
-    Ok(testing::frames(&planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))?))
+    planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))
 }
 
 /// The report of a dry run of a line.

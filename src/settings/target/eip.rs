@@ -250,7 +250,7 @@ mod tests {
             ("eip://h?role=boss", "role is owner or input_only or listen_only"),
             ("eip://h?key=1:2", "key is VENDOR"),
             ("eip://h?key=1:2:3:128.1", "key is VENDOR"),
-            ("eip://h?rpm=20ms", "unknown parameter 'rpm'"),
+            ("eip://h?rpm=20ms", "unknown parameter 'rpm'; did you mean 'rpi'?"),
         ] {
             let message = eip(url).unwrap_err();
             assert!(message.contains(part), "{url}: {message}");

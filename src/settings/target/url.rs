@@ -3,6 +3,8 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
+use crate::controller::nearest::nearest;
+
 /// Speeds that ports can have.
 const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
@@ -64,11 +66,16 @@ pub fn port(name: &str, text: &str) -> Result<u16, String> {
 }
 
 /// The part of a URL after `?`.
-pub struct Query(Vec<(String, String)>);
+pub struct Query {
+    /// What nobody took so far.
+    pairs: Vec<(String, String)>,
+    /// Every parameter that was looked for: those there are.
+    known: Vec<String>,
+}
 
 impl fmt::Display for Query {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join("&"))
+        f.write_str(&self.pairs.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join("&"))
     }
 }
 
@@ -83,21 +90,23 @@ impl Query {
             }
             pairs.push((key.to_owned(), percent_decoded(value)?));
         }
-        Ok(Self(pairs))
+        Ok(Self { pairs, known: Vec::new() })
     }
 
     /// The value of a parameter, which is then no longer there.
     pub fn take(&mut self, key: &str) -> Option<String> {
-        let index = self.0.iter().position(|(known, _)| known == key)?;
-        Some(self.0.remove(index).1)
+        self.known.push(key.to_owned());
+        let index = self.pairs.iter().position(|(known, _)| known == key)?;
+        Some(self.pairs.remove(index).1)
     }
 
     /// What nobody took is a mistake, not decoration.
     pub fn finish(&self) -> Result<(), String> {
-        match self.0.first() {
-            None => Ok(()),
-            Some((key, _)) => Err(format!("unknown parameter '{key}'")),
-        }
+        let Some((key, _)) = self.pairs.first() else { return Ok(()) };
+        Err(match nearest(key, self.known.iter().map(String::as_str)) {
+            Some(near) => format!("unknown parameter '{key}'; did you mean '{near}'?"),
+            None => format!("unknown parameter '{key}'; there are {}", self.known.join(", ")),
+        })
     }
 }
 

@@ -22,7 +22,7 @@ pub enum Error {
         serial: u32,
     },
     /// Another master has the connections of the slave.
-    #[error("another master has the connections of MAC {mac}")]
+    #[error("MAC {mac} does not give its connections, which another has")]
     Owned {
         /// The slave.
         mac: Mac,
@@ -64,12 +64,15 @@ pub enum Error {
         state: BusState,
     },
     /// The slave was polled, and does not answer polls any more.
-    #[error("MAC {mac} has not answered a poll for {} ms: {}", after.as_millis(), silence(*is_bus_alive, *state))]
+    #[error("MAC {mac} has not answered a poll for {} ms: {}", after.as_millis(),
+        if *is_heard { "it is heard, but no image of it comes whole" } else { silence(*is_bus_alive, *state) })]
     Lost {
         /// The slave.
         mac: Mac,
         /// For how long.
         after: Duration,
+        /// Whether it was heard meanwhile, and no image came whole.
+        is_heard: bool,
         /// Whether other nodes were heard meanwhile.
         is_bus_alive: bool,
         /// How the adapter gets on with the bus.

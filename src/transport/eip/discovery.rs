@@ -66,6 +66,23 @@ pub async fn list_identity(
     Ok(found)
 }
 
+/// The broadcast addresses of this machine's networks, where the system tells them: without a default route nothing else
+/// reaches everybody.
+#[cfg(target_os = "linux")]
+pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
+    use nix::net::if_::InterfaceFlags;
+
+    let all = nix::ifaddrs::getifaddrs().map_err(io::Error::from)?;
+    let ready = all.filter(|entry| entry.flags.contains(InterfaceFlags::IFF_UP | InterfaceFlags::IFF_BROADCAST));
+    Ok(ready.filter_map(|entry| Some(entry.broadcast?.as_sockaddr_in()?.ip())).collect())
+}
+
+/// The broadcast addresses of this machine's networks: this system is not asked for them.
+#[cfg(not(target_os = "linux"))]
+pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
+    Ok(Vec::new())
+}
+
 async fn gather(
     socket: &UdpSocket,
     here: SocketAddrV4,

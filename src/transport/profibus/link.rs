@@ -222,7 +222,10 @@ impl From<ProfibusError> for LinkError {
             ProfibusError::ConfigurationFault { .. } => Self::Refused(
                 cause.options(&["cfg", "gsd"]).advice("leave cfg away to take what the slave wants, or set gsd= to the file of the unit"),
             ),
-            ProfibusError::Locked { .. } => Self::Owned(cause),
+            ProfibusError::Locked { .. } => Self::Owned(cause.advice(
+                "disconnect that master, or close the session that holds the controller; role=listen in the URL sees the images \
+                 beside a PLC",
+            )),
             ProfibusError::NotReady { .. } | ProfibusError::Left { .. } => Self::Silent(
                 cause.advice("look at the unit's lamps and at the controller's display; `yrcx profibus probe` shows the diagnosis"),
             ),

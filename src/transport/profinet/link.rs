@@ -99,7 +99,10 @@ impl From<ProfinetError> for LinkError {
                 cause
                     .advice("check that no firewall drops UDP port 34964, and that no other controller has the device"),
             ),
-            E::Refused { status, .. } if status.is_owned() => Self::Owned(cause),
+            E::Refused { status, .. } if status.is_owned() => Self::Owned(cause.advice(
+                "stop the other controller first: take the device out of the PLC's project, or close the session that holds it; \
+                 a device shows its signals to its controller alone",
+            )),
             E::Refused { .. } => Self::Refused(cause.options(MODULES)),
             E::Rejected { .. } => Self::Refused(cause),
             E::Malformed { .. } | E::Senseless { .. } => {

@@ -79,7 +79,7 @@ pub async fn attach(key: &str, command: &str) -> Result<Found, AttachError> {
 }
 
 /// The same, where the spot is known.
-pub(super) async fn attach_at(spot: &Spot, key: &str, command: &str) -> Result<Found, AttachError> {
+pub async fn attach_at(spot: &Spot, key: &str, command: &str) -> Result<Found, AttachError> {
     let Some(mut end) = End::connect(spot).await? else {
         return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
     };

@@ -95,9 +95,8 @@ pub struct Spot {
 }
 
 impl Spot {
-    /// Somewhere of a test's own.
-    #[cfg(test)]
-    pub(super) fn at(stem: PathBuf) -> Self {
+    /// Somewhere of one's own: the socket, lock and log begin with this path.
+    pub fn at(stem: PathBuf) -> Self {
         Self { stem }
     }
 

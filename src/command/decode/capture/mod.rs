@@ -241,7 +241,9 @@ pub fn print<D: CaptureDecoder>(
         let _busy = busy();
         source.capture(decoder, room, without_fields)?
     };
-    let Some(capture) = capture else { return stream::print(run, id, &source, decoder) };
+    // Rows of CSV are written as they come, but for the fields of one packet.
+    let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
+    let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
     // Never as a value in between, which takes many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();

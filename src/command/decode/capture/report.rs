@@ -144,6 +144,10 @@ impl<F: Field> Report for Capture<F> {
         if self.is_detailed { self.details() } else { self.list() }
     }
 
+    fn rows(&self) -> Option<&'static str> {
+        Some("messages")
+    }
+
     fn failure(&self) -> Option<Failure> {
         if self.damage.as_deref() == Some(FULL) {
             let failure = Failure::local(format!("{}: {FULL}", self.file));

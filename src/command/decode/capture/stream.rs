@@ -9,10 +9,11 @@ use serde::ser::{Serialize, SerializeSeq as _, Serializer};
 use super::report::{Capture, Link, Links, Problems, Row};
 use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
 use crate::command::Report as _;
-use crate::command::frame::run::{Run, RunError};
+use crate::command::frame::run::{Run, RunError, as_value};
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy::busy;
+use crate::output::flat::{Lists, Rows};
 use crate::output::render::{self, Layout};
 use crate::output::view::{Table, View};
 use crate::transport::capture::Summary;
@@ -53,7 +54,12 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
         run.screen.json_as_it_comes(&ReportEnvelope::new(run, id, data, failure.as_ref()))?;
         return failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, told: true }));
     }
-    second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
+    if run.screen.format == Format::Csv {
+        second_pass.csv(run, decoder.restart())?;
+        about.notes.iter().for_each(|note| run.screen.note(note));
+    } else {
+        second_pass.rows_for_people(run, &about, layout, decoder.restart())?;
+    }
     failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -89,24 +95,14 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         decoder: D,
     ) -> Result<(), Failure> {
         let screen = &run.screen;
-        let is_csv = screen.format == Format::Csv;
         let (width, color) = (screen.width(), screen.stdout_color());
-        let text = |text: String| if is_csv { text } else { render::text(&View::text(text), width, color) };
+        let text = |text: String| render::text(&View::text(text), width, color);
         screen.data(&text(about.head()))?;
-        if !is_csv {
-            screen.data("\n")?;
-        }
+        screen.data("\n")?;
         let mut layout = layout.fit(width);
         let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
-        let mut is_first = true;
         let mut write = |table: &mut Table| {
-            let piece = if is_csv {
-                let csv = render::csv(&View::table(std::mem::replace(table, Table::new(&table.columns, ""))), None);
-                if is_first { csv } else { csv.split_once('\n').map_or(String::new(), |(_, rows)| rows.to_owned()) }
-            } else {
-                layout.piece(&table.rows, color)
-            };
-            is_first = false;
+            let piece = layout.piece(&table.rows, color);
             table.rows.clear();
             screen.data(&piece)
         };
@@ -125,8 +121,28 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         if about.notes.is_empty() {
             return Ok(());
         }
-        let notes = text(about.notes.join("\n"));
-        screen.data(&if is_csv { notes } else { format!("\n{notes}") })
+        screen.data(&format!("\n{}", text(about.notes.join("\n"))))
+    }
+
+    /// The messages as CSV, each without its list of fields.
+    fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
+        let (mut rows, mut count, mut is_first) = (Rows::default(), 0_usize, true);
+        let mut write = |rows: &mut Rows| {
+            let below = Rows::under(rows.columns().to_vec());
+            run.screen.data(&std::mem::replace(rows, below).csv(std::mem::take(&mut is_first)))
+        };
+        let mut written = Ok(());
+        self.rows(decoder, |row| {
+            written = as_value(&row).and_then(|mut data| {
+                data.as_object_mut().and_then(|fields| fields.remove("fields"));
+                rows.add(&[], &data, Lists::None);
+                count += 1;
+                if count.is_multiple_of(PIECE) { write(&mut rows) } else { Ok(()) }
+            });
+            written.is_ok()
+        })?;
+        written?;
+        write(&mut rows)
     }
 }
 

@@ -1,7 +1,6 @@
 //! `armctl robots edit` and `path`: the file itself.
 
 use std::io::Write as _;
-use std::path::Path;
 
 use anyhow::Context as _;
 use schemars::JsonSchema;
@@ -9,21 +8,15 @@ use serde::Serialize;
 
 use super::file;
 use crate::command::Report;
-use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::edited::open_editor;
 use crate::command::frame::run::{Run, RunError};
-use crate::failure::{Failure, plain};
+use crate::failure::Failure;
 use crate::files;
-use crate::output::editor;
 use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
 /// What a new file begins with.
 const NEW: &str = "# The robots of this site. `armctl help inventory` shows the form of this file.\n";
-
-/// What editors are named by, the first that is set.
-const VARIABLES: [&str; 2] = ["VISUAL", "EDITOR"];
-/// The editor where none is named.
-const USUAL: &str = if cfg!(windows) { "notepad" } else { "vi" };
 
 /// Has a copy of the file edited; it replaces the file if it can be read.
 pub fn edit(run: &Run) -> Result<(), RunError> {
@@ -66,23 +59,6 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
             Err(Failure { hint: Some(hint), ..failure }.into())
         }
     }
-}
-
-/// Waits until the editor of the user has ended.
-fn open_editor(path: &Path) -> Result<(), Failure> {
-    let named = VARIABLES.iter().find_map(|name| std::env::var(name).ok().filter(|line| !line.trim().is_empty()));
-    let line = named.unwrap_or_else(|| USUAL.to_owned());
-    let hint = || format!("set {} to the editor of your choice", VARIABLES.join(" or "));
-    let words = shlex::split(&line).filter(|words| !words.is_empty());
-    let words = words.ok_or_else(|| Failure::usage(format!("the editor '{line}' is not a command")).hint(hint()))?;
-    // Ctrl-C in the editor is the editor's.
-    catch_interrupts();
-    let ended = editor::wait_for(&words, path);
-    let ended = ended.map_err(|error| Failure::usage(format!("editor '{line}': {}", plain(&error))).hint(hint()))?;
-    if ended.success() {
-        return Ok(());
-    }
-    Err(Failure::local(format!("the editor '{line}' failed ({ended}); nothing was changed")).hint(hint()))
 }
 
 /// The file after an edit.

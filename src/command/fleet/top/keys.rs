@@ -1,6 +1,7 @@
 //! What keys order. None of them reaches a robot.
 
 use crate::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crate::output::painter::Explained;
 
 /// What a key orders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,20 +96,8 @@ pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     })
 }
 
-/// A key and what it does, for people: where it counts, the key, in short, in full.
-pub struct Explained {
-    /// Whether it counts in the list, and on the screen of one robot.
-    pub counts: (bool, bool),
-    /// The key as it is written.
-    pub key: &'static str,
-    /// For the last line of the screen; empty for keys that are only in the help.
-    pub short: &'static str,
-    /// For the help.
-    pub full: &'static str,
-}
-
-/// Every key, in the order in which they are explained.
-pub const KEYS: [Explained; 15] = [
+/// Every key, in the order in which they are explained: whether it counts in the list, and on the screen of one robot.
+pub const KEYS: [((bool, bool), Explained); 15] = [
     explained((true, false), "↑ ↓", "choose", "choose a robot; also j k, PgUp PgDn, Home End"),
     explained((true, false), "Enter", "open", "all about the chosen robot"),
     explained((false, true), "Esc", "list", "back to the list; also Backspace"),
@@ -126,8 +115,13 @@ pub const KEYS: [Explained; 15] = [
     explained((true, true), "Ctrl-L", "", "draw everything anew"),
 ];
 
-const fn explained(counts: (bool, bool), key: &'static str, short: &'static str, full: &'static str) -> Explained {
-    Explained { counts, key, short, full }
+const fn explained(
+    counts: (bool, bool),
+    key: &'static str,
+    short: &'static str,
+    full: &'static str,
+) -> ((bool, bool), Explained) {
+    (counts, Explained { key, short, full })
 }
 
 #[cfg(test)]

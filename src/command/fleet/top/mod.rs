@@ -25,9 +25,10 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
 use self::keys::{KeyAction, order};
-use self::model::Model;
-use self::poller::{Pace, Update, follow};
+pub use self::model::Model;
+pub use self::poller::{Pace, Update, follow};
 use self::view::Palette;
+pub use self::view::robot;
 use crate::command::families;
 use crate::command::frame::attach::identify;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};

@@ -55,6 +55,8 @@ pub struct Model {
     pub is_typing: bool,
     /// Whether the keys are explained.
     pub has_help: bool,
+    /// Whether the screen of a robot shows its signals.
+    pub has_signals: bool,
 }
 
 /// Order of the list.
@@ -148,7 +150,21 @@ impl Model {
             filter: String::new(),
             is_typing: false,
             has_help: false,
+            has_signals: true,
         }
+    }
+
+    /// The room of the signals goes to the axes.
+    #[must_use]
+    pub fn without_signals(self) -> Self {
+        Self { has_signals: false, ..self }
+    }
+
+    /// Puts the cursor at the axis of this name, where there is one.
+    pub fn choose_axis(&mut self, name: &str) {
+        let axes = self.chosen().and_then(Seen::sample).and_then(|sample| sample.whole.as_ref());
+        let found = axes.and_then(|whole| whole.axes.iter().position(|axis| axis.name.eq_ignore_ascii_case(name)));
+        self.axis = found.unwrap_or(self.axis);
     }
 
     /// Takes what a look came to.

@@ -258,6 +258,7 @@ pub fn timed(envelope: Envelope) -> Envelope {
     Envelope { time: Some(Timestamp::now()), ..envelope }
 }
 
+/// What is written, as a value.
 pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
 }

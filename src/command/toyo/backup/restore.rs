@@ -303,9 +303,8 @@ async fn look_at<'j>(
     found: &Controller,
     results: &mut [PartResult],
 ) -> Result<Vec<Looked<'j>>, Failure> {
-    let (mut looked, total) = (Vec::new(), jobs.len());
+    let (mut looked, mut read) = (Vec::new(), screen.parts_progress("parts read", jobs.len()));
     for ((index, job), result) in jobs.iter().enumerate().zip(results) {
-        screen.step(&format!("{}/{total} {}", index + 1, job.part));
         match look_at_one(link, screen, job, found).await {
             Ok(stores) => looked.push(Looked { index, job, stores }),
             Err(failure) if failure.kind == Kind::Interrupted => return Err(failure),
@@ -316,6 +315,7 @@ async fn look_at<'j>(
                 }
             }
         }
+        read.advance(1);
     }
     Ok(looked)
 }

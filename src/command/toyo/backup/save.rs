@@ -103,16 +103,17 @@ async fn save(
         let is_wanted = chosen.iter().any(|part| part.to_string() == entry.name);
         is_wanted && earlier.controller.robot_type == controller.robot_type
     })?;
-    for (number, part) in chosen.iter().enumerate() {
+    let mut saved = screen.parts_progress("parts saved", chosen.len());
+    for part in &chosen {
         let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
         let read = async {
-            screen.step(&format!("{}/{} {part}", number + 1, chosen.len()));
             let Text { text, left_out } = content::read(link, screen, *part, &controller).await?;
             Ok(saving::Part { left_out, ..saving::Part::new(saving::Content::Text(part.file(), text)) })
         };
         if !list.part(entry, read).await? {
             break;
         }
+        saved.advance(1);
     }
     let tried = list.items().len();
     let made = list.end(chosen[tried..].iter().map(Item::pending))?;

@@ -1,14 +1,12 @@
 //! `toyo point list`.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::get::Points;
 use super::{OTHER_TASK, Row, read_all};
-use crate::command::toyo::files;
+use crate::command::frame::sheet::{self, SheetOptions};
 use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
@@ -23,7 +21,8 @@ use crate::output::view::{Section, View};
 #[command(
     after_help = format!(
         "999 points take a minute and a half at 9600 baud. The file of --csv is whole or is not written; `point set \
-         --from` reads it, and `-o csv` prints the same.\n\n{OTHER_TASK}"
+         --from` reads it. With --update, a file that is there keeps its comments (columns whose names begin with \
+         comment), its order and the points that are not read.\n\n{OTHER_TASK}"
     )
 )]
 pub struct List {
@@ -36,12 +35,8 @@ pub struct List {
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
-    /// Write them into this new file
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Replace the file if it exists
-    #[arg(long, requires = "csv")]
-    force: bool,
+    #[command(flatten)]
+    sheet: SheetOptions,
 }
 
 impl Command for List {
@@ -59,7 +54,7 @@ impl Command for List {
             return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from))
                 .hint("name the lower row with --from"));
         }
-        let target = files::target(self.csv.as_deref(), self.force, several)?;
+        let target = self.sheet.target(several)?;
         let points: Vec<i32> = (self.from..=self.to).collect();
         let axes = if target.is_none() { link.letters().await?.all() } else { Default::default() };
         let (task, answers) = read_all(link, screen, self.task, &points).await?;
@@ -70,7 +65,7 @@ impl Command for List {
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
         let settings: Vec<Setting> =
             answers.iter().flatten().filter(|record| record.is_listed()).map(setting).collect();
-        let file = files::write(&target, &points::write(&settings, AXES))?;
+        let file = target.write(&points::columns(AXES), &points::rows(&settings), sheet::number)?;
         let left_out = items.into_iter().filter(|item| item.value().is_none()).collect();
         Ok(Listing::File(Saved { task, file, saved: settings.len(), asked: points.len(), left_out }))
     }

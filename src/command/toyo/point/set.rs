@@ -6,20 +6,20 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::list::AXES;
 use super::{OTHER_TASK, Row, field};
 use crate::command::frame::authority::Authority;
+use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::teach::printed;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, runs};
-use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
+use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{files, link, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
-use crate::controller::toyo::bulk::points;
+use crate::controller::toyo::bulk::points::{self, Partial};
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
@@ -31,8 +31,10 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(
     after_help = format!(
-        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it. All of it \
-         is checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
+        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it; with \
+         commas, semicolons or tabs, and with decimal commas where cells are not parted by commas. Coordinates that it \
+         has no column for stay as they are on the controller. Columns beginning with comment are yours. All of it is \
+         checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
          a million rewrites. If the work is cut off, it says what is done; the same command, or --resume, goes on.\n\n\
          {OTHER_TASK}"
     )
@@ -79,16 +81,14 @@ impl Command for Set {
             return tasks::done(link, stored).await;
         };
         let name = files::shown(file);
-        let read = points::read(&files::read(file)?, AXES).map_err(|errors| files::faulty(&name, &errors))?;
-        let points = read.into_iter().map(|(point, _)| store(point.values)).collect::<Result<Vec<Store>, Failure>>()?;
+        let points = points::read_partial(&files::read(file)?).map_err(|errors| files::faulty(&name, &errors))?;
         if points.is_empty() {
             return Err(
                 Failure::usage(format!("{name} has no points")).hint("`toyo point list --csv FILE` writes such a file")
             );
         }
-        let left_out = stores::left_out(&points, self.resume.as_deref())?;
         let task = tasks::choose(link, self.task).await?;
-        let stored = self.store_all(link, screen, &authority, (task, points), left_out).await;
+        let stored = self.store_file(link, screen, &authority, (task, &points)).await;
         tasks::done(link, stored).await
     }
 }
@@ -108,6 +108,41 @@ impl Set {
         let (coordinates, found) = changes.completed(link, &read, sketch).await?;
         let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?;
         self.store_all(link, screen, authority, (task, vec![stored.over(found)]), 0).await
+    }
+
+    /// Stores the points of a file. What it has no column for is read first, and kept.
+    async fn store_file(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        authority: &Authority<'_>,
+        (task, points): (u8, &[Partial]),
+    ) -> Result<Stored, Failure> {
+        // With zeros for what is not known yet.
+        let whole =
+            |point: &Partial| store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect());
+        let mut stores = points.iter().map(whole).collect::<Result<Vec<Store>, Failure>>()?;
+        let left_out = stores::left_out(&stores, self.resume.as_deref())?;
+        if points.iter().all(|point| point.values.iter().all(Option::is_some)) {
+            return self.store_all(link, screen, authority, (task, stores), left_out).await;
+        }
+        if link.is_dry() {
+            for point in &points[left_out..] {
+                let row = Some(point.row());
+                let read = Request::read_parameter(points::table(), row).map_err(|error| link::wrong(&error))?;
+                link.ask(&read).await.known()?;
+                link.plan_overwriting(&read, &parameter_sketch(points::table(), row, &point.values[1..])).await?;
+            }
+            return Err(unknown());
+        }
+        stores::look(link, screen, &mut stores[left_out..]).await?;
+        for (point, store) in points.iter().zip(&mut stores).skip(left_out) {
+            let CellState::This(found) = &store.found else { continue };
+            let whole = Changes::of(point.values[1..].to_vec()).over(found)?;
+            let number = std::iter::once(Value::Number(point.row()));
+            store.cell = self::store(number.chain(whole).collect())?.cell;
+        }
+        self.store_all(link, screen, authority, (task, stores), left_out).await
     }
 
     /// Stores points once it is confirmed that they are replaced.

@@ -122,7 +122,13 @@ impl Command for Get {
 }
 
 impl Get {
-    async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
+    /// All steps of a task, or of the current one.
+    pub fn whole(task: Option<u8>) -> Self {
+        Self { file: None, task, from: 1, to: None, until_end: false, numbers: false, explain: false, force: false }
+    }
+
+    /// Reads the steps: of which task, how many it has room for, and what each is.
+    pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
         let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
@@ -130,7 +136,8 @@ impl Get {
         Ok((task, room, read))
     }
 
-    async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
+    /// Notes what is read.
+    pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "how many steps the task has");
         link.plan(&steps::read_request(self.from), "the first step");

@@ -3,6 +3,7 @@
 mod check;
 mod copy;
 mod delete;
+mod edit;
 mod get;
 mod insert;
 mod list;
@@ -25,6 +26,8 @@ commands! {
         Get(get::Get),
         /// Write a program from a file, after checking it whole
         Put(put::Put),
+        /// Edit a program in your editor, and write it back
+        Edit(edit::Edit),
         /// Insert a step; those behind it move on
         Insert(insert::Insert),
         /// Delete steps; those behind them move up

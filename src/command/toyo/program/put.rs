@@ -23,7 +23,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 use crate::output::view::{Section, View};
@@ -47,6 +47,9 @@ pub struct Put {
     #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
           value_parser = clap::value_parser!(u16).range(1..=5000))]
     resume: Option<u16>,
+    /// What the controller has to hold for it to be written.
+    #[arg(skip)]
+    expected: Option<Vec<Record>>,
 }
 
 const HELP: &str = "The whole file is checked before anything is sent. It is the program of the task: steps behind its \
@@ -71,7 +74,7 @@ impl Command for Put {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
-        let name = files::shown(&self.file);
+        let name = self.name();
         let bytes = files::read(&self.file)?;
         let checked = match self.at {
             None => program::check(&bytes, MOST_STEPS),
@@ -95,6 +98,16 @@ impl Command for Put {
 }
 
 impl Put {
+    /// A program that was edited, in the place of what it was.
+    pub fn edited(file: PathBuf, task: Option<u8>, expected: Vec<Record>) -> Self {
+        Self { file, task, at: None, keep_rest: false, resume: None, expected: Some(expected) }
+    }
+
+    /// What the text is called in messages.
+    fn name(&self) -> String {
+        if self.expected.is_some() { "edited".to_owned() } else { files::shown(&self.file) }
+    }
+
     async fn store(
         &self,
         (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
@@ -102,7 +115,7 @@ impl Put {
         from: u16,
         last: u16,
     ) -> Result<Stored, Failure> {
-        let name = files::shown(&self.file);
+        let name = self.name();
         let first = self.at.unwrap_or(1);
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
@@ -116,6 +129,10 @@ impl Put {
         };
         let end = if self.at.is_some() || self.keep_rest { last } else { room };
         let found = steps::read_all(link, screen, from..=end).await?;
+        if self.expected.as_ref().is_some_and(|expected| *expected != found) {
+            return Err(Failure::new(Kind::Rejected, "the program was changed on the controller meanwhile")
+                .hint("edit it again, and put both together"));
+        }
         let wanted = program.steps.iter().map(|step| step.record.clone()).chain(std::iter::repeat_with(steps::nop));
         let wanted = (first..=end).zip(wanted).skip_while(|(step, _)| *step < from);
         let changes: Vec<Edit> = wanted

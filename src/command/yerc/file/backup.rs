@@ -125,6 +125,7 @@ async fn save(
     };
     let is_kept = |_: &_, entry: &Entry| work.iter().any(|listed| is_copy(entry, listed));
     let mut saving = task.begin((screen, robot), controller, is_kept)?;
+    let mut saved = screen.parts_progress("files saved", work.len());
     for (number, Listed { kind, name, local }) in work.iter().enumerate() {
         let shown = encoding.decode(name);
         let label = format!("{}/{} {shown}", number + 1, work.len());
@@ -142,6 +143,7 @@ async fn save(
         if !saving.part(entry, fetched).await? {
             break;
         }
+        saved.advance(1);
     }
     let tried = saving.items().len();
     let rest = work[tried..].iter().map(|listed| Item::pending(encoding.decode(&listed.name)));
@@ -161,7 +163,6 @@ async fn fetch(
     path: PathBuf,
 ) -> Result<Saved, Failure> {
     let mut draft = Target::new(path, true)?.begin()?;
-    screen.step(label);
     let mut progress = screen.bytes_progress(label, None);
     let mut hash = Hash::default();
     transfer::fetch_listed(link, file, |block| {

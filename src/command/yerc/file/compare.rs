@@ -1,6 +1,7 @@
 //! A transfer against a local file, block by block and without holding either.
 
 use super::content::Pieces;
+use crate::command::backup::dated::WithoutDate;
 use crate::failure::Failure;
 
 /// How two files compare.
@@ -12,6 +13,8 @@ pub struct Comparison {
     pub local_bytes: u64,
     /// Where the first difference is, counted from 0; the shorter size if one is the beginning of the other.
     pub first_difference: Option<u64>,
+    /// Whether the dates differ that were left out.
+    pub dates_differ: bool,
 }
 
 /// A comparison under way.
@@ -27,75 +30,11 @@ pub struct Comparer<'a> {
     without: Option<[WithoutDate; 2]>,
 }
 
-/// The lines of a job without `///DATE`, which a controller writes anew when it stores a job.
-#[derive(Debug, Default)]
-pub struct WithoutDate {
-    at: LineState,
-}
-
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-enum LineState {
-    /// Before a line.
-    #[default]
-    Start,
-    /// After so many bytes of a line, which are those of the one left out.
-    Begun(usize),
-    Kept,
-    Dropped,
-}
-
-const DATE: &[u8] = b"///DATE";
-
-impl WithoutDate {
-    /// What stays of the next bytes.
-    pub fn take(&mut self, piece: &[u8]) -> Vec<u8> {
-        let mut kept = Vec::with_capacity(piece.len());
-        for &byte in piece {
-            let begun = match self.at {
-                LineState::Start => Some(0),
-                LineState::Begun(count) => Some(count),
-                LineState::Kept | LineState::Dropped => None,
-            };
-            if let Some(count) = begun {
-                if DATE.get(count) == Some(&byte) {
-                    self.at = if count + 1 == DATE.len() { LineState::Dropped } else { LineState::Begun(count + 1) };
-                    continue;
-                }
-                kept.extend_from_slice(DATE.get(..count).unwrap_or_default());
-                self.at = LineState::Kept;
-            }
-            if self.at == LineState::Kept {
-                kept.push(byte);
-            }
-            if byte == b'\n' {
-                self.at = LineState::Start;
-            }
-        }
-        kept
-    }
-
-    /// What stays at the end.
-    pub fn rest(&mut self) -> &'static [u8] {
-        match std::mem::take(&mut self.at) {
-            LineState::Begun(count) => DATE.get(..count).unwrap_or_default(),
-            LineState::Start | LineState::Kept | LineState::Dropped => &[],
-        }
-    }
-
-    /// What stays of all of it.
-    pub fn of(whole: &[u8]) -> Vec<u8> {
-        let mut filter = Self::default();
-        let mut kept = filter.take(whole);
-        kept.extend_from_slice(filter.rest());
-        kept
-    }
-}
-
 impl<'a> Comparer<'a> {
     /// Compares with a local file from its beginning; on request without the lines that controllers rewrite, which then
-    /// count neither as differences nor as bytes.
+    /// are no differences.
     pub fn new(pieces: Pieces<'a>, ignore_header: bool) -> Self {
-        let so_far = Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None };
+        let so_far = Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None, dates_differ: false };
         Self {
             pieces,
             ahead: Vec::new(),
@@ -148,6 +87,13 @@ impl<'a> Comparer<'a> {
             self.at = self.ahead.len();
             self.fill()?;
         }
+        if let Some([theirs, ours]) = &self.without {
+            let Comparison { controller_bytes, local_bytes, first_difference, dates_differ } = &mut self.so_far;
+            *dates_differ = theirs.left_out() != ours.left_out();
+            *first_difference = first_difference.map(|at| theirs.in_whole(at));
+            *controller_bytes = controller_bytes.saturating_add(theirs.dropped());
+            *local_bytes = local_bytes.saturating_add(ours.dropped());
+        }
         Ok(self.so_far)
     }
 
@@ -181,6 +127,7 @@ mod tests {
 
     use super::super::content::Content;
     use super::*;
+    use crate::command::backup::dated::aligned;
 
     fn compared(local: &[u8], blocks: &[&[u8]]) -> Comparison {
         let mut file = tempfile::NamedTempFile::new().unwrap();
@@ -210,6 +157,7 @@ mod tests {
                 controller_bytes: theirs as u64,
                 local_bytes: local.len() as u64,
                 first_difference: difference,
+                dates_differ: false,
             };
             assert_eq!(compared(local, &blocks), expected, "{local:?} {blocks:?}");
         }
@@ -227,11 +175,26 @@ mod tests {
     }
 
     #[test]
+    fn a_difference_behind_the_date_is_told_where_it_is() {
+        let (theirs, ours) = (b"/JOB\r\n///DATE 2026\r\nNOP\r\n", b"/JOB\r\n///DATE 27\r\nNOW\r\n");
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(ours).unwrap();
+        let mut content = Content::open_any(file.path()).unwrap();
+        let mut comparer = Comparer::new(content.pieces().unwrap(), true);
+        comparer.take(theirs).unwrap();
+        assert_eq!(comparer.finish().unwrap().first_difference, Some(22));
+        let ([old, new], dates_differ) = aligned(theirs.to_vec(), ours.to_vec());
+        assert_eq!((&old[..], &new[..], dates_differ), (&theirs[..], &b"/JOB\r\n///DATE 2026\r\nNOW\r\n"[..], true));
+    }
+
+    #[test]
     fn the_date_of_a_job_can_be_left_out() {
         let job = |date: &str| format!("/JOB\r\n//INST\r\n{date}///ATTR SC,RW\r\nNOP\r\nEND\r\n///DA").into_bytes();
         let (old, new) = (job("///DATE 2026/03/14 08:00\r\n"), job("///DATE 2026/11/22 11:00\r\n"));
         assert_eq!(WithoutDate::of(&old), job(""));
-        for (theirs, ours) in [(&old, &new), (&old, &job("")), (&job(""), &new)] {
+        for (theirs, ours, dates_differ) in
+            [(&old, &new, true), (&old, &job(""), true), (&job(""), &new, true), (&old, &old, false)]
+        {
             let mut file = tempfile::NamedTempFile::new().unwrap();
             file.write_all(ours).unwrap();
             let mut content = Content::open_any(file.path()).unwrap();
@@ -239,8 +202,12 @@ mod tests {
                 let mut comparer = Comparer::new(content.pieces().unwrap(), true);
                 theirs.chunks(size).for_each(|block| comparer.take(block).unwrap());
                 let found = comparer.finish().unwrap();
-                let bytes = job("").len() as u64;
-                let expected = Comparison { controller_bytes: bytes, local_bytes: bytes, first_difference: None };
+                let expected = Comparison {
+                    controller_bytes: theirs.len() as u64,
+                    local_bytes: ours.len() as u64,
+                    first_difference: None,
+                    dates_differ,
+                };
                 assert_eq!(found, expected);
             }
         }

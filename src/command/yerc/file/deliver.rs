@@ -159,7 +159,7 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
     .map_err(|failure| Failure { message: format!("sent, but not read back: {}", failure.message), ..failure })?;
     match comparer.finish()? {
         Comparison { first_difference: None, .. } => Ok(()),
-        Comparison { controller_bytes, local_bytes, first_difference: Some(at) } => Err(Failure::new(
+        Comparison { controller_bytes, local_bytes, first_difference: Some(at), .. } => Err(Failure::new(
             Kind::Malformed,
             format!(
                 "the controller gives back other bytes than were sent: {controller_bytes} against {local_bytes}, the \
@@ -167,7 +167,7 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
             ),
         )
         .hint(format!(
-            "`yerc file diff {name} {path}` shows them; --ignore-header leaves out the line \
+            "`yerc file diff {name} {path} --exact` shows them; --ignore-header leaves out the line \
              ///DATE, which a controller may rewrite"
         ))),
     }

@@ -6,16 +6,18 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::compare::{Comparer, Comparison, WithoutDate};
+use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
+use crate::command::backup::dated::{DATE_LINE, aligned};
 use crate::command::backup::text_diff;
 use crate::command::backup::text_diff::{Change, DiffLine, Ending, MOST_TEXT, TextDifference};
 use crate::command::frame::local::{local_name, own_folder};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
+use crate::controller::yerc::files::FileType;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Section, View};
 
@@ -28,8 +30,11 @@ pub struct Diff {
     /// Local file; without it, the one of that name in this folder
     #[arg(value_name = "FILE")]
     local: Option<PathBuf>,
-    /// Compare without the line ///DATE, which controllers rewrite
+    /// Compare the line ///DATE of a job too, which controllers rewrite
     #[arg(long)]
+    exact: bool,
+    /// The usual way, since jobs are compared without their date
+    #[arg(long, hide = true, conflicts_with = "exact")]
     ignore_header: bool,
 }
 
@@ -48,7 +53,8 @@ impl Command for Diff {
         let shown = Shown::new(link.encoding, file.as_bytes());
         let mut theirs = Vec::new();
         let mut progress = screen.bytes_progress(&shown.name, None);
-        let mut comparer = Comparer::new(source.pieces()?, self.ignore_header);
+        let without_date = !self.exact && (self.ignore_header || file.file_type() == Some(FileType::Jbi));
+        let mut comparer = Comparer::new(source.pieces()?, without_date);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
             // One byte more than can be shown tells that there is more.
@@ -70,8 +76,8 @@ impl Command for Diff {
                 }
                 ours.extend(piece);
             }
-            if self.ignore_header {
-                (theirs, ours) = (WithoutDate::of(&theirs), WithoutDate::of(&ours));
+            if without_date {
+                ([theirs, ours], _) = aligned(theirs, ours);
             }
             TextDifference::of(link.encoding, &theirs, &ours)
         } else {
@@ -88,9 +94,10 @@ pub struct Difference {
     name: Shown,
     /// The local file.
     path: String,
-    /// Byte for byte.
+    /// Byte for byte, but for what is ignored.
     equal: bool,
-    /// Without what --ignore-header leaves out, here and below.
+    /// Lines that differ and do not count: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
+    ignored: Vec<&'static str>,
     controller_bytes: u64,
     local_bytes: u64,
     /// Where the first difference is, counted from 0.
@@ -139,7 +146,7 @@ impl From<&Hunk> for text_diff::Hunk {
 
 impl Difference {
     fn new(name: Shown, path: String, comparison: Comparison, text: Option<TextDifference>) -> Self {
-        let Comparison { controller_bytes, local_bytes, first_difference } = comparison;
+        let Comparison { controller_bytes, local_bytes, first_difference, dates_differ } = comparison;
         let equal = first_difference.is_none();
         let (hunks, only_line_endings) = match text {
             _ if equal => (Some(Vec::new()), Some(false)),
@@ -150,6 +157,7 @@ impl Difference {
             name,
             path,
             equal,
+            ignored: if dates_differ { vec![DATE_LINE] } else { Vec::new() },
             controller_bytes,
             local_bytes,
             first_difference_offset: first_difference,
@@ -161,6 +169,11 @@ impl Difference {
     fn summary(&self) -> String {
         let Self { name: Shown { name, .. }, path, controller_bytes, local_bytes, .. } = self;
         match (self.first_difference_offset, self.only_line_endings) {
+            (None, _) if !self.ignored.is_empty() => {
+                format!(
+                    "{name} on the controller and {path} are the same but for the line {DATE_LINE}, which is ignored"
+                )
+            }
             (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
             (Some(_), Some(true)) => format!("{name} on the controller and {path} differ in line endings only"),
             (Some(at), None) => {
@@ -179,7 +192,11 @@ impl Report for Difference {
             Some(hunks) if !self.equal && self.only_line_endings == Some(false) => {
                 let hunks: Vec<text_diff::Hunk> = hunks.iter().map(text_diff::Hunk::from).collect();
                 let old = format!("{} (controller)", self.name.name);
-                View::default().and(Section::Lines(text_diff::unified(&old, &self.path, &hunks)))
+                let mut lines = text_diff::unified(&old, &self.path, &hunks);
+                if !self.ignored.is_empty() {
+                    lines.push(format!("the line {DATE_LINE} differs too and is ignored").into());
+                }
+                View::default().and(Section::Lines(lines))
             }
             Some(hunks) if !self.equal => {
                 let ends = |bare: Change| {
@@ -218,6 +235,7 @@ mod tests {
             controller_bytes: theirs.len() as u64,
             local_bytes: ours.len() as u64,
             first_difference: first.map(|at| at as u64),
+            dates_differ: false,
         };
         let text = TextDifference::of(Encoding::ShiftJis, theirs, ours);
         Difference::new(Shown::new(Encoding::ShiftJis, b"A.JBI"), "a.jbi".to_owned(), comparison, text)

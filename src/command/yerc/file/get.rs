@@ -6,7 +6,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::name::{self, Shown};
+use super::name;
+use super::pattern::{self, Wanted, is_pattern};
 use super::results::{FileResult, Results, Shape};
 use super::transfer;
 use crate::command::frame::local::{LocalNames, Target, make_folder, own_folder};
@@ -23,7 +24,7 @@ use crate::output::{Screen, escape};
 /// Fetches files from the controller.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Names in full, such as TESTJOB.JBI
+    /// Names, such as TESTJOB.JBI, or patterns, such as '*.JBI'; '*' for all
     #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
     /// Folder to put them in; - writes one file to stdout
@@ -43,7 +44,6 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
         let Context { link, screen, robot, several, .. } = context;
-        let files = name::all_typed(link.encoding, &self.names)?;
         let to_stdout = self.dir == Path::new("-");
         if to_stdout {
             self.check_stdout(*screen, several)?;
@@ -51,24 +51,39 @@ impl Command for Get {
         // Paths without a leading `./` are easier to read.
         let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
         let folder = own_folder(dir, &robot.name, several);
-        let targets = if to_stdout { Vec::new() } else { targets(link.encoding, &files, &folder, self.force)? };
-        if link.is_dry() {
-            transfer::plan_all(link, "fetches the file", files.iter().map(FileName::save))?;
-            return Ok(Fetched { results: None });
+        // What needs no list is checked before the first byte.
+        let typed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
+        let typed = name::all_typed(link.encoding, &typed)?;
+        if !to_stdout {
+            targets(link.encoding, &typed, &folder, self.force)?;
         }
-        if let ([file], true) = (&files[..], to_stdout) {
+        let looking = screen.spinner("looking for files");
+        let Some(wanted) = pattern::find(link, &self.names).await? else {
+            return Ok(Fetched { results: None });
+        };
+        drop(looking);
+        if let ([file], true) = (&typed[..], to_stdout) {
             print(link, screen, file).await?;
             return Ok(Fetched { results: None });
+        }
+        let mut names = LocalNames::new(link.encoding);
+        let (mut work, mut results) = (Vec::with_capacity(wanted.len()), Vec::with_capacity(wanted.len()));
+        for Wanted { name, file } in wanted {
+            let placed = match file.and_then(|file| Ok((names.assign(file.as_bytes())?, file))) {
+                Ok((local, file)) => Ok((file, Target::new(folder.join(local), self.force)?)),
+                Err(failure) => Err(failure),
+            };
+            results.push(FileResult::pending(name, placed.as_ref().ok().map(|(_, target)| target.path())));
+            work.push(placed);
         }
         if several {
             make_folder(&folder)?;
         }
-        let mut results = Vec::with_capacity(files.len());
-        for (file, target) in files.iter().zip(&targets) {
-            results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(target.path())));
-        }
-        for ((file, target), result) in files.iter().zip(&targets).zip(&mut results) {
-            let outcome = save(link, screen, file, target).await;
+        for (work, result) in work.into_iter().zip(&mut results) {
+            let outcome = match work {
+                Ok((file, target)) => save(link, screen, &file, &target).await,
+                Err(failure) => Err(failure),
+            };
             if !result.settle(outcome.map(Some)) {
                 break;
             }
@@ -79,7 +94,7 @@ impl Command for Get {
 
 impl Get {
     fn check_stdout(&self, screen: Screen, several: bool) -> Result<(), Failure> {
-        if self.names.len() > 1 || several {
+        if self.names.len() > 1 || self.names.iter().any(|name| is_pattern(name)) || several {
             return Err(Failure::usage("--dir - writes one file of one robot").hint("name a folder for several"));
         }
         if screen.is_json() {

@@ -122,7 +122,7 @@ pub fn all_typed(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, 
 pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
     if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
         return Err(Failure::usage(format!("the file name '{}' has a * or ? in it", bytes.escape_ascii()))
-            .hint("name every file in full; `yerc file list` shows them, `yerc file backup` fetches all"));
+            .hint("name every file in full; `yerc file list` shows them, and `yerc file get` takes patterns"));
     }
     FileName::new(bytes).map_err(|error| {
         Failure::usage(error.to_string()).hint("jobs are named as in TESTJOB.JBI; `yerc file list` shows what there is")

@@ -141,15 +141,15 @@ impl Command for Restore {
         let mut open: Vec<(Delivery, &mut FileResult)> =
             deliveries.into_iter().zip(&mut results).filter(|(_, result)| result.state == State::NotTried).collect();
         deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
-        let total = open.len();
-        for (number, (delivery, result)) in open.iter_mut().enumerate() {
-            screen.step(&format!("{}/{total} {}", number + 1, result.name.name));
+        let mut sent = screen.parts_progress("files sent", open.len());
+        for (delivery, result) in &mut open {
             // What nobody knew of is not deleted.
             let replace = manner.replace && lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
             if !result.settle(outcome) {
                 break;
             }
+            sent.advance(1);
         }
         drop(open);
         Results::new(results, SHAPE).report()

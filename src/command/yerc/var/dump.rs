@@ -12,8 +12,10 @@ use serde_json::json;
 use super::entry::{Entry, is_undefined};
 use super::get::Named;
 use super::read::{once, read_all};
-use super::{in_form, listed, parse_kind};
+use super::{in_form, listed, parse_kind, sheet};
 use crate::command::frame::local::{Draft, Target};
+use crate::command::frame::sheet::{SheetManner, SheetTarget};
+use crate::command::frame::text_files;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::variables::{Reference, VariableKind};
@@ -31,10 +33,12 @@ pub const VERSION: u64 = 1;
 #[command(
     after_help = "A dump is whole or is not written: if the controller refuses a variable for another reason than \
                         that it is undefined, the dump fails and names it. Undefined positions stand in the file as \
-                        null. `var restore` writes a dump back."
+                        null. `var restore` writes a dump back.\n\nA name that ends in .csv makes a table for a \
+                        spreadsheet. With --update, one that is there keeps its comments (columns whose names begin with \
+                        comment), its order and the variables that are not read."
 )]
 pub struct Dump {
-    /// A new file, or - for stdout
+    /// A new file, NAME.json or NAME.csv; - for stdout
     file: PathBuf,
     /// Only these kinds: B,I,D,R,S,P,BP,EX
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind, conflicts_with = "ranges")]
@@ -42,9 +46,8 @@ pub struct Dump {
     /// Exactly these, such as B0..B199,P0..P9, instead of all standard numbers
     #[arg(long, value_name = "REF", value_delimiter = ',', value_parser = Named::parse)]
     ranges: Vec<Named>,
-    /// Replace the file if it exists
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    manner: SheetManner,
     /// The robot whose variables went into the file, so that a second robot does not replace them.
     #[arg(skip)]
     taken: OnceLock<String>,
@@ -58,8 +61,7 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, .. } = context;
         let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
-        let is_stdout = self.file == Path::new("-");
-        let draft = if is_stdout { None } else { self.place(&robot.name, link.is_dry())? };
+        let mut place = self.place(&robot.name, link.is_dry())?;
         let progress = screen.spinner("reading");
         let answers = read_all(link, &references, |wanted, known| {
             progress.say(&format!("reading {} ({known} of {})", listed(wanted.iter().copied()), references.len()));
@@ -79,6 +81,15 @@ impl Command for Dump {
             .iter()
             .filter_map(|reference| Some(Entry::new(*reference, answers.get(reference)?, link.encoding).bare()))
             .collect();
+        let (total, undefined) = (variables.len(), variables.iter().filter(|entry| !entry.has_value()).count());
+        let taken_at = now();
+        let file = self.file.display().to_string();
+        let summary = Summary { file, variables: total, undefined, taken_at: taken_at.clone() };
+        if let Place::Sheet(target) = &place {
+            let (columns, rows) = sheet::rows(&variables);
+            target.write(&columns, &rows, sheet::canonical)?;
+            return Ok(Dumped::Summary(summary));
+        }
         let document = Document {
             format: FORMAT,
             version: VERSION,
@@ -88,20 +99,26 @@ impl Command for Dump {
             simulated: robot.target.value.is_simulated(),
             model: link.model.name(),
             encoding: link.encoding.label(),
-            taken_at: now(),
+            taken_at,
             variables,
         };
-        let Some(mut draft) = draft else { return Ok(Dumped::Document(document)) };
-        let summary = Summary {
-            file: self.file.display().to_string(),
-            variables: document.variables.len(),
-            undefined: document.variables.iter().filter(|entry| !entry.has_value()).count(),
-            taken_at: document.taken_at.clone(),
-        };
-        draft.write(document.text()?.as_bytes())?;
-        draft.commit()?;
+        match &mut place {
+            Place::Json(Some(draft)) => draft.write(document.text()?.as_bytes())?,
+            _ => return Ok(Dumped::Document(document)),
+        }
+        if let Place::Json(Some(draft)) = place {
+            draft.commit()?;
+        }
         Ok(Dumped::Summary(summary))
     }
+}
+
+/// Where a dump goes.
+enum Place {
+    Stdout,
+    /// Begun unless it is a dry run.
+    Json(Option<Draft>),
+    Sheet(SheetTarget),
 }
 
 impl Dump {
@@ -117,15 +134,28 @@ impl Dump {
 
     /// The file beside the one to be written, made before the controller is asked: what cannot be written is known
     /// at once.
-    fn place(&self, robot: &str, dry: bool) -> Result<Option<Draft>, Failure> {
-        let shown = self.file.display();
-        if self.taken.get_or_init(|| robot.to_owned()) != robot {
-            return Err(Failure::usage(format!("{shown} is for the variables of one robot"))
-                .hint("run the command once for each robot, with a file each"));
+    fn place(&self, robot: &str, dry: bool) -> Result<Place, Failure> {
+        let is_sheet = is_sheet(&self.file);
+        if !is_sheet && self.manner.is_of_tables() {
+            return Err(Failure::usage("--update and --decimal-comma are for tables").hint("name a file NAME.csv"));
         }
-        let target = Target::new(self.file.clone(), self.force)?;
-        if dry { Ok(None) } else { target.begin().map(Some) }
+        if self.file == Path::new("-") {
+            return Ok(Place::Stdout);
+        }
+        if self.taken.get_or_init(|| robot.to_owned()) != robot {
+            return Err(text_files::of_one_robot(&self.file));
+        }
+        if is_sheet {
+            return self.manner.target(self.file.clone(), false).map(Place::Sheet);
+        }
+        let target = Target::new(self.file.clone(), self.manner.force)?;
+        Ok(Place::Json(if dry { None } else { Some(target.begin()?) }))
     }
+}
+
+/// Whether a file is a table, by its name.
+pub fn is_sheet(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
 }
 
 /// To the second: what is read takes longer.

@@ -10,6 +10,7 @@ mod position;
 mod read;
 mod restore;
 mod set;
+mod sheet;
 
 pub use self::entry::is_undefined;
 pub use self::part::unlike;
@@ -28,7 +29,7 @@ commands! {
         Set(set::Set),
         /// Print each change of variables
         Watch(Watch<get::Get>),
-        /// Save variables to a JSON file
+        /// Save variables to a JSON or CSV file
         Dump(dump::Dump),
         /// Write variables from a dump
         Restore(restore::Restore),

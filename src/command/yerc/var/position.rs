@@ -211,6 +211,11 @@ fn key(axis: &NamedAxis) -> String {
     }
 }
 
+/// Whether a field is an axis: `x_mm`, `s_pulses`, `axis_8_pulses`.
+pub fn is_axis(name: &str) -> bool {
+    axis_of(name).is_some()
+}
+
 /// `x` of `x_mm`, `8` of `axis_8_pulses`.
 fn axis_of(name: &str) -> Option<&str> {
     let (axis, unit) = name.rsplit_once('_')?;

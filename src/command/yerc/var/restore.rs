@@ -11,18 +11,20 @@ use serde_json::Value as Json;
 
 use super::super::orders::usage;
 use super::super::writes::{WriteOrder, write_all};
-use super::dump::{FORMAT, VERSION};
+use super::dump::{FORMAT, VERSION, is_sheet};
 use super::entry::{Entry, Reading, is_undefined};
 use super::read::{Answers, read_whatever};
+use super::sheet::{self, Kept};
 use super::{listed, parse_kind};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
-use crate::command::yerc::link::Yerc;
+use crate::command::frame::text_files;
+use crate::command::yerc::link::{Link, Yerc};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::{Axes, Position};
-use crate::controller::yerc::query::Query as _;
+use crate::controller::yerc::query::{Query as _, WriteVariable};
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
 use crate::files;
@@ -33,9 +35,12 @@ use crate::output::view::{Cell, View};
 #[derive(Debug, Args)]
 #[command(after_help = "The whole file is checked before anything is sent. What is null in it is left alone on the \
                         controller. If the work is interrupted or refused, the message says which variables were \
-                        written and which were not.")]
+                        written and which were not.\n\nA table has columns name, value, text, and for positions type, x_mm \
+                        and the like; cells are parted by commas, semicolons or tabs, and numbers may have a decimal comma \
+                        unless commas part the cells. What a position has no cell for stays as it is on the \
+                        controller. Columns beginning with comment are yours.")]
 pub struct Restore {
-    /// What `var dump` wrote
+    /// What `var dump` wrote: JSON, or a table NAME.csv
     file: PathBuf,
     /// Only these kinds: B,I,D,R,S,P,BP,EX
     #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind)]
@@ -56,12 +61,19 @@ impl Command for Restore {
         let wrong = |error: String| {
             Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file, or take a new dump")
         };
-        let dump = Dump::parse(&self.read()?, link.model).map_err(wrong)?;
-        let kept: Vec<(Reference, Option<Value>)> =
+        let dump = if is_sheet(&self.file) {
+            let reading = Reading { model: link.model, encoding: link.encoding };
+            let variables = sheet::read(&text_files::read(&self.file)?, reading);
+            let variables = variables.map_err(|errors| text_files::faulty(&shown, &errors))?;
+            Dump { model: link.model, encoding: link.encoding, variables }
+        } else {
+            Dump::parse(&self.read()?, link.model).map_err(wrong)?
+        };
+        let kept: Vec<(Reference, Option<Kept>)> =
             dump.variables.into_iter().filter(|(reference, _)| self.wants(*reference)).collect();
         let undefined: Vec<Reference> =
             kept.iter().filter(|(_, value)| value.is_none()).map(|(reference, _)| *reference).collect();
-        let values: Vec<(Reference, Value)> =
+        let values: Vec<(Reference, Kept)> =
             kept.into_iter().filter_map(|(reference, value)| Some((reference, value?))).collect();
         if values.is_empty() {
             return Err(Failure::usage(format!("{shown} holds no values of the kinds wanted"))
@@ -80,6 +92,10 @@ impl Command for Restore {
         let known = read_whatever(link, &references).await.known()?;
         let is_dry = known.is_none();
         let known = known.unwrap_or_default();
+        if is_dry {
+            plan_parts(link, &values)?;
+        }
+        let values = resolved(values, &known, is_dry).map_err(wrong)?;
         let is_same = |(reference, value): &(Reference, Value)| {
             known.get(reference).is_some_and(|old| old.as_ref().is_ok_and(|old| same(old, value)))
         };
@@ -110,6 +126,38 @@ impl Command for Restore {
             requests: steps.len(),
         })
     }
+}
+
+/// Notes positions that a file has in part.
+fn plan_parts(link: &mut Link, values: &[(Reference, Kept)]) -> Result<(), Failure> {
+    for (reference, kept) in values {
+        let Some(fields) = kept.describe() else { continue };
+        let about = format!("writes {reference} with {fields}, unless it is so; the rest of it stays as it is");
+        let Some(ends) = kept.sketch(reference.kind) else {
+            link.then(&about);
+            continue;
+        };
+        let [one, other] = ends.map(|value| WriteVariable::new(reference.number, value).map_err(usage));
+        link.plan_depending(&one?.request(), &other?.request(), Reason::about(&about).depending_on("what was read"));
+    }
+    Ok(())
+}
+
+/// Whole values: positions with what they keep. Those are not known in a dry run, and left out.
+fn resolved(values: Vec<(Reference, Kept)>, known: &Answers, is_dry: bool) -> Result<Vec<(Reference, Value)>, String> {
+    let values = values.into_iter().filter(|(_, kept)| !is_dry || kept.describe().is_none());
+    let whole = |(reference, kept): (Reference, Kept)| {
+        let old = match known.get(&reference) {
+            Some(Ok(old)) => Some(old),
+            // What was not told cannot be kept.
+            Some(Err(denied)) if kept.describe().is_some() && !is_undefined(denied) => {
+                return Err(format!("{reference}: it could not be read: {}", Failure::from(denied.clone()).message));
+            }
+            _ => None,
+        };
+        Ok((reference, kept.over(reference.kind, old).map_err(|error| format!("{reference}: {error}"))?))
+    };
+    values.map(whole).collect()
 }
 
 /// What is overwritten. A variable that holds nothing yet is not.
@@ -164,7 +212,7 @@ impl Restore {
 struct Dump {
     model: Model,
     encoding: Encoding,
-    variables: Vec<(Reference, Option<Value>)>,
+    variables: Vec<(Reference, Option<Kept>)>,
 }
 
 impl Dump {
@@ -193,7 +241,7 @@ impl Dump {
             if let Some(first) = seen.insert(reference, index) {
                 return Err(format!("variables[{index}].name: {reference} is in variables[{first}] already"));
             }
-            variables.push((reference, value));
+            variables.push((reference, value.map(Kept::Whole)));
         }
         Ok(Self { model: taken_from, encoding, variables })
     }

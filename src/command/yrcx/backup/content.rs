@@ -201,7 +201,8 @@ impl Records {
         self.columns.iter().map(|(name, _)| *name).collect()
     }
 
-    fn row(&self, number: i32, values: &Values) -> Row {
+    /// What an answer says, under the columns.
+    pub fn row(&self, number: i32, values: &Values) -> Row {
         let text = |(index, key): (usize, Key)| match values.value(key) {
             None if index == 0 => {
                 let value = Value::Int(number);
@@ -214,7 +215,7 @@ impl Records {
     }
 
     /// What stores a row.
-    fn store(&self, row: &Row) -> Result<Store, Failure> {
+    pub fn store(&self, row: &Row) -> Result<Store, Failure> {
         let cells = || self.columns.iter().map(|(_, key)| *key).zip(row);
         // A hand is written to a robot, and read with the robot that has it; no hand system has no text.
         let draft = cells().fold(self.write.order(), |draft, (key, text)| match key {

@@ -7,8 +7,10 @@ mod parts;
 mod restore;
 mod rows;
 mod save;
+mod sheet;
 #[cfg(test)]
 mod tests;
 
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
+pub use sheet::{Dump, Restore};

@@ -6,20 +6,24 @@ use crate::command::Context;
 use crate::command::backup::manifest;
 use crate::command::backup::manifest::{LeftOut, State};
 use crate::command::backup::{Item, Items, NOT_CHOSEN, NOT_MACHINE, Restored, Restoring, would_leave, would_write};
+use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::refusal::refused;
 use crate::controller::yrcx::signal::output;
+use crate::controller::yrcx::value::Values;
 use crate::failure::{Failure, Kind};
 use crate::gate::Change;
 use crate::output::Screen;
 
 /// A part with what is to be written.
-struct Job {
-    part: Part,
-    stores: Vec<Store>,
+pub struct Job {
+    /// Which.
+    pub part: Part,
+    /// Value by value.
+    pub stores: Vec<Store>,
 }
 
 /// Writes back what a backup holds.
@@ -50,21 +54,33 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
     check_origin(link, &manifest.controller, *force).await?;
     let mut items: Vec<Item> = jobs.iter().map(|job| pending(job.part)).collect();
     let mut found = Comparison::default();
-    let total = jobs.len();
-    for (number, (job, item)) in jobs.iter().zip(&mut items).enumerate() {
-        screen.step(&format!("{}/{total} comparing {}", number + 1, job.part));
+    let mut compared = screen.parts_progress("parts compared", jobs.len());
+    for (job, item) in jobs.iter().zip(&mut items) {
         found.compare(link, screen, job, item).await?;
+        compared.advance(1);
     }
-    authority.confirm(&found.change(&folder.display().to_string())).await?;
+    carry_out((link, screen, &authority), &jobs, &found, &mut items, &folder.display().to_string()).await?;
+    Ok(Restored::new(folder, Items::new(items)))
+}
+
+/// Writes what differs, once it is confirmed; `by` names what it comes from.
+pub async fn carry_out(
+    (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
+    jobs: &[Job],
+    found: &Comparison,
+    items: &mut [Item],
+    by: &str,
+) -> Result<(), Failure> {
+    authority.confirm(&found.change(by)).await?;
     // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
-    match interruptible(write_all(link, screen, &jobs, &found, &mut items)).await {
-        Ok(outcome) => outcome?,
+    match interruptible(write_all(link, screen, jobs, found, items)).await {
+        Ok(outcome) => outcome,
         Err(failure) => {
             let first = items.iter_mut().find(|item| matches!(item.state, State::NotTried));
             first.ok_or_else(|| failure.clone())?.fail(failure);
+            Ok(())
         }
     }
-    Ok(Restored::new(folder, Items::new(items)))
 }
 
 /// What a dry run says of each part of the backup.
@@ -106,13 +122,13 @@ fn pending(part: Part) -> Item {
 
 /// What the controller has, beside what the backup has.
 #[derive(Default)]
-struct Comparison {
+pub struct Comparison {
     /// Of each part, which stores are to be written.
-    differ: Vec<Vec<usize>>,
+    pub differ: Vec<Vec<usize>>,
     /// What is overwritten: which, old and new.
-    replaced: Vec<(String, String, String)>,
+    pub replaced: Vec<(String, String, String)>,
     /// Values that the controller has nothing for yet.
-    added: usize,
+    pub added: usize,
 }
 
 impl Comparison {
@@ -128,25 +144,29 @@ impl Comparison {
         let mut differ = Vec::new();
         for (at, store) in stores.iter().enumerate() {
             let there = content::ask(link, &store.read).await.map_err(|failure| named(store, failure))?;
-            match there {
-                Ok(values) if store.is_there(&values) => count(&mut item.unchanged),
-                Ok(values) => {
-                    self.replaced.push((
-                        format!("{} {}", part.kind(), store.key),
-                        store.describe(&values),
-                        store.wanted(),
-                    ));
-                    differ.push(at);
-                }
-                Err(_) => {
-                    self.added += 1;
-                    differ.push(at);
-                }
+            if self.sort(*part, store, there.ok().as_ref(), item) {
+                differ.push(at);
             }
             progress.advance(1);
         }
         self.differ.push(differ);
         Ok(())
+    }
+
+    /// Says whether a value is to be written, and counts it.
+    pub fn sort(&mut self, part: Part, store: &Store, there: Option<&Values>, item: &mut Item) -> bool {
+        match there {
+            Some(values) if store.is_there(values) => {
+                count(&mut item.unchanged);
+                return false;
+            }
+            Some(values) => {
+                let what = format!("{} {}", part.kind(), store.key);
+                self.replaced.push((what, store.describe(values), store.wanted()));
+            }
+            None => self.added += 1,
+        }
+        true
     }
 
     /// What is asked for.
@@ -173,14 +193,14 @@ async fn write_all(
     found: &Comparison,
     items: &mut [Item],
 ) -> Result<(), Failure> {
-    let total = jobs.len();
-    for (number, ((job, differ), item)) in jobs.iter().zip(&found.differ).zip(items).enumerate() {
-        screen.step(&format!("{}/{total} {}", number + 1, job.part));
+    let mut written = screen.parts_progress("parts written", jobs.len());
+    for ((job, differ), item) in jobs.iter().zip(&found.differ).zip(items) {
         if let Err(failure) = write(link, screen, job, differ, item).await
             && !item.fail(failure)
         {
             break;
         }
+        written.advance(1);
     }
     Ok(())
 }
@@ -211,7 +231,7 @@ async fn write(
 }
 
 /// The failure of one value.
-fn named(store: &Store, failure: Failure) -> Failure {
+pub fn named(store: &Store, failure: Failure) -> Failure {
     Failure { message: format!("{}: {}", store.key, failure.message), ..failure }
 }
 
@@ -236,4 +256,4 @@ fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
 }
 
 /// On what it depends whether a value is written.
-const IF_IT_DIFFERS: &str = "the comparison: it is written if it differs";
+pub const IF_IT_DIFFERS: &str = "the comparison: it is written if it differs";

@@ -182,7 +182,6 @@ impl Reading<'_> {
         let Self { link, screen, controller, list, .. } = self;
         let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
         let read = async {
-            screen.step(&part.to_string());
             let text = read(link, screen, controller, part, wanted).await?;
             let notes = match part {
                 Part::Points(_) => {

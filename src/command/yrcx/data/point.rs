@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::{Four, four, mm};
 use crate::command::frame::teach::printed;
+use crate::command::yrcx::backup::{Dump, Restore};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite;
@@ -30,6 +31,10 @@ commands! {
         Get(Get),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
+        /// Save points and their comments to a CSV file
+        Dump(Dump),
+        /// Write points and their comments from a CSV file
+        Restore(Restore),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Which boards of EtherNet/IP answer on a network.
 
+use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::time::Duration;
 
@@ -47,10 +48,20 @@ impl fieldbus::Search for Search {
     fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>> {
         async move {
             let mut targets = [&self.targets[..], &self.broadcast].concat();
-            if targets.is_empty() {
+            let is_open = targets.is_empty();
+            if is_open {
                 targets.push(SocketAddrV4::new(Ipv4Addr::BROADCAST, PORT));
             }
-            let asked = list_identity(self.bind, &targets, wait, &tap.into()).await;
+            let tap = tap.into();
+            let mut asked = list_identity(self.bind, &targets, wait, &tap).await;
+            // Without a default route, as on a machine that is in the robots' network alone, each network is asked.
+            if is_open && asked.as_ref().is_err_and(|error| error.kind() == ErrorKind::NetworkUnreachable) {
+                let networks = discovery::broadcasts().unwrap_or_default();
+                let networks: Vec<_> = networks.into_iter().map(|own| SocketAddrV4::new(own, PORT)).collect();
+                if !networks.is_empty() {
+                    asked = list_identity(self.bind, &networks, wait, &tap).await;
+                }
+            }
             let found = asked.map_err(|error| {
                 Failure::new(Kind::NoAnswer, format!("the network cannot be asked: {}", plain(&error)))
                     .hint("choose the card with --bind, or the network with --broadcast, as in 192.168.0.255")

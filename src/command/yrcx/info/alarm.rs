@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
+use crate::command::face::explain::Occurrence;
 use crate::command::yrcx::single::{one_row, shown};
 use crate::controller::yrcx::alarm;
 use crate::controller::yrcx::table::Command;
@@ -64,6 +65,16 @@ impl AlarmReport {
             part: place(Key::Place2, Key::Place2Number),
             explained: None,
         }
+    }
+}
+
+impl AlarmReport {
+    /// The same as one of a list.
+    pub fn occurrence(&self, place: String) -> Occurrence {
+        // The words are this program's, not the controller's.
+        let parts = [&self.place, &self.part].into_iter().flatten().map(String::as_str).collect::<Vec<_>>();
+        let data = Some(parts.join(", ")).filter(|data| !data.is_empty());
+        Occurrence { place, code: self.code.clone().unwrap_or_default(), text: None, data, time: None }
     }
 }
 

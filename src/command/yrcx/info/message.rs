@@ -62,7 +62,7 @@ pub type Past = Rows<Which, AlarmReport>;
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Which {
     /// Its number in the history.
-    number: i32,
+    pub number: i32,
 }
 
 /// A row each.

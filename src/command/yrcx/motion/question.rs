@@ -16,6 +16,8 @@ struct Goal {
     unit: Unit,
     /// Of axes 1 to 4; none for those that are not sent anywhere.
     axes: [Option<i32>; 4],
+    /// They are distances from where the robot is.
+    by_distance: bool,
 }
 
 /// Has a motion confirmed that `intent` says in a line. Where somebody is asked, it is read first where the robot is and
@@ -28,35 +30,64 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     let Some(goal) = goal(link, order).await? else {
         let is_point = order.values().int(Key::Point).is_some();
         let change = if is_point { change.note("Where the point is could not be read.") } else { change };
-        return authority.confirm(&change).await;
+        let here = present(link, Unit::Mm).await?;
+        return authority.confirm(&standing(change, order, here)).await;
     };
-    let here = match goal.unit {
-        Unit::Mm => Command::PositionMm,
-        Unit::Pulse => Command::PositionPulse,
-    };
-    let here = read(link, here, &[]).await?.and_then(|values| values.axes());
-    authority.confirm(&goal.describe(change, here)).await?;
+    let here = present(link, goal.unit).await?;
+    authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
         _ => Err(outdated("the point was changed since the question; nothing was moved")),
     }
 }
 
-/// Where an order leads, as far as numbers tell; distances and pallets are told in its line.
+/// Where the robot is; nothing where that is refused.
+async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failure> {
+    let command = match unit {
+        Unit::Mm => Command::PositionMm,
+        Unit::Pulse => Command::PositionPulse,
+    };
+    Ok(read(link, command, &[]).await?.and_then(|values| values.axes()))
+}
+
+/// With each axis that is meant and where it is now, of a motion whose end no numbers tell.
+fn standing(change: Change, order: &Order, here: Option<[i32; 4]>) -> Change {
+    let is_meant = meant(order);
+    let here = here.into_iter().flatten().enumerate().filter(|(at, _)| is_meant(*at));
+    here.fold(change, |change, (at, steps)| change.item(format!("axis {}: from {} mm", at + 1, mm(steps))))
+}
+
+/// Which axes an order means: those that it names, or all.
+fn meant(order: &Order) -> impl Fn(usize) -> bool + use<> {
+    let mask = order.values().int(Key::Axes).unwrap_or_default();
+    move |at| mask == 0 || mask >> at & 1 == 1
+}
+
+/// Where an order leads, as far as numbers tell; a distance is one as long as it is not known from where. Pallets are told
+/// in its line.
 async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     let values = order.values();
-    let mask = values.int(Key::Axes).unwrap_or_default();
-    let is_meant = |at: usize| mask == 0 || mask >> at & 1 == 1;
+    let is_meant = meant(order);
+    let by_distance = is_distance(order.command());
     let goal = |unit, of: &dyn Fn(Key) -> Option<i32>| {
         let axes = [0, 1, 2, 3].map(|at: usize| Key::AXES.get(at).filter(|_| is_meant(at)).and_then(|key| of(*key)));
-        Some(Goal { unit, axes })
+        Some(Goal { unit, axes, by_distance })
     };
     let point = match order.command() {
-        Command::MoveMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
-        Command::MovePulse => return Ok(goal(Unit::Pulse, &|key| values.int(key))),
-        Command::DriveMm => return Ok(goal(Unit::Mm, &|_| values.int(Key::Target))),
-        Command::DrivePulse => return Ok(goal(Unit::Pulse, &|_| values.int(Key::Target))),
-        Command::MovePtp | Command::MoveLinear | Command::MoveArch | Command::DrivePoint => Key::Point,
+        Command::MoveMm | Command::MoveiMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
+        Command::MovePulse | Command::MoveiPulse => return Ok(goal(Unit::Pulse, &|key| values.int(key))),
+        Command::DriveMm | Command::PushMm => return Ok(goal(Unit::Mm, &|_| values.int(Key::Target))),
+        Command::DrivePulse | Command::PushPulse => return Ok(goal(Unit::Pulse, &|_| values.int(Key::Target))),
+        Command::DriveiMm => return Ok(goal(Unit::Mm, &|_| values.int(Key::Distance))),
+        Command::DriveiPulse => return Ok(goal(Unit::Pulse, &|_| values.int(Key::Distance))),
+        Command::MovePtp
+        | Command::MoveLinear
+        | Command::MoveArch
+        | Command::DrivePoint
+        | Command::PushPoint
+        | Command::MoveiPtp
+        | Command::MoveiLinear
+        | Command::DriveiPoint => Key::Point,
         Command::MoveCircular => Key::Point2,
         _ => return Ok(None),
     };
@@ -68,6 +99,20 @@ async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     }))
 }
 
+/// Whether an order's numbers, or those of its point, are distances.
+const fn is_distance(command: Command) -> bool {
+    matches!(
+        command,
+        Command::MoveiMm
+            | Command::MoveiPulse
+            | Command::MoveiPtp
+            | Command::MoveiLinear
+            | Command::DriveiMm
+            | Command::DriveiPulse
+            | Command::DriveiPoint
+    )
+}
+
 /// Reads something; nothing where the controller refuses to tell.
 async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
     let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
@@ -75,6 +120,16 @@ async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<
 }
 
 impl Goal {
+    /// With the start known, a distance is a place.
+    fn from(self, here: Option<[i32; 4]>) -> Self {
+        let Some(here) = here.filter(|_| self.by_distance) else { return self };
+        let mut axes = self.axes;
+        for (axis, here) in axes.iter_mut().zip(here) {
+            *axis = axis.map(|by| here.saturating_add(by));
+        }
+        Self { axes, by_distance: false, ..self }
+    }
+
     /// A line for each axis that is sent somewhere, and how far that is.
     fn describe(&self, change: Change, here: Option<[i32; 4]>) -> Change {
         let shown = |steps: i32| if self.unit == Unit::Mm { mm(steps) } else { steps.to_string() };
@@ -83,6 +138,7 @@ impl Goal {
             let (what, new) = (format!("axis {}", at + 1), format!("{} {}", shown(new), self.unit.symbol()));
             match here.and_then(|here| here.get(at).copied()) {
                 Some(old) => change.replaces(&what, &shown(old), &new),
+                None if self.by_distance => change.item(format!("{what}: by {new}")),
                 None => change.item(format!("{what}: to {new}")),
             }
         });

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::command::yrcx::fieldbus::{At, Purpose};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
+use crate::failure::plain;
 use crate::files;
 use crate::settings::target::profibus::Profibus;
 use crate::transport::image::tap::Tap;
@@ -84,7 +85,8 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
 /// A file of the maker, and the module in it that is named, or that alone has the sizes of an image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MAX_FILE).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
+    let bytes = files::read(path, MAX_FILE)
+        .map_err(|error| LinkError::Local(wrong(plain(&error)).advice("gsd= of the URL names the maker's file")))?;
     let gsd = Gsd::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))?;
     let found = match module {
         Some(name) => gsd.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name)),

@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::command::yrcx::fieldbus::{At, Purpose};
 use crate::controller::yrcx::image::{COMMAND_WORDS, Image};
 use crate::controller::yrcx::signal::resting;
+use crate::failure::plain;
 use crate::files;
 use crate::settings::target::profinet::{Profinet, address};
 use crate::settings::target::{Address, Bus};
@@ -159,7 +160,9 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 /// Reads a file of the maker.
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MOST_BYTES).map_err(|error| LinkError::Local(wrong(error.to_string())))?;
+    let bytes = files::read(path, MOST_BYTES).map_err(|error| {
+        LinkError::Local(wrong(plain(&error)).advice("name the maker's file: gsdml= of the URL, or FILE"))
+    })?;
     Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }
 

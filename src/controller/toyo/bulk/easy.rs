@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::reading::{self, Reading};
+use crate::findings::Finding;
 use crate::toyo::field::{Field, Value};
-use crate::toyo::findings::Finding;
 use crate::toyo::table::Command;
 
 /// An easy program: its number, and its values.

@@ -14,8 +14,8 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use super::reading::{self, Reading};
+use crate::findings::Finding;
 use crate::toyo::field::Value;
-use crate::toyo::findings::Finding;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;
 use crate::toyo::table::palletizing::RECORDS;

@@ -21,8 +21,8 @@ use toml_edit::{Item, TableLike};
 
 use super::reading::{self, Reading};
 use super::{Placed, Setting};
+use crate::findings::{Finding, SourceLocation};
 use crate::toyo::field::Value;
-use crate::toyo::findings::{Finding, SourceLocation};
 use crate::toyo::program::MOST_STEPS;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;

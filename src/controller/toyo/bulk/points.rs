@@ -1,17 +1,14 @@
 //! Rows of the coordinate table as CSV: `point,x_mm,y_mm,z_mm,r_mm`, a point a line.
 //!
-//! Columns come in any order, and cells may be quoted. A column may only be missing for an axis that the controller does
-//! not have; such a coordinate is 0. Millimetres have a point, and at most two decimals.
+//! Columns come in any order, and cells may be quoted. Where all coordinates are wanted, a column may only be missing for an
+//! axis that the controller does not have; such a coordinate is 0. Millimetres have at most two decimals.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use super::{Placed, Setting, plain};
-use crate::nearest::nearest;
+use crate::findings::{Finding, Findings};
+use crate::sheet::{self, Column, Dialect, Row, Sheet};
 use crate::toyo::field::{Field, Value};
-use crate::toyo::findings::{Finding, Findings, SourceLocation};
-use crate::toyo::source;
 use crate::toyo::table::Parameter;
 
 /// The columns, in the order of the fields of the table.
@@ -25,182 +22,125 @@ pub fn table() -> &'static Parameter {
     Parameter::named("T1").expect("the coordinate table is in the table of parameters")
 }
 
+/// The columns of so many axes (1 to 4).
+pub fn columns(axes: usize) -> Vec<Column> {
+    COLUMNS[..=axes.clamp(1, 4)].iter().map(|name| Column::number(*name)).collect()
+}
+
+/// Points as cells under all columns.
+pub fn rows(points: &[Setting]) -> Vec<Vec<String>> {
+    let cells = |point: &Setting| {
+        table().layout.fields.iter().zip(&point.values).map(|(field, value)| plain(field, value)).collect()
+    };
+    points.iter().map(cells).collect()
+}
+
 /// Points as CSV, with the columns of so many axes (1 to 4).
 pub fn write(points: &[Setting], axes: usize) -> String {
-    let columns = &COLUMNS[..=axes.clamp(1, 4)];
-    let mut text = columns.join(",");
-    text.push('\n');
-    for point in points {
-        for (index, (field, value)) in table().layout.fields.iter().zip(&point.values).take(columns.len()).enumerate() {
-            let comma = if index > 0 { "," } else { "" };
-            let _ = write!(text, "{comma}{}", plain(field, value));
+    sheet::write(Dialect::COMMAS, &columns(axes), &rows(points))
+}
+
+/// A point of a file: its number and coordinates; none where the file has no column for it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Partial {
+    /// Its number, then x, y, z and r.
+    pub values: Vec<Option<Value>>,
+    /// Its line, from 1.
+    pub line: usize,
+}
+
+impl Partial {
+    /// The number of the point.
+    pub fn row(&self) -> i32 {
+        match self.values.first() {
+            Some(Some(Value::Number(row))) => *row,
+            _ => 0,
         }
-        text.push('\n');
     }
-    text
 }
 
 /// Points in a CSV file, for a controller of so many axes (1 to 4): each once, all coordinates in range.
 pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
+    let points = read_wanted(bytes, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
+    let whole = |Partial { values, line }: Partial| {
+        let values = values.into_iter().map(|value| value.unwrap_or(Value::Number(0))).collect();
+        (Setting { parameter: table(), values }, line)
+    };
+    Ok(points.into_iter().map(whole).collect())
+}
+
+/// The same of a file that may have some of the coordinates: one of them at least.
+pub fn read_partial(bytes: &[u8]) -> Result<Vec<Partial>, Vec<Finding>> {
+    read_wanted(bytes, COLUMNS.len() - 1, &COLUMNS[..1])
+}
+
+fn read_wanted(bytes: &[u8], axes: usize, wanted: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
     let mut findings = Findings::default();
-    let lines = source::lines(bytes, &mut findings);
-    if findings.errors() > 0 {
-        return Err(findings.into_errors());
-    }
-    let mut lines = lines.iter().map(AsRef::as_ref).enumerate().map(|(index, line)| (index + 1, line));
+    let expected = format!("the first line is {}", COLUMNS[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
-    if let Some((number, line)) = lines.find(|(_, line): &(usize, &str)| !line.trim().is_empty()) {
-        if let Some(header) = header(line, number, axes, &mut findings) {
-            points = rows(lines, &header, &mut findings);
+    if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
+        let places = sheet.columns(&COLUMNS, &expected, &mut findings);
+        for (name, _) in COLUMNS.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
+            findings.error(sheet.end_of_head(), format!("column {name} is missing"), Some(expected.clone()));
         }
-    } else {
-        findings.error(SourceLocation { line: 1, column: 1 }, "the file is empty", Some(expected(axes)));
+        if findings.errors() == 0 && places[1..].iter().all(Option::is_none) {
+            findings.error(sheet.end_of_head(), "there is no column of coordinates", Some(expected));
+        }
+        if findings.errors() == 0 {
+            points = read_rows(&sheet, &places, &mut findings);
+        }
     }
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
 
-fn expected(axes: usize) -> String {
-    format!("the first line is {}", COLUMNS[..=axes.clamp(1, 4)].join(","))
-}
-
-/// Which field each column is.
-fn header(line: &str, number: usize, axes: usize, findings: &mut Findings) -> Option<Vec<usize>> {
-    let before = findings.errors();
-    let place = |at| place(line, number, at);
-    if !line.contains(',') && line.contains([';', '\t']) {
-        let hint = "save the file with commas between the columns, and points in the numbers";
-        findings.error(place(0), "the columns are not separated by commas", Some(hint.to_owned()));
-        return None;
-    }
-    let mut columns = Vec::new();
-    for (at, name) in told(cells(line), line, number, findings)? {
-        match COLUMNS.iter().position(|column| column.eq_ignore_ascii_case(&name)) {
-            Some(index) if columns.contains(&index) => {
-                findings.error(place(at), format!("column {name} is there twice"), None);
-            }
-            Some(index) => columns.push(index),
-            None => {
-                let near = nearest(&name, COLUMNS).map(|near| format!("did you mean {near}?"));
-                let message = format!("there is no column '{}'", name.escape_debug());
-                findings.error(place(at), message, near.or_else(|| Some(expected(axes))));
-            }
-        }
-    }
-    for (index, name) in COLUMNS.iter().enumerate().filter(|(index, _)| *index <= axes.clamp(1, 4)) {
-        if !columns.contains(&index) {
-            findings.error(place(line.len()), format!("column {name} is missing"), Some(expected(axes)));
-        }
-    }
-    (findings.errors() == before).then_some(columns)
-}
-
-fn rows<'l>(lines: impl Iterator<Item = (usize, &'l str)>, header: &[usize], findings: &mut Findings) -> Vec<Placed> {
-    let mut points: Vec<Placed> = Vec::new();
+fn read_rows(sheet: &Sheet, places: &[Option<usize>], findings: &mut Findings) -> Vec<Partial> {
+    let mut points: Vec<Partial> = Vec::new();
     let mut seen = HashMap::new();
-    for (number, line) in lines {
+    for row in sheet.rows() {
         if findings.is_full() {
             break;
         }
-        let Some(cells) = told(cells(line), line, number, findings) else { continue };
-        // Spreadsheets leave lines of nothing but commas.
-        if cells.iter().all(|(_, cell)| cell.is_empty()) {
-            continue;
-        }
-        if cells.len() != header.len() {
-            let message = format!("{} cells under {} columns", cells.len(), header.len());
-            findings.error(place(line, number, 0), message, None);
-            continue;
-        }
-        let mut values = vec![Value::Number(0); COLUMNS.len()];
         let before = findings.errors();
-        for (index, (at, cell)) in header.iter().zip(&cells) {
-            match coordinate(&table().layout.fields[*index], COLUMNS[*index], cell) {
-                Ok(value) => values[*index] = value,
-                Err((message, hint)) => findings.error(place(line, number, *at), message, hint),
-            }
+        let mut values = Vec::with_capacity(COLUMNS.len());
+        for (index, place) in places.iter().enumerate() {
+            let read = place.map(|at| (at, coordinate(&table().layout.fields[index], COLUMNS[index], sheet, row, at)));
+            values.push(match read {
+                None => None,
+                Some((_, Ok(value))) => Some(value),
+                Some((at, Err((message, hint)))) => {
+                    findings.error(row.place(at), message, hint);
+                    None
+                }
+            });
         }
         if findings.errors() > before {
             continue;
         }
-        let point = Setting { parameter: table(), values };
-        if let Some(other) = seen.insert(point.row(), number) {
-            let row = point.row().unwrap_or_default();
-            let message = format!("point {row} is there already, in line {other}");
-            findings.error(place(line, number, 0), message, None);
+        let point = Partial { values, line: row.line };
+        if let Some(other) = seen.insert(point.row(), row.line) {
+            let message = format!("point {} is there already, in line {other}", point.row());
+            findings.error(row.place(usize::MAX), message, None);
         }
-        points.push((point, number));
+        points.push(point);
     }
     points
 }
 
-fn coordinate(field: &Field, column: &str, cell: &str) -> Result<Value, (String, Option<String>)> {
-    if cell.is_empty() {
-        return Err((format!("{column} is empty"), None));
+fn coordinate(
+    field: &Field,
+    column: &str,
+    sheet: &Sheet,
+    row: &Row,
+    at: usize,
+) -> Result<Value, (String, Option<String>)> {
+    if row.text(at).is_empty() {
+        let hint = (column != COLUMNS[0]).then(|| "without its column, a coordinate stays as it is".to_owned());
+        return Err((format!("{column} is empty"), hint));
     }
-    field.read(cell).map_err(|error| {
-        let hint = cell.contains(',').then(|| "numbers have a point, not a comma".to_owned());
-        (error.to_string(), hint)
-    })
-}
-
-/// A cell: where it begins, in bytes, and what is in it.
-type Cell<'l> = (usize, Cow<'l, str>);
-
-/// The cells of a line; where a quote is not closed, or not at the edge of a cell, its place.
-fn cells(line: &str) -> Result<Vec<Cell<'_>>, usize> {
-    let mut cells = Vec::new();
-    let mut at = 0;
-    loop {
-        let rest = &line[at..];
-        let start = at + rest.len() - rest.trim_start().len();
-        let (cell, end) = if line[start..].starts_with('"') {
-            let (cell, end) = quoted(line, start)?;
-            (Cow::Owned(cell), end)
-        } else {
-            let end = line[start..].find(',').map_or(line.len(), |len| start + len);
-            let cell = line[start..end].trim_end();
-            match cell.find('"') {
-                Some(quote) => return Err(start + quote),
-                None => (Cow::Borrowed(cell), end),
-            }
-        };
-        cells.push((start, cell));
-        let rest = line[end..].trim_start();
-        match rest.strip_prefix(',') {
-            Some(more) => at = line.len() - more.len(),
-            None if rest.is_empty() => return Ok(cells),
-            None => return Err(line.len() - rest.len()),
-        }
+    match sheet.number(row, at) {
+        Ok(text) => field.read(&text).map_err(|error| (error.to_string(), None)),
+        Err(why) => Err((format!("{column}: '{}' is not clear", row.text(at)), Some(why.to_owned()))),
     }
-}
-
-/// The text of a quoted cell, and where it ends.
-fn quoted(line: &str, start: usize) -> Result<(String, usize), usize> {
-    let mut text = String::new();
-    let mut at = start + 1;
-    loop {
-        let len = line[at..].find('"').ok_or(start)?;
-        text.push_str(&line[at..at + len]);
-        at += len + 1;
-        if !line[at..].starts_with('"') {
-            return Ok((text.trim().to_owned(), at));
-        }
-        text.push('"');
-        at += 1;
-    }
-}
-
-fn told<'l>(
-    cells: Result<Vec<Cell<'l>>, usize>,
-    line: &str,
-    number: usize,
-    findings: &mut Findings,
-) -> Option<Vec<Cell<'l>>> {
-    cells.map_err(|at| findings.error(place(line, number, at), "the quotes are wrong here", None)).ok()
-}
-
-fn place(line: &str, number: usize, at: usize) -> SourceLocation {
-    SourceLocation { line: number, column: line[..at].chars().count() + 1 }
 }
 
 #[cfg(test)]
@@ -238,6 +178,16 @@ mod tests {
     }
 
     #[test]
+    fn some_coordinates_may_be_left_out() {
+        let points = read_partial(b"comment;point;y_mm\nabove;7;1,5\n").unwrap();
+        let value = |number| Some(Value::Number(number));
+        assert_eq!(points, [Partial { values: vec![value(7), None, value(150), None, None], line: 2 }]);
+        let error = |text: &str| read_partial(text.as_bytes()).unwrap_err()[0].message.clone();
+        assert_eq!(error("point,comment\n1,a\n"), "there is no column of coordinates");
+        assert_eq!(error("x_mm\n1\n"), "column point is missing");
+    }
+
+    #[test]
     fn an_axis_that_is_there_needs_its_column() {
         assert_eq!(
             errors("point,x_mm,y_mm,z_mm\n1,0,0,0"),
@@ -252,11 +202,6 @@ mod tests {
         for (text, expected) in [
             ("", "line 1, column 1: error: the file is empty (the first line is point,x_mm,y_mm,z_mm,r_mm)"),
             (
-                "point;x_mm;y_mm;z_mm;r_mm\n1;0;0;0;0",
-                "line 1, column 1: error: the columns are not separated by commas \
-                 (save the file with commas between the columns, and points in the numbers)",
-            ),
-            (
                 "point,x_mm,y_mm,z_mm,r_mm,x_mn\n",
                 "line 1, column 27: error: there is no column 'x_mn' (did you mean x_mm?)",
             ),
@@ -267,7 +212,7 @@ mod tests {
         let header = "point,x_mm,y_mm,z_mm,r_mm\n";
         for (row, expected) in [
             ("1,0,0,0", "line 2, column 1: error: 4 cells under 5 columns"),
-            ("1,0,0,0,", "line 2, column 9: error: r_mm is empty"),
+            ("1,0,0,0,", "line 2, column 9: error: r_mm is empty (without its column, a coordinate stays as it is)"),
             (
                 "1,0,8000.01,0,0",
                 "line 2, column 5: error: y: 8000.01 is out of range (a number, -8000.00 to 8000.00 mm)",
@@ -279,8 +224,7 @@ mod tests {
             ("1000,0,0,0,0", "line 2, column 1: error: row: 1000 is out of range (a number, 1 to 999)"),
             (
                 "1,0,\"0,5\",0,0",
-                "line 2, column 5: error: y: '0,5' is not a number, -8000.00 to 8000.00 mm \
-                 (numbers have a point, not a comma)",
+                "line 2, column 5: error: y_mm: '0,5' is not clear (numbers have a point, not a comma)",
             ),
             ("1,0,\"0,0,0", "line 2, column 5: error: the quotes are wrong here"),
             ("1,0,0\"5\",0,0", "line 2, column 6: error: the quotes are wrong here"),

@@ -6,10 +6,10 @@ use std::ops::Range;
 use toml_edit::{Document, Item, Table, TableLike, Value as Toml};
 
 use super::plain;
+use crate::findings::{Finding, Findings, SourceLocation};
 use crate::nearest::nearest;
+use crate::source;
 use crate::toyo::field::{Field, Form, Value};
-use crate::toyo::findings::{Finding, Findings, SourceLocation};
-use crate::toyo::source;
 
 /// What fields are, for people: `, mm` or `; J Japanese, E English`.
 pub(super) fn comment(fields: &[Field]) -> String {

@@ -1,7 +1,7 @@
 //! What runs after what: ends that are missing, steps that nothing reaches, jumps that only the controller knows.
 
 use super::tags::Resolved;
-use crate::toyo::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, SourceLocation};
 use crate::toyo::table::{Instruction, Op};
 
 /// Tells what looks wrong in a program without errors. A part of one may go on behind its last step.

@@ -1,8 +1,8 @@
 //! One instruction as a person writes it: short numbers, any case, labels for tags.
 
+use crate::findings::{Findings, SourceLocation};
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
-use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::table::instructions::INSTRUCTIONS;
 use crate::toyo::table::{Instruction, Op};
 

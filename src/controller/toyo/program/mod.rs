@@ -27,10 +27,10 @@ pub use listing::{
     Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_with, not_read, tags, used, uses,
 };
 
-pub use super::findings::{Finding, Severity};
-use super::findings::{Findings, SourceLocation};
 use super::layout::Record;
 use super::table::Instruction;
+pub use crate::findings::{Finding, Severity};
+use crate::findings::{Findings, SourceLocation};
 
 /// Most steps that the tasks have together (TO 2-4, E22).
 pub const MOST_STEPS: usize = 5000;

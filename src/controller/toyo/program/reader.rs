@@ -3,8 +3,8 @@
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
 use super::listing::NOT_READ;
 use super::{MOST_STEPS, Part};
-use crate::toyo::findings::{Findings, SourceLocation};
-use crate::toyo::source;
+use crate::findings::{Findings, SourceLocation};
+use crate::source;
 use crate::toyo::table::Op;
 
 /// What the lines of a file say.

@@ -6,9 +6,9 @@ use std::collections::{BTreeSet, HashMap};
 use super::instruction::{Draft, Target};
 use super::reader::{Defined, Read};
 use super::{Label, Part, Program, Step};
+use crate::findings::{Findings, SourceLocation};
 use crate::nearest::nearest;
 use crate::toyo::field::Value;
-use crate::toyo::findings::{Findings, SourceLocation};
 use crate::toyo::table::Op;
 
 /// A program with the places of its steps.

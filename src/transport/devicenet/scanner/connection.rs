@@ -231,7 +231,10 @@ impl Connection {
             if now >= polling.until() {
                 let (mac, after) = (self.settings.slave, polling.patience());
                 let is_bus_alive = bus.is_alive_without(mac, now.saturating_sub(after));
-                return self.retreat(now, Error::Lost { mac, after, is_bus_alive, state: bus.health.state });
+                // In the second half: before it the last whole answer was heard.
+                let is_heard = bus.is_heard(mac, now.saturating_sub(after / 2));
+                let state = bus.health.state;
+                return self.retreat(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
             }
             out.extend(polling.poll(now, &self.image, self.revision, &mut self.view.statistics));
         }

@@ -65,6 +65,11 @@ pub(crate) struct Bus {
 }
 
 impl Bus {
+    /// Whether this node was heard since then.
+    pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
+        self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
+    }
+
     /// Whether any node but this one was heard since then.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
         let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
@@ -131,6 +136,9 @@ impl Scanner {
         if let Phase::Failed(error) = &self.phase {
             return Err(error.clone());
         }
+        if self.bus.health.state == BusState::Off {
+            return Err(Error::BusOff);
+        }
         if self.connections.values().any(|connection| connection.slave() == settings.slave) {
             let mac = settings.slave;
             return Err(Error::Settings(format!("this process has a connection with MAC {mac} already")));
@@ -185,6 +193,16 @@ impl Scanner {
     pub fn find(&mut self, now: Now) {
         self.found = None;
         self.finder = Some(Finder::new(now, self.identity));
+        self.give_up_search();
+    }
+
+    /// Where nothing can be sent, a search ends with what it has found.
+    fn give_up_search(&mut self) {
+        if self.bus.health.state == BusState::Off
+            && let Some(finder) = self.finder.take()
+        {
+            self.found = Some(finder.found());
+        }
     }
 
     /// What the last search has found, once it is over.
@@ -224,6 +242,7 @@ impl Scanner {
             for connection in self.connections.values_mut() {
                 connection.fail(now, Error::BusOff);
             }
+            self.give_up_search();
             self.gather();
         }
     }
@@ -285,9 +304,10 @@ impl Scanner {
         ended
     }
 
-    /// Whether there is no connection and no search.
+    /// Whether nothing is left that it could do: there is no connection and no search, or it is not on the bus.
     pub fn is_idle(&self) -> bool {
-        self.connections.is_empty() && self.finder.is_none()
+        let is_off = matches!(self.phase, Phase::Failed(_)) || self.bus.health.state == BusState::Off;
+        is_off || self.connections.is_empty() && self.finder.is_none()
     }
 
     fn advance(&mut self, now: Now) {

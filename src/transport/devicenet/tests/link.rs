@@ -236,6 +236,30 @@ fn who_asks_for_the_own_mac_is_answered_at_once() {
     assert!(frames(&world).contains(&"40F#80FFFF07000000".to_owned()));
 }
 
+/// Who searches only then would wait for ever.
+#[test]
+fn a_search_after_the_own_mac_was_found_taken_keeps_nothing_alive() {
+    let mut world = World::new(vec![Device::on_line(setup(1, 48), Mirror::default())], 1);
+    world.until(SECOND * 3, |world| world.scanner.failure().is_some());
+    let now = world.now;
+    world.scanner.find(now);
+    assert!(matches!(world.scanner.failure(), Some(Error::Duplicate { .. })) && world.scanner.is_idle());
+}
+
+#[test]
+fn a_search_on_a_bus_that_is_off_is_over_at_once() {
+    let mut world = World::new(vec![Device::on_line(setup(5, 48), Mirror::default())], 1);
+    world.run(SECOND * 3);
+    let now = world.now;
+    world.scanner.find(now);
+    let off = Health { state: BusState::Off, ..Health::default() };
+    world.scanner.handle_health(now, off);
+    assert_eq!(world.scanner.found(), Some(Vec::new()));
+    world.scanner.find(now);
+    assert_eq!(world.scanner.found(), Some(Vec::new()), "nor does another one begin");
+    assert!(matches!(world.scanner.open(LINK, images(5)), Err(Error::BusOff)) && world.scanner.is_idle());
+}
+
 #[test]
 fn questions_alone_bring_up_no_polls() {
     for with_poll in [false, true] {

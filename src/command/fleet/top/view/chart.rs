@@ -9,10 +9,10 @@ use ratatui::symbols::Marker;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line};
 
-use super::painter::{Painter, after, line_of, width};
 use super::whole;
 use crate::command::fleet::top::model::Moment;
 use crate::command::fleet::top::track::window;
+use crate::output::painter::{Painter, after, line_of, width};
 use crate::output::view::Tone;
 
 /// What is drawn.

@@ -4,11 +4,11 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::chart::{self, Chart};
-use super::painter::{Painter, after, line_of, width};
 use super::{answer, pace};
 use crate::command::face::sample::{Alarm, Axis, Bank, Indicator, Sample, Whole};
 use crate::command::fleet::top::model::{Contact, Model, Moment, Seen};
 use crate::command::fleet::top::track::Track;
+use crate::output::painter::{Painter, after, line_of, width, wrapped};
 use crate::output::view::Tone;
 
 /// Columns of the axes beside a chart, and the least that a chart gets.
@@ -51,7 +51,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, n
     rest = below(rest, air);
     rest = below(rest, indicators(painter, rest, &whole.indicators) + air);
     rest = below(rest, alarms(painter, rest, sample) + air);
-    let signals = signal_lines(&whole.banks, rest.width);
+    let signals = if model.has_signals { signal_lines(&whole.banks, rest.width) } else { 0 };
     let wanted = u16::try_from(whole.axes.len()).unwrap_or(u16::MAX).saturating_add(1).max(if whole.axes.is_empty() {
         2
     } else {
@@ -275,32 +275,9 @@ fn below(area: Rect, lines: u16) -> Rect {
     Rect { y: area.y + lines, height: area.height - lines, ..area }
 }
 
-/// A text in lines of so many columns, broken between words.
-fn wrapped(text: &str, columns: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let last = lines.last().map_or(0, |line| width(line));
-        match lines.last_mut() {
-            Some(line) if line.is_empty() || last + 1 + width(word) <= columns => {
-                line.push_str(if line.is_empty() { "" } else { " " });
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn lines_are_broken_between_words() {
-        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
-        assert_eq!(wrapped("immeasurable", 3), ["immeasurable"]);
-        assert_eq!(wrapped("", 3), [""]);
-    }
 
     #[test]
     fn signals_take_as_many_lines_as_they_need() {

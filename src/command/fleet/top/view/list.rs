@@ -3,9 +3,9 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::painter::{Painter, after, line_of, width};
 use super::{answer, pace};
 use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Severity, Sort};
+use crate::output::painter::{self, Painter, after, line_of, width};
 use crate::output::view::Tone;
 
 /// A column of the list.
@@ -121,7 +121,7 @@ fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
 
 /// The columns that there is room for, with place and width.
 fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
-    let name = robots.iter().map(|seen| super::width(&seen.name)).max().unwrap_or_default();
+    let name = robots.iter().map(|seen| painter::width(&seen.name)).max().unwrap_or_default();
     let name = u16::try_from(name.clamp(NAME.0, NAME.1)).unwrap_or_default();
     let is_mixed = robots.windows(2).any(|pair| pair[0].family != pair[1].family);
     let gap = if width >= 100 { 2 } else { 1 };

@@ -3,7 +3,6 @@
 mod chart;
 mod detail;
 mod list;
-mod painter;
 
 use std::time::Duration;
 
@@ -11,13 +10,12 @@ use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
-use ratatui::widgets::{Clear, Widget as _};
 
-use super::keys::{Explained, KEYS};
+use super::keys::KEYS;
 use super::model::{Model, Moment, Seen};
+pub use crate::output::painter::Palette;
+use crate::output::painter::{Painter, after, line_of, to_ascii};
 use crate::output::view::Tone;
-pub use painter::Palette;
-use painter::{Painter, after, line_of, to_ascii, width};
 
 /// Draws everything.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {
@@ -37,10 +35,19 @@ fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: 
     }
     keys(&mut painter, foot, model);
     if model.has_help {
-        help(&mut painter, area);
+        let title = "Nothing here can move a robot or change anything.";
+        painter.help(area, title, KEYS.iter().map(|(_, key)| key));
     }
     if !palette.is_unicode {
         to_ascii(painter.buffer);
+    }
+}
+
+/// The screen of the one robot of a model: its first line, and what is below it.
+pub fn robot(painter: &mut Painter<'_>, [head, body]: [Rect; 2], model: &Model, now: Moment) {
+    if let Some(seen) = model.chosen() {
+        detail::head(painter, head, model, seen, now);
+        detail::body(painter, body, model, seen, now);
     }
 }
 
@@ -73,63 +80,9 @@ fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
         painter.left(after(line, taken + 2), "Enter keeps it, Esc shows all again", quiet);
         return;
     }
-    let counts = |key: &&Explained| !key.short.is_empty() && if model.is_open { key.counts.1 } else { key.counts.0 };
-    let shown: Vec<&Explained> = KEYS.iter().filter(counts).collect();
-    let mut at = 1;
-    for (index, key) in shown.iter().enumerate() {
-        let columns = u16::try_from(width(key.key) + width(key.short) + 3).unwrap_or(u16::MAX);
-        // The last ones, help and end, are always there.
-        let rest: usize =
-            shown.iter().skip(index + 1).rev().take(2).map(|key| width(key.key) + width(key.short) + 3).sum();
-        let is_last = index + 2 >= shown.len();
-        let needed = usize::from(at) + usize::from(columns) + if is_last { 0 } else { rest };
-        if needed > usize::from(line.width) + 2 && !is_last {
-            continue;
-        }
-        let place = after(line, at);
-        painter.parts(
-            Rect { width: place.width.min(columns), ..place },
-            &[(key.key, accent), (" ", quiet), (key.short, quiet)],
-        );
-        at = at.saturating_add(columns);
-    }
-}
-
-/// All keys with what they do, over everything else.
-fn help(painter: &mut Painter<'_>, area: Rect) {
-    const KEY: u16 = 8;
-    let columns = KEYS.iter().map(|key| width(key.full)).max().unwrap_or_default();
-    let wanted =
-        (u16::try_from(columns).unwrap_or_default() + KEY + 6, u16::try_from(KEYS.len()).unwrap_or_default() + 5);
-    let (columns, lines) = (wanted.0.min(area.width), wanted.1.min(area.height));
-    let place = Rect {
-        x: area.x + (area.width - columns) / 2,
-        y: area.y + (area.height - lines) / 2,
-        width: columns,
-        height: lines,
-    };
-    Clear.render(place, painter.buffer);
-    frame(painter, place);
-    let inside = Rect {
-        x: place.x.saturating_add(3).min(place.right()),
-        y: place.y.saturating_add(1).min(place.bottom()),
-        width: place.width.saturating_sub(6),
-        height: place.height.saturating_sub(2),
-    };
-    let bold = Style::new().add_modifier(Modifier::BOLD);
-    painter.left(line_of(inside, 0), "Nothing here can move a robot or change anything.", bold);
-    for (line, key) in (2..).zip(&KEYS) {
-        let line = line_of(inside, line);
-        painter.left(Rect { width: line.width.min(KEY), ..line }, key.key, painter.palette.accent());
-        painter.left(after(line, KEY), key.full, Style::new());
-    }
-}
-
-/// A border.
-fn frame(painter: &mut Painter<'_>, area: Rect) {
-    use ratatui::widgets::Block;
-
-    Block::bordered().border_style(painter.palette.quiet()).render(area, painter.buffer);
+    let counts = |(list, one): (bool, bool)| if model.is_open { one } else { list };
+    let shown = KEYS.iter().filter(|(place, key)| !key.short.is_empty() && counts(*place)).map(|(_, key)| key);
+    painter.keys(line, &shown.collect::<Vec<_>>());
 }
 
 /// When a robot answered last, and how fast: `4.1 ms`, or `12s ago` where it is late.

@@ -52,19 +52,22 @@ impl fmt::Display for Finding {
 
 /// A place in a text: line and column, both from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct SourceLocation {
+pub struct SourceLocation {
+    /// Line.
     pub line: usize,
+    /// Column, in characters.
     pub column: usize,
 }
 
 /// Findings, gathered in any order.
 #[derive(Debug, Default)]
-pub(super) struct Findings {
+pub struct Findings {
     list: Vec<Finding>,
     errors: usize,
 }
 
 impl Findings {
+    /// Adds an error.
     pub fn error(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.errors += 1;
         if self.errors == MOST {
@@ -74,10 +77,12 @@ impl Findings {
         }
     }
 
+    /// Adds a warning.
     pub fn warning(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.add(Severity::Warning, at, message.into(), hint);
     }
 
+    /// Adds a note.
     pub fn note(&mut self, at: SourceLocation, message: impl Into<String>) {
         self.add(Severity::Note, at, message.into(), None);
     }

@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use super::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, SourceLocation};
 
 const START: SourceLocation = SourceLocation { line: 1, column: 1 };
 
 /// The lines of a text without their ends. Where it is not UTF-8, the replacement character stands; that was told then.
-pub(super) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
+pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
     if text.starts_with(&[0xFF, 0xFE]) || text.starts_with(&[0xFE, 0xFF]) {
         findings.error(START, "the file is UTF-16", Some("save it as UTF-8".to_owned()));
         return Vec::new();

@@ -3,8 +3,8 @@
 use std::io::ErrorKind;
 use std::path::Path;
 
-use crate::command::frame::local::Target;
-use crate::controller::toyo::findings::Finding;
+use super::local::Target;
+use crate::controller::findings::Finding;
 use crate::failure::Failure;
 use crate::files;
 
@@ -31,10 +31,15 @@ pub fn shown(path: &Path) -> String {
 pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
     let Some(file) = file else { return Ok(None) };
     if several {
-        return Err(Failure::usage(format!("{} is for one robot", file.display()))
-            .hint("run the command once for each robot, with a file each"));
+        return Err(of_one_robot(file));
     }
     Target::new(file.to_owned(), force).map(Some)
+}
+
+/// A file cannot take what several robots have.
+pub fn of_one_robot(file: &Path) -> Failure {
+    Failure::usage(format!("{} is for one robot", file.display()))
+        .hint("run the command once for each robot, with a file each")
 }
 
 /// Writes a file, whole or not at all, and says where.

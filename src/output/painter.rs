@@ -4,9 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::Span;
+use ratatui::widgets::{Block, Clear, Widget as _};
 
-use crate::output::escape;
-use crate::output::view::Tone;
+use super::escape;
+use super::view::Tone;
 
 /// What the terminal can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +47,17 @@ impl Palette {
     pub fn heading(self) -> Style {
         self.quiet().add_modifier(Modifier::UNDERLINED)
     }
+}
+
+/// A key and what it does, for people.
+#[derive(Debug, Clone, Copy)]
+pub struct Explained {
+    /// The key as it is written.
+    pub key: &'static str,
+    /// For the last line of the screen; empty for keys that are only in the help.
+    pub short: &'static str,
+    /// For the help.
+    pub full: &'static str,
 }
 
 /// Draws text into the buffer of a picture; what is outside of it is left out.
@@ -91,6 +103,57 @@ impl Painter<'_> {
         taken
     }
 
+    /// The last line of a screen: what keys do, as many as there is room for. The last two are always there.
+    pub fn keys(&mut self, line: Rect, keys: &[&Explained]) {
+        let (accent, quiet) = (self.palette.accent(), self.palette.quiet());
+        let columns = |key: &Explained| width(key.key) + width(key.short) + 3;
+        let mut at = 1;
+        for (index, key) in keys.iter().enumerate() {
+            let taken = u16::try_from(columns(key)).unwrap_or(u16::MAX);
+            let rest: usize = keys.iter().skip(index + 1).rev().take(2).map(|key| columns(key)).sum();
+            let is_last = index + 2 >= keys.len();
+            let needed = usize::from(at) + usize::from(taken) + if is_last { 0 } else { rest };
+            if needed > usize::from(line.width) + 2 && !is_last {
+                continue;
+            }
+            let place = after(line, at);
+            self.parts(
+                Rect { width: place.width.min(taken), ..place },
+                &[(key.key, accent), (" ", quiet), (key.short, quiet)],
+            );
+            at = at.saturating_add(taken);
+        }
+    }
+
+    /// All keys with what they do below a title, over everything else.
+    pub fn help<'a>(&mut self, area: Rect, title: &str, keys: impl ExactSizeIterator<Item = &'a Explained> + Clone) {
+        const KEY: u16 = 8;
+        let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default();
+        let wanted =
+            (u16::try_from(columns).unwrap_or_default() + KEY + 6, u16::try_from(keys.len()).unwrap_or_default() + 5);
+        let (columns, lines) = (wanted.0.min(area.width), wanted.1.min(area.height));
+        let place = Rect {
+            x: area.x + (area.width - columns) / 2,
+            y: area.y + (area.height - lines) / 2,
+            width: columns,
+            height: lines,
+        };
+        Clear.render(place, self.buffer);
+        Block::bordered().border_style(self.palette.quiet()).render(place, self.buffer);
+        let inside = Rect {
+            x: place.x.saturating_add(3).min(place.right()),
+            y: place.y.saturating_add(1).min(place.bottom()),
+            width: place.width.saturating_sub(6),
+            height: place.height.saturating_sub(2),
+        };
+        self.left(line_of(inside, 0), title, Style::new().add_modifier(Modifier::BOLD));
+        for (line, key) in (2..).zip(keys) {
+            let line = line_of(inside, line);
+            self.left(Rect { width: line.width.min(KEY), ..line }, key.key, self.palette.accent());
+            self.left(after(line, KEY), key.full, Style::new());
+        }
+    }
+
     /// Gives a line a style, whatever stands in it.
     pub fn paint(&mut self, line: Rect, style: Style) {
         self.buffer.set_style(line.intersection(self.buffer.area), style);
@@ -111,6 +174,22 @@ pub fn line_of(area: Rect, line: u16) -> Rect {
 /// Columns that a text takes.
 pub fn width(text: &str) -> usize {
     Span::raw(text).width()
+}
+
+/// A text in lines of so many columns, broken between words.
+pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.last().map_or(0, |line| width(line));
+        match lines.last_mut() {
+            Some(line) if line.is_empty() || last + 1 + width(word) <= columns => {
+                line.push_str(if line.is_empty() { "" } else { " " });
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Signs that stand for others where there is only ASCII. What is not in here is text, and stays as it is.
@@ -175,6 +254,13 @@ mod tests {
         // Two columns a character: three have no room, and half of one is none.
         assert_eq!(left(6, "溶接機"), "溶 接 機 ");
         assert_eq!(left(4, "溶接機"), "溶 … ");
+    }
+
+    #[test]
+    fn lines_are_broken_between_words() {
+        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
+        assert_eq!(wrapped("immeasurable", 3), ["immeasurable"]);
+        assert_eq!(wrapped("", 3), [""]);
     }
 
     #[test]

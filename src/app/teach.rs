@@ -1,0 +1,122 @@
+//! `armctl teach`: types the lines that the keys of the panel stand for, over a link that stays open.
+
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::batch::refuse_repetition;
+use super::parser::Parser;
+use super::prepared::{Invocation, Need, PreparedCommand, sources};
+use super::screen;
+use crate::cli::{Globals, Words};
+use crate::command::families;
+use crate::command::fleet::session::host;
+use crate::command::fleet::teach::{Teach, Types, show};
+use crate::command::frame::authority;
+use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::run::{RunError, begin_trace};
+use crate::command::frame::script_line::Line;
+use crate::command::frame::session_manager::SessionManager;
+use crate::command::{ConnectMode, Entry};
+use crate::failure::Failure;
+use crate::gate::{Gate, Intent};
+use crate::output::Format;
+use crate::settings::Robot;
+
+/// Shows the panel until somebody leaves.
+pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
+    refuse_repetition(&globals)?;
+    let screen = screen(&globals);
+    let robot = the_robot(&globals, &teach)?;
+    fits(&globals, &screen)?;
+    catch_interrupts();
+    begin_trace(globals.trace.as_deref())?;
+    let gate = Gate { yes: globals.yes, dry_run: false, on_interrupt: globals.on_interrupt };
+    authority::pass(gate, &screen, &robot, &intent(&teach, &robot)).await?;
+    // Whatever happens to links is said by the lines that need them: nothing may be written over the picture.
+    let (manager, thread) = host::start(|_| {})?;
+    let lines = Lines { globals: each(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
+    let panel = families::of(robot.family).panel();
+    let ended = match lines.line("teach").hold(&robot, globals.trace.as_deref(), &screen).await {
+        Ok(()) => show(&screen, &robot, panel, &teach, &lines).await,
+        Err(failure) => Err(failure),
+    };
+    thread.end().await;
+    Ok(ended?)
+}
+
+/// The one robot that keys move.
+fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
+    let sources = sources(globals.clone(), Need::Inventory, true)?;
+    if sources.selection.sim && teach.family.is_none() {
+        return Err(Failure::usage("a simulator of which family?").hint("such as `armctl --sim teach yerc`"));
+    }
+    match &sources.robots(teach.family)?[..] {
+        [robot] => Ok(robot.clone()),
+        robots => Err(Failure::usage(format!("keys move one robot, not {}", robots.len())).hint("name it with -r")),
+    }
+}
+
+fn fits(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure> {
+    let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
+    if globals.dry_run {
+        return wrong("moves as keys order", "--dry-run goes with the commands it types, such as `yerc move relative`");
+    }
+    if screen.format != Format::Table || globals.jq.is_some() {
+        return wrong("is for people, and prints no data", "`position` and `move` are for programs");
+    }
+    if !screen.can_fill() || !screen.can_ask() {
+        return wrong("draws on a terminal, and takes its keys", "run it in one");
+    }
+    Ok(())
+}
+
+/// One yes for all keys, and for what the link does by being there.
+fn intent(teach: &Teach, robot: &Robot) -> Intent {
+    let intent = teach.intent();
+    match families::of(robot.family).driver().entry(robot, ConnectMode::Control) {
+        Entry::Stops(entry) => Intent { text: format!("{}, and {entry}", intent.text), ..intent },
+        Entry::Harmless | Entry::ThroughSession => intent,
+    }
+}
+
+/// The flags of each line: the yes is given, data comes as JSON, nothing is said beside it.
+fn each(globals: &Globals) -> Globals {
+    Globals { yes: true, json: true, format: None, quiet: true, verbose: 0, ..globals.clone() }
+}
+
+/// Runs lines of the robot's family.
+struct Lines {
+    globals: Globals,
+    manager: SessionManager,
+    robot: Robot,
+    parser: RefCell<Parser>,
+}
+
+impl Lines {
+    fn line(&self, typed: &str) -> Line {
+        Line { typed: Arc::from(typed), manager: self.manager.clone(), origin: None, results: Some(Rc::default()) }
+    }
+}
+
+impl Types for Lines {
+    async fn run(&self, words: &[String]) -> Result<Value, Failure> {
+        let line = self.line(&words.join(" "));
+        let results = line.results.clone().unwrap_or_default();
+        let family = self.robot.family.name().to_owned();
+        let args: Vec<OsString> =
+            ["armctl".to_owned(), family].into_iter().chain(words.iter().cloned()).map(OsString::from).collect();
+        let parsed = self.parser.borrow_mut().parse(&args);
+        let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
+        let Invocation::Task(task) = command.into() else {
+            return Err(Failure::local(format!("internal error: '{}' is no command", words.join(" "))));
+        };
+        let prepared = PreparedCommand::new(globals, Some(&self.globals), task, Some(line))?;
+        Box::pin(prepared.go()).await.map_err(|stopped| stopped.failure)?;
+        let envelope = results.borrow_mut().pop().unwrap_or_default();
+        Ok(envelope.get("data").cloned().unwrap_or_default())
+    }
+}

@@ -1,0 +1,126 @@
+//! What a controller rewrites by itself in a file that nobody changed: the line `///DATE` of a job, as it stores it.
+
+/// The lines of a job without `///DATE`, which a controller writes anew when it stores a job.
+#[derive(Debug, Default)]
+pub struct WithoutDate {
+    at: LineState,
+    left_out: Vec<u8>,
+    kept: u64,
+    dropped: u64,
+    /// After so many bytes that stayed, the first line was left out.
+    cut: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum LineState {
+    /// Before a line.
+    #[default]
+    Start,
+    /// After so many bytes of a line, which are those of the one left out.
+    Begun(usize),
+    Kept,
+    Dropped,
+}
+
+/// How the line begins that is left out.
+pub const DATE_LINE: &str = "///DATE";
+const DATE: &[u8] = DATE_LINE.as_bytes();
+/// As much is kept of what is left out as tells one date from another.
+const MOST_LEFT_OUT: usize = 256;
+
+impl WithoutDate {
+    /// What stays of the next bytes.
+    pub fn take(&mut self, piece: &[u8]) -> Vec<u8> {
+        let mut kept = Vec::with_capacity(piece.len());
+        for &byte in piece {
+            let begun = match self.at {
+                LineState::Start => Some(0),
+                LineState::Begun(count) => Some(count),
+                LineState::Kept | LineState::Dropped => None,
+            };
+            if let Some(count) = begun {
+                if DATE.get(count) == Some(&byte) {
+                    self.at = LineState::Begun(count + 1);
+                    if count + 1 == DATE.len() {
+                        self.at = LineState::Dropped;
+                        self.dropped = self.dropped.saturating_add(DATE.len() as u64);
+                        self.cut.get_or_insert(self.kept.saturating_add(kept.len() as u64));
+                    }
+                    continue;
+                }
+                kept.extend_from_slice(DATE.get(..count).unwrap_or_default());
+                self.at = LineState::Kept;
+            }
+            match self.at {
+                LineState::Kept => kept.push(byte),
+                LineState::Dropped => {
+                    self.dropped = self.dropped.saturating_add(1);
+                    if self.left_out.len() < MOST_LEFT_OUT {
+                        self.left_out.push(byte);
+                    }
+                }
+                LineState::Start | LineState::Begun(_) => {}
+            }
+            if byte == b'\n' {
+                self.at = LineState::Start;
+            }
+        }
+        self.kept = self.kept.saturating_add(kept.len() as u64);
+        kept
+    }
+
+    /// How many bytes were left out so far.
+    pub fn dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// Where in the whole a byte is that stayed, counted from 0.
+    pub fn in_whole(&self, at: u64) -> u64 {
+        if self.cut.is_some_and(|cut| cut <= at) { at.saturating_add(self.dropped) } else { at }
+    }
+
+    /// What stays at the end.
+    pub fn rest(&mut self) -> &'static [u8] {
+        match std::mem::take(&mut self.at) {
+            LineState::Begun(count) => DATE.get(..count).unwrap_or_default(),
+            LineState::Start | LineState::Kept | LineState::Dropped => &[],
+        }
+    }
+
+    /// What was left out so far: the dates.
+    pub fn left_out(&self) -> &[u8] {
+        &self.left_out
+    }
+
+    /// What stays of all of it.
+    pub fn of(whole: &[u8]) -> Vec<u8> {
+        let mut filter = Self::default();
+        let mut kept = filter.take(whole);
+        kept.extend_from_slice(filter.rest());
+        kept
+    }
+}
+
+/// Two jobs with the date of the first in both, so that lines keep their numbers; and whether the dates differed. Where
+/// only one has a date, neither has one then.
+pub fn aligned(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
+    let dates = |text: &[u8]| -> Vec<Vec<u8>> {
+        lines(text).filter(|line| line.starts_with(DATE)).map(<[u8]>::to_vec).collect()
+    };
+    let (before, after) = (dates(&old), dates(&new));
+    if before == after {
+        return ([old, new], false);
+    }
+    if before.len() != after.len() {
+        return ([WithoutDate::of(&old), WithoutDate::of(&new)], true);
+    }
+    let mut before = before.into_iter();
+    let mut dated =
+        |line: &[u8]| if line.starts_with(DATE) { before.next() } else { None }.unwrap_or_else(|| line.to_vec());
+    let new = lines(&new).flat_map(&mut dated).collect();
+    ([old, new], true)
+}
+
+fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split_inclusive(|byte| *byte == b'\n')
+}

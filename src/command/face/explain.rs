@@ -1,0 +1,208 @@
+//! `armctl explain FAMILY CODE`: what is known of a code, and what the controllers of the robots that are named have of it.
+
+use clap::{Args, Command as Words};
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::declared::Declaration;
+use super::tool::ToolTask;
+use crate::command::frame::authority::Authority;
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Access, Command, ConnectMode, Context, Entry, Report};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, Table, View};
+use crate::settings::Robot;
+use crate::settings::alarms::{Alarms, Origin};
+
+/// A code as typed, of a family.
+pub trait Explain {
+    /// What is known of it.
+    type Report: Report + 'static;
+    /// `explain.yerc`.
+    const ID: &'static str;
+
+    /// Says what is known of it without asking anybody; `alarms` has what the site says.
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
+
+    /// The alarm as controllers list it; nothing where it is none.
+    fn alarm(&self) -> Option<String>;
+}
+
+/// A report of alarms, present or past.
+pub trait Recorded {
+    /// Each with what the controller says of it.
+    fn recorded(&self) -> Vec<Occurrence>;
+}
+
+/// An alarm that a controller has or had.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Occurrence {
+    /// `present`, or which one of which list of the past: `major 3`.
+    pub place: String,
+    /// Its number.
+    #[serde(skip)]
+    pub code: String,
+    /// Its text; null where the controller has none.
+    pub text: Option<String>,
+    /// What it says beside: a sub-code, an axis, a task; null where it says nothing.
+    pub data: Option<String>,
+    /// When, as the controller tells it; null where it does not.
+    pub time: Option<String>,
+}
+
+/// A code, and what controllers have of it.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Explained<R> {
+    #[serde(flatten)]
+    known: R,
+    /// The robots that were named; not there where none was.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    robots: Vec<Told>,
+}
+
+/// What the controller of a robot has of a code.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Told {
+    robot: String,
+    /// What its alarm list and its history have of it, the latest first.
+    alarms: Vec<Occurrence>,
+    /// What was not asked or not answered, and why.
+    errors: Vec<String>,
+}
+
+impl<R: Report> Report for Explained<R> {
+    fn view(&self) -> View {
+        self.robots.iter().fold(self.known.view(), |view, told| told.sections().into_iter().fold(view, View::and))
+    }
+
+    fn rows(&self) -> Option<&'static str> {
+        if self.robots.is_empty() { self.known.rows() } else { None }
+    }
+}
+
+impl Told {
+    fn sections(&self) -> Vec<Section> {
+        let mut table = Table::new(&["where", "text", "data", "time"], "");
+        for Occurrence { place, text, data, time, .. } in &self.alarms {
+            let [text, data, time] = [text, data, time].map(|text| Cell::maybe(text.as_deref()));
+            table.row([place.as_str().into(), text, data, time]);
+        }
+        let found = if self.alarms.is_empty() && self.errors.is_empty() {
+            format!("{} has no such alarm, present or among the latest of its history.", self.robot)
+        } else if self.alarms.is_empty() {
+            String::new()
+        } else {
+            format!("{} has it:", self.robot)
+        };
+        let errors = self.errors.iter().map(|why| format!("{}: {why}", self.robot));
+        let text = |text: String| (!text.is_empty()).then_some(Section::Text(text));
+        let table = (!self.alarms.is_empty()).then_some(Section::Table(table));
+        text(found).into_iter().chain(table).chain(errors.filter_map(text)).collect()
+    }
+}
+
+/// What was typed behind `explain FAMILY`.
+pub(super) struct Explaining<F: Declaration>(pub F::Explain);
+
+impl<F: Declaration> ToolTask for Explaining<F> {
+    fn run(self: Box<Self>, run: &Run) -> LocalBoxFuture<'_, Result<(), RunError>> {
+        async move {
+            let (id, sources) = (<F::Explain as Explain>::ID, &run.sources);
+            let robots = if sources.selection.has_flags() { sources.robots(Some(F::NAME))? } else { Vec::new() };
+            let origin = if let [robot] = &robots[..] { Origin::of(robot) } else { Origin::any(F::NAME) };
+            let known = self.0.explain(&sources.alarms(), origin)?;
+            let mut told = Vec::with_capacity(robots.len());
+            for robot in &robots {
+                let (alarms, errors) = match self.0.alarm() {
+                    Some(alarm) => recall::<F>(run, robot, &alarm).await,
+                    None => (Vec::new(), vec!["not asked: this is no alarm number".to_owned()]),
+                };
+                told.push(Told { robot: robot.name.clone(), alarms, errors });
+            }
+            run.local(id, &Explained { known, robots: told })
+        }
+        .boxed_local()
+    }
+}
+
+/// What a controller has of an alarm, present and past; and what was not told of it, and why.
+async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<Occurrence>, Vec<String>) {
+    let mut link = match connect::<F>(run, robot).await {
+        Ok(link) => link,
+        Err(why) => return (Vec::new(), vec![why]),
+    };
+    let mut recall = Recall { alarm, found: Vec::new(), errors: Vec::new() };
+    recall.of::<F::Alarms>(run, robot, &mut link, "its alarms").await;
+    if recall.errors.is_empty() {
+        recall.of::<F::AlarmHistory>(run, robot, &mut link, "its history").await;
+    }
+    if let Err(failure) = F::close(link, &run.screen.silenced()).await {
+        run.screen.detail(1, &failure.message);
+    }
+    (recall.found, recall.errors)
+}
+
+/// Connects, unless that would do something to the robot.
+async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, String> {
+    if matches!(F::entry(robot, ConnectMode::Control), Entry::Stops(_)) {
+        return Err("not asked: that takes a command connection, whose end stops the robot; `armctl session open` \
+                    keeps one open"
+            .to_owned());
+    }
+    let access = Access::reading(ConnectMode::Control);
+    let access = match &run.line {
+        Some(line) => line.connecting(robot, access, &run.screen).await.map_err(not_asked)?,
+        None => access,
+    };
+    F::connect(robot, access, &run.screen.silenced()).await.map_err(not_asked)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "made for map_err")]
+fn not_asked(failure: Failure) -> String {
+    format!("not asked: {}", failure.message)
+}
+
+/// What lists have of an alarm.
+struct Recall<'a> {
+    alarm: &'a str,
+    found: Vec<Occurrence>,
+    errors: Vec<String>,
+}
+
+impl Recall<'_> {
+    /// Reads a list, by the command that shows it.
+    async fn of<C: Command<Report: Recorded> + Args>(
+        &mut self,
+        run: &Run,
+        robot: &Robot,
+        link: &mut <C::Family as crate::command::Family>::Link,
+        what: &str,
+    ) {
+        let screen = run.screen.silenced();
+        let authority = Authority::reading(&screen, robot);
+        let context = Context { robot, link, screen: &screen, several: false, authority };
+        match usual::<C>() {
+            Ok(command) => match command.run(context).await {
+                Ok(report) => {
+                    let is_it = |alarm: &Occurrence| same(&alarm.code, self.alarm);
+                    self.found.extend(report.recorded().into_iter().filter(is_it));
+                }
+                Err(failure) => self.errors.push(format!("{what} could not be read: {}", failure.message)),
+            },
+            Err(error) => self.errors.push(error.to_string()),
+        }
+    }
+}
+
+/// A command as it is without arguments.
+fn usual<C: Args>() -> Result<C, clap::Error> {
+    C::from_arg_matches(&C::augment_args(Words::new("usual")).try_get_matches_from(["usual"])?)
+}
+
+/// Whether these are the same code, whatever zeros are before it.
+fn same(one: &str, other: &str) -> bool {
+    let bare = |code: &str| code.trim_start_matches('0').to_ascii_uppercase();
+    bare(one) == bare(other)
+}

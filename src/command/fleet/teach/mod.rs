@@ -1,0 +1,69 @@
+//! `armctl teach`: a panel that moves a robot by single steps and teaches points. Every key is a command line that the panel
+//! types, as a person could; `crate::app` runs them.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `model` | what is chosen, what is under way, what was typed; no terminal, no line, no clock |
+//! | `keys` | what keys order, and how they are explained |
+//! | `view` | the picture: the robot as `top` shows it, and the panel below |
+
+mod keys;
+mod model;
+mod panel;
+mod view;
+
+use clap::Args;
+
+pub use self::panel::show;
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::gate::{Confirmation, Intent};
+use crate::settings::target::Family;
+
+/// Arguments of `teach`; `crate::app` runs it.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "One robot: -r NAME, -t URL, or --sim with the family. A key moves one axis by one step, and the next \
+                  one counts once that has ended: whatever happens to the terminal, the motion ends with the step. \
+                  That is no dead man's switch and no substitute for the enabling device of the pendant: see `armctl \
+                  help safety`. The keys are on the screen, `?` explains them; `q` ends."
+)]
+pub struct Teach {
+    /// The family, where the robot does not tell it
+    #[arg(value_name = "FAMILY")]
+    pub family: Option<Family>,
+    /// Most that a key may move, in mm, degrees, or the unit of the axes
+    #[arg(long, value_name = "MM", default_value = "10", value_parser = positive)]
+    pub max_step: f64,
+    /// Highest speed that can be chosen, in mm/s or percent
+    #[arg(long, value_name = "SPEED", default_value = "10", value_parser = clap::value_parser!(u32).range(1..=250))]
+    pub max_speed: u32,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it is more than nothing".to_owned()) }
+}
+
+impl Teach {
+    /// What the gate is told: one yes for all steps of a panel.
+    pub fn intent(&self) -> Intent {
+        let Self { max_step, max_speed, .. } = self;
+        Intent {
+            risk: Risk::Motion,
+            text: format!(
+                "move the robot as you press keys, one axis by at most {max_step} mm or degrees (joints: as shown) at a \
+                 time, at a speed of at most {max_speed} mm/s, deg/s or percent, and store points"
+            ),
+            confirmation: Confirmation::Question,
+            is_stop: false,
+        }
+    }
+}
+
+/// Runs command lines of the panel.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Types {
+    /// The data that a command line of the family reports.
+    async fn run(&self, words: &[String]) -> Result<serde_json::Value, Failure>;
+}

@@ -1,0 +1,122 @@
+//! The picture of the panel: the robot as `top` shows it above, what keys do to it below.
+
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use ratatui::style::{Modifier, Style};
+
+use super::keys::KEYS;
+use super::model::{Asked, Model, Typed, Use};
+use crate::command::fleet::top;
+use crate::output::painter::{Painter, Palette, after, line_of, to_ascii, wrapped};
+use crate::output::view::Tone;
+
+/// Lines of the panel, and the most that lines of the past get.
+const PANEL: u16 = 3;
+const PAST: u16 = 6;
+
+/// What is shown of the robot.
+pub struct Robot<'a> {
+    /// As `top` knows it.
+    pub seen: &'a top::Model,
+    /// Since the panel began.
+    pub now: std::time::Duration,
+    /// Whether it is a real one.
+    pub is_real: bool,
+}
+
+/// Draws everything.
+pub fn draw(frame: &mut Frame<'_>, model: &Model, robot: &Robot<'_>, palette: Palette) {
+    let area = frame.area();
+    let mut painter = Painter { buffer: frame.buffer_mut(), palette };
+    let past = PAST.min(area.height / 4);
+    let below = (PANEL + past + 1).min(area.height);
+    let foot = line_of(area, area.height.saturating_sub(1));
+    let head = line_of(area, 0);
+    let body = Rect { y: area.y + head.height, height: area.height.saturating_sub(below + 1), ..area };
+    top::robot(&mut painter, [head, body], robot.seen, robot.now);
+    let panel = Rect { y: area.y + area.height.saturating_sub(below), height: below.saturating_sub(1), ..area };
+    painter.paint(line_of(panel, 0), palette.heading());
+    controls(&mut painter, panel, model, robot.is_real);
+    lines(&mut painter, Rect { y: panel.y + PANEL, height: panel.height.saturating_sub(PANEL), ..panel }, model);
+    let shown: Vec<_> = KEYS.iter().filter(|key| !key.short.is_empty()).collect();
+    painter.keys(foot, &shown);
+    if model.has_help {
+        painter.help(area, "Each key moves one axis by one step; the next one counts when it has ended.", KEYS.iter());
+    }
+    if !palette.is_unicode {
+        to_ascii(painter.buffer);
+    }
+}
+
+/// Which axis, how far, how fast; and what is asked.
+fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool) {
+    let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
+    let who = if is_real { "REAL CONTROLLER" } else { "simulator" };
+    let tone = painter.palette.tone(if is_real { Tone::Bad } else { Tone::Good });
+    painter.left(after(line_of(area, 0), 1), "teach", accent);
+    painter.right(line_of(area, 0), &format!("{who} "), tone);
+    let step = model.step().map_or("none is allowed".to_owned(), |step| format!("{step} {}", model.unit()));
+    let speed = model.speed().map(|speed| format!("{speed} {}", model.system().speed_unit));
+    let speed = speed.unwrap_or_else(|| "the controller's".to_owned());
+    let state = if model.is_moving { (" MOVING ", tone.add_modifier(Modifier::REVERSED)) } else { ("", quiet) };
+    painter.parts(
+        after(line_of(area, 1), 1),
+        &[
+            (model.system().name, Style::new()),
+            ("  axis ", quiet),
+            (model.axis_name(), accent),
+            ("  step ", quiet),
+            (&step, accent),
+            ("  speed ", quiet),
+            (&speed, accent),
+            ("  ", quiet),
+            state,
+        ],
+    );
+    let line = after(line_of(area, 2), 1);
+    let question = model.asked.as_ref().map(|asked| question(model, asked));
+    if let Some(question) = question {
+        painter.left(line, &question, painter.palette.tone(Tone::Warning));
+    }
+}
+
+/// What the person is asked.
+fn question(model: &Model, asked: &Asked) -> String {
+    let point = model.panel.point;
+    match asked {
+        Asked::Point(Use::Store, typed) => format!("Store the place of the robot in: {typed}_  (number, Enter; Esc)"),
+        Asked::Point(Use::Go, typed) => format!("Go to: {typed}_  (number, Enter; Esc)"),
+        Asked::Sure(Use::Store, number, old) => format!("Overwrite {} ({old})? y, or Esc", point(*number)),
+        Asked::Sure(Use::Go, number, place) => {
+            format!("Go to {}: {place}? The motion ends there, not with a step. y, or Esc", point(*number))
+        }
+        Asked::Release => "Release the hold? A motion that was stopped may go on. y, or Esc".to_owned(),
+    }
+}
+
+/// What was typed, and what came of it: the latest at the bottom, and what the latest failed of in full.
+fn lines(painter: &mut Painter<'_>, area: Rect, model: &Model) {
+    let mut bottom = area.height;
+    for (age, Typed { words, outcome, .. }) in model.past.iter().rev().enumerate() {
+        let (sign, tone) = match outcome {
+            None => ("…", Tone::Plain),
+            Some(Ok(())) => ("ok", Tone::Good),
+            Some(Err(_)) => ("no", Tone::Bad),
+        };
+        let (style, quiet) = (painter.palette.tone(tone), painter.palette.quiet());
+        let failure = outcome.as_ref().and_then(|outcome| outcome.as_ref().err());
+        let why = failure.map(|failure| match &failure.hint {
+            Some(hint) if age == 0 => format!("{}; {hint}", failure.message),
+            _ => failure.message.clone(),
+        });
+        let mut why = why.map(|why| wrapped(&why, usize::from(area.width.saturating_sub(5)))).unwrap_or_default();
+        why.truncate(if age == 0 { usize::from(area.height.saturating_sub(1)) } else { 1 });
+        let taken = u16::try_from(1 + why.len()).unwrap_or(u16::MAX);
+        let Some(top) = bottom.checked_sub(taken) else { return };
+        painter.parts(after(line_of(area, top), 1), &[(sign, style), (" ", quiet), (words.as_str(), quiet)]);
+        for (line, text) in (top + 1..).zip(&why) {
+            painter.left(after(line_of(area, line), 4), text, style);
+        }
+        bottom = top;
+    }
+}

@@ -1,0 +1,35 @@
+//! The keys of `armctl teach` as command lines of `toyo`.
+
+use serde_json::Value;
+
+use crate::command::face::panel::{Panel, System, words};
+
+const AXES: [(&str, &str); 4] = [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("R", "mm")];
+
+/// See [`Panel`]. The controller moves by its own small step, parameter P12, once for each order.
+pub const PANEL: Panel = Panel {
+    systems: &[System {
+        name: "axes",
+        axes: &AXES,
+        steps: &[1.0, 10.0, 100.0],
+        speeds: &[],
+        speed_unit: "",
+        step: |step| {
+            let (axis, _) = AXES.get(step.axis)?;
+            let direction = if step.by < 0.0 { "-" } else { "+" };
+            Some(words(&format!("jog {axis} {direction} inch --steps {}", step.by.abs())))
+        },
+    }],
+    position: &["position"],
+    stop: &["stop", "--jog"],
+    release: None,
+    stored: |point| words(&format!("point get {point}")),
+    store: |point, _| words(&format!("teach {point}")),
+    go: |point, _, _| words(&format!("run point {point}")),
+    point: |point| format!("point {point}"),
+    small_step: Some((&["param", "get", "P12"], small_step)),
+};
+
+fn small_step(parameter: &Value, axis: usize) -> Option<f64> {
+    parameter["parameters"][0]["values"].get(axis)?["value"].as_f64()
+}

@@ -1,0 +1,109 @@
+//! `toyo program edit`: the program of a task, through the editor of the user, and back.
+
+use std::collections::BTreeMap;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::and_mode;
+use super::get::Get;
+use super::put::{Put, Stored};
+use super::steps;
+use crate::command::backup::text_diff::{self, Hunk, TextDifference};
+use crate::command::frame::edited::Edited;
+use crate::command::toyo::items::Answers;
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::tasks;
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::{Listing, Rows, Style, listing_with};
+use crate::failure::Failure;
+use crate::gate::Confirmation;
+use crate::output::view::View;
+
+/// Edits the program of a task.
+#[derive(Debug, Args)]
+#[command(after_help = and_mode(
+    "The program is read, opened in $VISUAL or $EDITOR, checked, compared, and after a yes the steps that differ are written \
+     and read back. A program that was changed meanwhile is not overwritten. Whatever goes wrong, what you wrote stays in a \
+     file, and the message says where."
+))]
+pub struct Edit {
+    /// Task, 1 to 4, instead of the current one
+    #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Command for Edit {
+    type Family = Toyo;
+    type Report = EditedProgram;
+    const ID: &'static str = "toyo.program.edit";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite steps of a program";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram, Failure> {
+        let Context { robot, link, screen, several, authority } = context;
+        if several {
+            return Err(Failure::usage("one program of one robot is edited").hint("name the robot with -r"));
+        }
+        let get = Get::whole(self.task);
+        if link.is_dry() {
+            let planned = get.dry_run(link).await;
+            link.plan_overwriting(&steps::read_request(1), "@WSTX ?").await?;
+            link.then("the text is edited, and the steps that then differ are written and read back");
+            return planned.map(|_| EditedProgram { changed: false, hunks: Vec::new(), stored: None });
+        }
+        let outcome = get.read(link, screen).await;
+        let (_, _, answers): (u8, u16, Answers) = tasks::done(link, outcome).await?;
+        let read: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
+        let style = Style { first: 1, is_whole: true, is_numbered: false };
+        let Listing { text, .. } = listing_with(&read, &BTreeMap::new(), style, &Rows::new());
+        let mut edited = Edited::new("program.toyo", text.as_bytes(), *screen)?;
+        if !edited.is_changed()? {
+            return Ok(EditedProgram { changed: false, hunks: Vec::new(), stored: None });
+        }
+        let difference = TextDifference::of(Encoding::Utf8, text.as_bytes(), &edited.text()?);
+        let hunks = difference.map(|found| found.hunks).unwrap_or_default();
+        for line in text_diff::unified("program", "edited", &hunks) {
+            screen.note(&line.text);
+        }
+        let put = Put::edited(edited.path().to_owned(), self.task, read);
+        match put.run(Context { robot, link, screen, several, authority }).await {
+            Ok(stored) => {
+                edited.done();
+                Ok(EditedProgram { changed: true, hunks, stored: Some(stored) })
+            }
+            Err(failure) => {
+                let task = self.task.map_or_else(String::new, |task| format!(" --task {task}"));
+                Err(edited.kept(failure, |path| {
+                    format!("what you wrote is in {path}: `toyo program put {path}{task}` writes it")
+                }))
+            }
+        }
+    }
+}
+
+/// A program after an edit.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct EditedProgram {
+    /// Whether the text was changed.
+    changed: bool,
+    /// What was changed in the text.
+    hunks: Vec<Hunk>,
+    /// What became of the steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stored: Option<Stored>,
+}
+
+impl Report for EditedProgram {
+    fn view(&self) -> View {
+        match &self.stored {
+            Some(stored) => stored.view(),
+            None => View::text("the program was not changed; nothing was sent"),
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! `yerc job edit`: a job from the controller, through the editor of the user, and back.
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::content::{Content, JobRules};
+use super::deliver::{Delivery, Manner, deliver};
+use super::name::{self, Shown};
+use super::results::FileResult;
+use super::transfer;
+use crate::command::backup::dated::aligned;
+use crate::command::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MOST_TEXT, TextDifference};
+use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::edited::Edited;
+use crate::command::frame::local::local_name;
+use crate::command::yerc::complete;
+use crate::command::yerc::link::{Link, Yerc};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::yerc::files::FileName;
+use crate::controller::yerc::query::{Query as _, ReadJob, ReadStatus};
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
+use crate::output::Screen;
+use crate::output::view::{Section, View};
+
+/// Edits a job of the controller.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The job is read, opened in $VISUAL or $EDITOR, checked (/JOB, //NAME, NOP, END), compared, and after a yes \
+                  written and read back. A job that runs, or that was changed meanwhile, is not overwritten. Whatever goes \
+                  wrong, what you wrote stays in a file, and the message says where.\n\nIn the editor it is UTF-8 with line \
+                  feeds; the controller gets its own encoding and CR LF again. A job with bytes that are no text is edited as \
+                  it is."
+)]
+pub struct Edit {
+    /// Name of the job, with or without .JBI
+    #[arg(add = complete::JOB)]
+    name: String,
+}
+
+const ENDING: &str = ".JBI";
+
+impl Command for Edit {
+    type Family = Yerc;
+    type Report = EditedJob;
+    const ID: &'static str = "yerc.job.edit";
+    const RISK: Risk = Risk::Destroy;
+    const INTENT: &'static str = "overwrite a job by what was edited";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    async fn run(&self, mut context: Context<'_, Yerc>) -> Result<EditedJob, Failure> {
+        let encoding = context.link.encoding;
+        if context.several {
+            return Err(Failure::usage("one job of one robot is edited").hint("name the robot with -r"));
+        }
+        let is_whole = self.name.len() >= ENDING.len()
+            && self.name.is_char_boundary(self.name.len() - ENDING.len())
+            && self.name[self.name.len() - ENDING.len()..].eq_ignore_ascii_case(ENDING);
+        let full = if is_whole { self.name.clone() } else { format!("{}{ENDING}", self.name) };
+        let file = name::to_send(name::typed(encoding, &full)?)?;
+        if context.link.is_dry() {
+            return plan(context.link, &file);
+        }
+        let old = fetch(context.link, context.screen, &file).await?;
+        let form = TextForm::of(encoding, &old);
+        let local = local_name(encoding, file.as_bytes());
+        let mut edited = Edited::new(&local, &form.opened(&old), *context.screen)?;
+        match self.put_back(&mut context, &file, (&old, form), &edited).await {
+            Ok(report) => {
+                edited.done();
+                Ok(report)
+            }
+            Err(failure) => Err(edited.kept(failure, |path| {
+                format!("what you wrote is in {path}: `yerc file put {path} --as {local} --replace --verify` sends it")
+            })),
+        }
+    }
+}
+
+impl Edit {
+    async fn put_back(
+        &self,
+        context: &mut Context<'_, Yerc>,
+        file: &FileName,
+        (old, form): (&[u8], TextForm),
+        edited: &Edited,
+    ) -> Result<EditedJob, Failure> {
+        let (link, screen) = (&mut *context.link, context.screen);
+        let shown = Shown::new(link.encoding, file.as_bytes());
+        if !edited.is_changed()? {
+            return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
+        }
+        let new = form.closed(&edited.text()?)?;
+        // From here on the file is what the controller would get.
+        edited.replace(&new)?;
+        let mut delivery = Delivery { file: file.clone(), content: Content::open(edited.path())? };
+        delivery.content.check_job(JobRules::default())?;
+        if let Some((own, sent)) = delivery.other_name(link.encoding) {
+            return Err(Failure::usage(format!("the job says //NAME {own}, and is called {sent}"))
+                .hint("a job is renamed on the pendant; send it as a new one with `yerc file put`"));
+        }
+        if delivery.content.job_name().is_none() {
+            return Err(Failure::usage("the job has no line //NAME").hint("the controller would refuse it"));
+        }
+        let difference = TextDifference::of(link.encoding, old, &new);
+        let hunks = difference.map(|found| found.hunks).unwrap_or_default();
+        for line in text_diff::unified(&shown.name, "edited", &hunks) {
+            screen.note(&line.text);
+        }
+        check_idle(link, file).await?;
+        let now = fetch(link, screen, file).await?;
+        let ([before, after], _) = aligned(old.to_vec(), now);
+        if before != after {
+            return Err(Failure::new(
+                Kind::Rejected,
+                format!("{} was changed on the controller meanwhile", shown.name),
+            )
+            .hint("edit it again, and put both together"));
+        }
+        let count = |change: LineChange| {
+            let lines = hunks.iter().flat_map(|hunk| &hunk.lines);
+            lines.filter(|line: &&DiffLine| line.change == change).count()
+        };
+        let (less, more) = (count(LineChange::Removed), count(LineChange::Added));
+        let change = Change::new(format!("overwrite the job {}: -{less} +{more} lines", shown.name));
+        context.authority.confirm(&change).await?;
+        let mut result = FileResult::pending(shown.clone(), None);
+        let manner = Manner { verify: true, ignore_header: true, replace: true };
+        let bytes = deliver(context.link, screen, &mut delivery, manner, &mut result).await?;
+        Ok(EditedJob { name: shown, changed: true, bytes: bytes.unwrap_or_default(), hunks })
+    }
+}
+
+/// How a job stands in the editor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TextForm {
+    /// As the bytes that it is.
+    Bytes,
+    /// As UTF-8 with line feeds.
+    Text(Encoding),
+}
+
+impl TextForm {
+    /// Text where all of it leads back to the bytes.
+    fn of(encoding: Encoding, bytes: &[u8]) -> Self {
+        let text = Self::Text(encoding);
+        if text.closed(&text.opened(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
+    }
+
+    fn opened(self, bytes: &[u8]) -> Vec<u8> {
+        match self {
+            Self::Bytes => bytes.to_vec(),
+            Self::Text(encoding) => encoding.decode(bytes).replace("\r\n", "\n").into_bytes(),
+        }
+    }
+
+    fn closed(self, edited: &[u8]) -> Result<Vec<u8>, Failure> {
+        let Self::Text(encoding) = self else { return Ok(edited.to_vec()) };
+        let text = std::str::from_utf8(edited).map_err(|_| {
+            Failure::usage("the edited job is not UTF-8").hint("have the editor save it as UTF-8, as it was opened")
+        })?;
+        let mut bytes = Vec::with_capacity(text.len());
+        for (index, line) in text.split_inclusive('\n').enumerate() {
+            let (line, ending) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\r\n"));
+            let line = line.strip_suffix('\r').filter(|_| !ending.is_empty()).unwrap_or(line);
+            let encoded = encoding.encode(line).map_err(|error| {
+                Failure::usage(format!("line {}: {error}", index + 1))
+                    .hint("--encoding or the robot's entry sets the encoding")
+            })?;
+            bytes.extend(encoded);
+            bytes.extend_from_slice(ending.as_bytes());
+        }
+        Ok(bytes)
+    }
+}
+
+async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<u8>, Failure> {
+    let name = link.encoding.decode(file.as_bytes());
+    let mut progress = screen.bytes_progress(&name, None);
+    let mut bytes = Vec::new();
+    let fetched = transfer::fetch(link, file, |block| {
+        progress.advance(block.len() as u64);
+        bytes.extend_from_slice(block);
+        if bytes.len() > MOST_TEXT {
+            return Err(Failure::usage("the job is too large to be edited here").hint("`yerc file get` fetches it"));
+        }
+        Ok(())
+    });
+    fetched.await.map_err(|failure| transfer::about(&name, failure))?;
+    Ok(bytes)
+}
+
+/// A job that runs is not overwritten.
+async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
+    if !link.ask(&ReadStatus).await?.running() {
+        return Ok(());
+    }
+    let model = link.model;
+    let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
+    let stem = file.as_bytes().len().saturating_sub(ENDING.len());
+    let runs = link
+        .ask_each(&questions)
+        .await?
+        .into_iter()
+        .flatten()
+        .any(|job| Some(job.name.as_bytes()) == file.as_bytes().get(..stem));
+    if runs {
+        return Err(Failure::new(Kind::Rejected, format!("{} is running", link.encoding.decode(file.as_bytes())))
+            .hint("stop it first, or hold the robot with `yerc hold on`"));
+    }
+    Ok(())
+}
+
+fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob, Failure> {
+    link.plan_download(&file.save(), Reason::about("the job, which the editor then has"))?;
+    let if_changed = |about| Reason::about(about).depending_on("whether it was changed in the editor");
+    link.plan_if(&ReadStatus.request(), if_changed("whether a job runs"));
+    link.plan_download(&file.save(), if_changed("whether it was changed on the controller meanwhile"))?;
+    link.plan_if(&file.load(), if_changed("begins to send what was edited"));
+    link.then("sends the job block by block, and reads it back");
+    Err(unknown())
+}
+
+/// A job after an edit.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct EditedJob {
+    #[serde(flatten)]
+    name: Shown,
+    /// Whether it was written and read back.
+    changed: bool,
+    bytes: u64,
+    /// What was changed.
+    hunks: Vec<Hunk>,
+}
+
+impl Report for EditedJob {
+    fn view(&self) -> View {
+        let Self { name: Shown { name, .. }, bytes, .. } = self;
+        let text = if self.changed {
+            format!("{name} written and read back, {bytes} bytes")
+        } else {
+            format!("{name} was not changed; nothing was sent")
+        };
+        View::default().and(Section::Text(text))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_job_leads_back_to_its_bytes() {
+        let sjis = TextForm::Text(Encoding::ShiftJis);
+        for (bytes, form) in [
+            (&b"/JOB\r\n'\x83\x65\x83\x58\r\nEND\r\n"[..], sjis),
+            (b"/JOB\r\nEND", sjis),
+            (b"/JOB\nEND\r\n", TextForm::Bytes),
+            (b"/JOB\r\n'\xff\r\n", sjis),
+        ] {
+            let found = TextForm::of(Encoding::ShiftJis, bytes);
+            assert_eq!(found.closed(&found.opened(bytes)).unwrap(), bytes);
+            assert!(found == form || bytes.contains(&0xff), "{bytes:?}");
+        }
+        assert_eq!(sjis.closed("'テ\n".as_bytes()).unwrap(), b"'\x83\x65\r\n");
+        assert_eq!(sjis.closed(b"a\r\n").unwrap(), b"a\r\n");
+        assert!(sjis.closed("'한\n".as_bytes()).unwrap_err().message.starts_with("line 1"));
+    }
+}

@@ -1,0 +1,111 @@
+//! Patterns of names, such as `*.JBI`: which lists of the controller tell what fits them, and what does. A pattern is never
+//! sent: a controller might take it in a way of its own.
+
+use super::name::{self, Shown};
+use super::transfer;
+use crate::command::backup::goes_on;
+use crate::command::yerc::link::Link;
+use crate::controller::yerc::files::{self, FileName, FileType};
+use crate::failure::{Failure, Kind};
+use crate::settings::inventory::fits;
+
+/// A file that is asked for, or why there is none.
+#[derive(Debug)]
+pub struct Wanted {
+    /// Its name, or the pattern or list that came to nothing.
+    pub name: Shown,
+    /// Its name to be sent.
+    pub file: Result<FileName, Failure>,
+}
+
+/// Whether an argument is a pattern; `hex:` leads to a name.
+pub fn is_pattern(text: &str) -> bool {
+    text.contains(['*', '?']) && !text.starts_with("hex:")
+}
+
+/// The types of which a pattern may fit a file.
+fn types(pattern: &str) -> Vec<FileType> {
+    let ending = pattern.rsplit_once('.').map_or("*", |(_, ending)| ending);
+    FileType::ALL.into_iter().filter(|kind| fits(&ending.to_uppercase(), kind.extension())).collect()
+}
+
+/// Finds the files of some arguments: names as they are, and what fits the patterns, each once. `None` in a dry run, which
+/// notes the requests.
+pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<Wanted>>, Failure> {
+    let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
+    let names: Vec<String> = names.into_iter().cloned().collect();
+    let files = name::all_typed(link.encoding, &names)?;
+    let kinds: Vec<FileType> = {
+        let wanted: Vec<FileType> = patterns.iter().flat_map(|pattern| types(pattern)).collect();
+        FileType::ALL.into_iter().filter(|kind| wanted.contains(kind)).collect()
+    };
+    if let Some(pattern) = patterns.iter().find(|pattern| types(pattern).is_empty()) {
+        return Err(Failure::usage(format!("no file of a controller fits '{pattern}'"))
+            .hint("files end in JBI, DAT, CND, PRM, SYS or LST"));
+    }
+    if link.is_dry() {
+        transfer::plan_all(link, transfer::LISTS, kinds.into_iter().map(files::list))?;
+        transfer::plan_all(link, "fetches the file", files.iter().map(FileName::save))?;
+        if !patterns.is_empty() {
+            link.then("fetches every file that the lists name and a pattern fits, and acknowledges each of its blocks");
+        }
+        return Ok(None);
+    }
+    let encoding = link.encoding;
+    let shown = |bytes: &[u8]| Shown::new(encoding, bytes);
+    let mut found: Vec<Wanted> =
+        files.into_iter().map(|file| Wanted { name: shown(file.as_bytes()), file: Ok(file) }).collect();
+    let mut fitted = vec![false; patterns.len()];
+    let mut refused = Vec::new();
+    for kind in kinds {
+        let listed = match transfer::list(link, kind).await {
+            Ok(listed) => listed,
+            Err(failure) if goes_on(&failure) => {
+                refused.push(Wanted { name: shown(kind.filter().as_bytes()), file: Err(failure) });
+                continue;
+            }
+            Err(failure) => return Err(transfer::about(&kind.filter(), failure)),
+        };
+        for bytes in listed {
+            let name = shown(&bytes);
+            let mut fits_one = false;
+            for (pattern, fitted) in patterns.iter().zip(&mut fitted) {
+                let fits = fits(pattern, &name.name);
+                *fitted |= fits;
+                fits_one |= fits;
+            }
+            let is_new = !found.iter().any(|other| other.name == name);
+            if fits_one && is_new {
+                // A name that a controller lists and that must not be used is the controller's fault, not the operator's.
+                let file = name::exact(bytes).map_err(|failure| Failure { kind: Kind::Malformed, ..failure });
+                found.push(Wanted { name, file });
+            }
+        }
+    }
+    for (pattern, fitted) in patterns.into_iter().zip(fitted) {
+        // Behind a refused list, nobody knows what fits.
+        if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
+            let nothing = Failure::new(Kind::Refused, "the controller lists no file that fits")
+                .hint("`yerc file list --type all` shows the names; upper and lower case count");
+            found.push(Wanted { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(nothing) });
+        }
+    }
+    found.extend(refused);
+    Ok(Some(found))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pattern_tells_which_lists_are_asked_for() {
+        assert_eq!(types("*.JBI"), [FileType::Jbi]);
+        assert_eq!(types("WELD*.jbi"), [FileType::Jbi]);
+        assert_eq!(types("*.?S?"), [FileType::Lst]);
+        assert_eq!(types("VAR*"), FileType::ALL);
+        assert_eq!(types("*"), FileType::ALL);
+        assert_eq!(types("*.TXT"), []);
+        assert!(is_pattern("A?.JBI") && !is_pattern("A.JBI") && !is_pattern("hex:2a"));
+    }
+}

@@ -1,0 +1,472 @@
+//! Tables that people keep in a spreadsheet: a line of column names, and a row a line, with commas, semicolons or tabs
+//! between the cells (CSV).
+//!
+//! Columns come in any order, and cells may be quoted. Columns whose name begins with `comment` are a person's own.
+//! Where the cells are not parted by commas, numbers may have a decimal comma; but not some this and some that, as a point
+//! could then stand between thousands.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use crate::findings::{Findings, SourceLocation};
+use crate::nearest::nearest;
+use crate::source;
+
+/// How columns that a person has for himself begin.
+pub const COMMENT: &str = "comment";
+
+/// What parts cells and decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dialect {
+    separator: char,
+    decimal_comma: bool,
+}
+
+impl Dialect {
+    /// Commas between cells, points in numbers.
+    pub const COMMAS: Self = Self { separator: ',', decimal_comma: false };
+    /// Semicolons between cells, commas in numbers.
+    pub const DECIMAL_COMMA: Self = Self { separator: ';', decimal_comma: true };
+
+    /// A row.
+    fn row<'c>(self, cells: impl IntoIterator<Item = Cow<'c, str>>) -> String {
+        let mut text = String::new();
+        for (index, cell) in cells.into_iter().enumerate() {
+            if index > 0 {
+                text.push(self.separator);
+            }
+            let is_quoted = cell.contains([self.separator, '"', '\n', '\r']) || cell.trim() != cell;
+            if is_quoted {
+                text.extend(["\"", &cell.replace('"', "\"\""), "\""]);
+            } else {
+                text.push_str(&cell);
+            }
+        }
+        text
+    }
+
+    /// A cell of a column.
+    fn cell<'c>(self, column: &Column, text: &'c str) -> Cow<'c, str> {
+        match column.is_number {
+            true if self.decimal_comma => Cow::Owned(text.replace('.', ",")),
+            true => Cow::Borrowed(text),
+            false if is_formula(text) => Cow::Owned(format!("'{text}")),
+            false => Cow::Borrowed(text),
+        }
+    }
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Whether its cells are numbers, with a point.
+    pub is_number: bool,
+}
+
+impl Column {
+    /// Of numbers.
+    pub fn number(name: impl Into<String>) -> Self {
+        Self { name: name.into(), is_number: true }
+    }
+
+    /// Of texts.
+    pub fn text(name: impl Into<String>) -> Self {
+        Self { name: name.into(), is_number: false }
+    }
+}
+
+/// Columns and rows as a text.
+pub fn write(dialect: Dialect, columns: &[Column], rows: &[Vec<String>]) -> String {
+    let mut text = dialect.row(columns.iter().map(|column| Cow::Borrowed(&*column.name))) + "\n";
+    for row in rows {
+        text += &dialect.row(columns.iter().zip(row).map(|(column, cell)| dialect.cell(column, cell)));
+        text.push('\n');
+    }
+    text
+}
+
+/// A table that was read.
+#[derive(Debug)]
+pub struct Sheet {
+    dialect: Dialect,
+    head: Row,
+    rows: Vec<Row>,
+}
+
+/// A row of a table.
+#[derive(Debug)]
+pub struct Row {
+    /// Its line, from 1.
+    pub line: usize,
+    cells: Vec<Cell>,
+}
+
+#[derive(Debug)]
+struct Cell {
+    text: String,
+    /// Where it begins, in characters from 1.
+    column: usize,
+}
+
+impl Row {
+    /// The place of a cell; that of the row behind the last one.
+    pub fn place(&self, index: usize) -> SourceLocation {
+        SourceLocation { line: self.line, column: self.cells.get(index).map_or(1, |cell| cell.column) }
+    }
+
+    /// What a cell says, without blanks around it.
+    pub fn text(&self, index: usize) -> &str {
+        self.whole(index).trim()
+    }
+
+    /// What a cell says, to the last blank if it is quoted; the apostrophe is no part of it that keeps a spreadsheet from
+    /// computing it.
+    pub fn string(&self, index: usize) -> &str {
+        let text = self.whole(index);
+        text.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(text)
+    }
+
+    fn whole(&self, index: usize) -> &str {
+        self.cells.get(index).map_or("", |cell| &cell.text)
+    }
+}
+
+impl Sheet {
+    /// Reads a table; nothing where it is none, which the findings tell.
+    pub fn read(bytes: &[u8], expected: &str, findings: &mut Findings) -> Option<Self> {
+        let before = findings.errors();
+        let lines = source::lines(bytes, findings);
+        if findings.errors() > before {
+            return None;
+        }
+        let mut lines = lines.iter().map(AsRef::as_ref).enumerate().map(|(index, line)| (index + 1, line));
+        let Some((number, line)) = lines.find(|(_, line): &(usize, &str)| !line.trim().is_empty()) else {
+            let hint = Some(expected.to_owned());
+            findings.error(SourceLocation { line: 1, column: 1 }, "the file is empty", hint);
+            return None;
+        };
+        let separator = separator(line);
+        let head = row(line, number, separator, findings)?;
+        let mut rows = Vec::new();
+        for (number, line) in lines {
+            if findings.is_full() {
+                break;
+            }
+            let Some(row) = row(line, number, separator, findings) else { continue };
+            // Spreadsheets leave lines of nothing but commas.
+            if row.cells.iter().all(|cell| cell.text.trim().is_empty()) {
+                continue;
+            }
+            if row.cells.len() == head.cells.len() {
+                rows.push(row);
+            } else {
+                let message = format!("{} cells under {} columns", row.cells.len(), head.cells.len());
+                findings.error(SourceLocation { line: number, column: 1 }, message, None);
+            }
+        }
+        let mut sheet = Self { dialect: Dialect { separator, decimal_comma: false }, head, rows };
+        // Empty ones are usual in files with semicolons: those have decimal commas wherever nothing says otherwise.
+        sheet.dialect.decimal_comma = separator == ';' && !sheet.own_cells().any(|text| is_decimal(text, '.'))
+            || separator != ',' && sheet.own_cells().any(|text| is_decimal(text, ','));
+        Some(sheet)
+    }
+
+    /// What stands in columns that are not comments.
+    fn own_cells(&self) -> impl Iterator<Item = &str> {
+        let of = |row| {
+            let cells = self.head.cells.iter().zip(row).filter(|(head, _)| !is_comment(&head.text));
+            cells.map(|(_, cell): (_, &Cell)| cell.text.trim())
+        };
+        self.rows.iter().flat_map(move |row| of(&row.cells))
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// The names of the columns.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.head.cells.iter().map(|cell| cell.text.trim())
+    }
+
+    /// Where each of these columns is, if it is there. Others but comments are mistakes.
+    pub fn columns<S: AsRef<str>>(&self, known: &[S], expected: &str, findings: &mut Findings) -> Vec<Option<usize>> {
+        let mut places = vec![None; known.len()];
+        for (at, Cell { text: name, .. }) in self.head.cells.iter().enumerate() {
+            let place = self.head.place(at);
+            match known.iter().position(|column| column.as_ref().eq_ignore_ascii_case(name.trim())) {
+                Some(index) if places[index].is_some() => {
+                    findings.error(place, format!("column {name} is there twice"), None);
+                }
+                Some(index) => places[index] = Some(at),
+                None if is_comment(name) => {}
+                None => {
+                    let near = nearest(name, known.iter().map(AsRef::as_ref));
+                    let near = near.map(|near| format!("did you mean {near}?"));
+                    let message = format!("there is no column '{}'", name.escape_debug());
+                    let usual = || format!("{expected}; a column of your own begins with {COMMENT}");
+                    findings.error(place, message, near.or_else(|| Some(usual())));
+                }
+            }
+        }
+        places
+    }
+
+    /// The place behind the column names.
+    pub fn end_of_head(&self) -> SourceLocation {
+        let behind = |cell: &Cell| cell.column + cell.text.chars().count();
+        SourceLocation { line: self.head.line, column: self.head.cells.last().map_or(1, behind) }
+    }
+
+    /// A cell as a number with a point, where it is one.
+    pub fn number<'r>(&self, row: &'r Row, index: usize) -> Result<Cow<'r, str>, &'static str> {
+        let text = row.text(index);
+        match (self.dialect, text.contains(',')) {
+            (Dialect { separator: ',', .. }, true) => Err("numbers have a point, not a comma"),
+            (Dialect { decimal_comma: true, .. }, _) if text.contains('.') => {
+                Err("other numbers of the file have a comma, so it is not clear what the point is")
+            }
+            (_, true) => Ok(Cow::Owned(text.replacen(',', ".", 1))),
+            (_, false) => Ok(Cow::Borrowed(text)),
+        }
+    }
+}
+
+/// A table with new values in its rows: its comments, the order of its rows and columns, and rows without a new value stay
+/// as they are, byte for byte. Rows that it does not have come behind them. `columns` begin with what tells a row, and
+/// `canonical` gives that one spelling.
+pub fn update(
+    bytes: &[u8],
+    columns: &[Column],
+    rows: &[Vec<String>],
+    canonical: impl Fn(&str) -> String,
+    findings: &mut Findings,
+) -> Option<String> {
+    let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
+    let expected = format!("the columns are {}", names.join(", "));
+    let sheet = Sheet::read(bytes, &expected, findings)?;
+    let places = sheet.columns(&names, &expected, findings);
+    let (Some(key), 0) = (places.first().copied().flatten(), findings.errors()) else {
+        if findings.errors() == 0 {
+            let missing = names.first().copied().unwrap_or_default();
+            findings.error(sheet.end_of_head(), format!("column {missing} is missing"), Some(expected));
+        }
+        return None;
+    };
+    let cells = |row: &Vec<String>, old: &dyn Fn(usize) -> String| {
+        let new = |at: usize| {
+            let index = places.iter().position(|place| *place == Some(at))?;
+            let (column, cell) = (columns.get(index)?, row.get(index)?);
+            // No comment takes one away that a person wrote.
+            let is_none = cell.is_empty() && is_comment(&column.name);
+            (!is_none).then(|| sheet.dialect.cell(column, cell).into_owned())
+        };
+        let cells: Vec<String> = (0..sheet.head.cells.len()).map(|at| new(at).unwrap_or_else(|| old(at))).collect();
+        sheet.dialect.row(cells.into_iter().map(Cow::Owned))
+    };
+    let mut left: HashMap<String, &Vec<String>> =
+        rows.iter().filter_map(|row| Some((canonical(row.first()?), row))).collect();
+    let text = String::from_utf8_lossy(bytes);
+    let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let mut updated = String::with_capacity(text.len());
+    for (index, line) in text.split_inclusive('\n').enumerate() {
+        let old = sheet.rows.iter().find(|row| row.line == index + 1);
+        match old.and_then(|old| Some((old, left.remove(&canonical(old.text(key)))?))) {
+            Some((old, row)) => updated.extend([&cells(row, &|at| old.whole(at).to_owned()), end]),
+            None => updated.push_str(line),
+        }
+    }
+    if !updated.ends_with('\n') {
+        updated.push_str(end);
+    }
+    for row in rows.iter().filter(|row| row.first().is_some_and(|key| left.contains_key(&canonical(key)))) {
+        updated.extend([&cells(row, &|_| String::new()), end]);
+    }
+    Some(updated)
+}
+
+/// Whether a spreadsheet would compute a text, or take its apostrophe away.
+fn is_formula(text: &str) -> bool {
+    let rest = text.trim_start_matches('\'');
+    rest.starts_with(['=', '+', '-', '@']) && (rest.len() < text.len() || text.parse::<f64>().is_err())
+}
+
+fn is_comment(name: &str) -> bool {
+    name.trim().get(..COMMENT.len()).is_some_and(|start| start.eq_ignore_ascii_case(COMMENT))
+}
+
+/// What stands between the column names.
+fn separator(line: &str) -> char {
+    let count = |separator| line.matches(separator).count();
+    [',', ';', '\t'].into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(',')
+}
+
+/// Whether a text is a number with this between its whole and its decimals.
+fn is_decimal(text: &str, mark: char) -> bool {
+    let digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let Some((whole, decimals)) = text.split_once(mark) else { return false };
+    digits(whole.trim_start_matches(['+', '-'])) && !decimals.is_empty() && digits(decimals)
+}
+
+/// The cells of a line; a quote that is not closed, or not at the edge of a cell, is told.
+fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> Option<Row> {
+    let column = |at: usize| line.get(..at).map_or(1, |before| before.chars().count() + 1);
+    let told = cells(line, separator).map_err(|at| {
+        findings.error(SourceLocation { line: number, column: column(at) }, "the quotes are wrong here", None);
+    });
+    let cells = told.ok()?.into_iter().map(|(at, text)| Cell { column: column(at), text: text.into_owned() });
+    Some(Row { line: number, cells: cells.collect() })
+}
+
+/// The cells of a line, each with the byte it begins at; where a quote is wrong, its place.
+fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usize> {
+    let trimmed =
+        |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();
+    let mut cells = Vec::new();
+    let mut at = 0;
+    loop {
+        let start = at + trimmed(&line[at..]);
+        let (cell, end) = if line[start..].starts_with('"') {
+            let (cell, end) = quoted(line, start)?;
+            (Cow::Owned(cell), end)
+        } else {
+            let end = line[start..].find(separator).map_or(line.len(), |len| start + len);
+            let cell = line[start..end].trim_end();
+            match cell.find('"') {
+                Some(quote) => return Err(start + quote),
+                None => (Cow::Borrowed(cell), end),
+            }
+        };
+        cells.push((start, cell));
+        let end = end + trimmed(&line[end..]);
+        match line[end..].strip_prefix(separator) {
+            Some(more) => at = line.len() - more.len(),
+            None if end == line.len() => return Ok(cells),
+            None => return Err(end),
+        }
+    }
+}
+
+/// The text of a quoted cell, and where it ends.
+fn quoted(line: &str, start: usize) -> Result<(String, usize), usize> {
+    let mut text = String::new();
+    let mut at = start + 1;
+    loop {
+        let len = line[at..].find('"').ok_or(start)?;
+        text.push_str(&line[at..at + len]);
+        at += len + 1;
+        if !line[at..].starts_with('"') {
+            return Ok((text, at));
+        }
+        text.push('"');
+        at += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMNS: [&str; 3] = ["point", "x_mm", "y_mm"];
+
+    fn read(text: &str) -> Result<Vec<Vec<String>>, Vec<String>> {
+        let mut findings = Findings::default();
+        let mut rows = Vec::new();
+        if let Some(sheet) = Sheet::read(text.as_bytes(), "point first", &mut findings) {
+            let places = sheet.columns(&COLUMNS, "point first", &mut findings);
+            for row in sheet.rows() {
+                let cells = places.iter().flatten().map(|at| sheet.number(row, *at).map(Cow::into_owned));
+                match cells.collect::<Result<Vec<_>, _>>() {
+                    Ok(cells) => rows.push(cells),
+                    Err(why) => findings.error(row.place(0), why, None),
+                }
+            }
+        }
+        let errors = findings.into_errors();
+        if errors.is_empty() { Ok(rows) } else { Err(errors.iter().map(ToString::to_string).collect()) }
+    }
+
+    #[test]
+    fn semicolons_tabs_and_decimal_commas_are_read() {
+        let expected = Ok(vec![vec!["1".to_owned(), "-1.5".to_owned(), "20".to_owned()]]);
+        for text in [
+            "point,x_mm,y_mm\n1,-1.5,20\n",
+            "point;x_mm;y_mm\r\n1;-1,5;20\r\n",
+            "point;x_mm;y_mm\n1;-1.5;20\n",
+            "\u{FEFF}Point\tX_MM\tcomment\ty_mm\n1\t-1,5\ta;b, c\t20\n\t\t\t\n",
+            "comment_2;y_mm;x_mm;point\n\"3,14; \"\"x\"\"\";20;-1,5;1\n",
+        ] {
+            let mut rows = read(text);
+            // In the order of the columns that were asked for.
+            rows.iter_mut().flatten().for_each(|row| assert_eq!(row.len(), 3, "{text}"));
+            assert_eq!(rows, expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_clear_is_refused() {
+        let errors = |text: &str| read(text).unwrap_err();
+        assert!(errors("point,x_mm\n1,\"1,5\"\n")[0].contains("numbers have a point"));
+        assert!(errors("point;x_mm;y_mm\n1;1,5;1.234\n")[0].contains("not clear what the point is"));
+        assert!(errors("point;x_mm;remark\n")[0].contains("there is no column 'remark'"));
+        assert!(errors("point;x_mn\n")[0].contains("did you mean x_mm?"));
+        assert!(errors("point,x_mm,X_mm\n")[0].contains("is there twice"));
+        assert!(errors("point,x_mm\n1\n")[0].contains("1 cells under 2 columns"));
+        assert!(errors("point,x_mm\n1,\"2\n")[0].contains("the quotes are wrong here"));
+        assert!(errors("")[0].contains("the file is empty"));
+    }
+
+    fn columns() -> Vec<Column> {
+        COLUMNS.map(Column::number).into()
+    }
+
+    fn rows(rows: &[[&str; 3]]) -> Vec<Vec<String>> {
+        rows.iter().map(|row| row.map(str::to_owned).into()).collect()
+    }
+
+    #[test]
+    fn an_update_keeps_what_a_person_wrote() {
+        let canonical = |text: &str| text.trim_start_matches('0').to_owned();
+        let updated = |old: &str, new: &[[&str; 3]]| {
+            update(old.as_bytes(), &columns(), &rows(new), canonical, &mut Findings::default())
+        };
+        assert_eq!(
+            updated(
+                "comment;x_mm;point\r\n\"above; 1,5\";1,5;007\r\n;;\r\nlast;2;3",
+                &[["7", "-9.25", "8"], ["9", "4.5", "5"]]
+            )
+            .unwrap(),
+            "comment;x_mm;point\r\n\"above; 1,5\";-9,25;7\r\n;;\r\nlast;2;3\r\n;4,5;9\r\n"
+        );
+        let old = "point,y_mm,comment\n1,2.00,\"say \"\"x\"\"\"\n";
+        assert_eq!(updated(old, &[["1", "5.0", "2.00"]]).unwrap(), old);
+        assert_eq!(updated(old, &[]).unwrap(), old);
+        assert_eq!(updated("x_mm\n1\n", &[]), None);
+    }
+
+    #[test]
+    fn texts_come_back_as_they_are() {
+        let texts = ["=1+1", "'=x", "''@", "-5", "-x", " a ", "a;b", "say \"x\"", "'", ""];
+        let columns = [Column::number("point"), Column::text("comment")];
+        let rows: Vec<Vec<String>> = texts.iter().map(|text| vec!["1".to_owned(), (*text).to_owned()]).collect();
+        for dialect in [Dialect::COMMAS, Dialect::DECIMAL_COMMA] {
+            let text = write(dialect, &columns, &rows);
+            assert!(text.contains("'=1+1\n") && !text.contains("\n1,=") && !text.contains("\n1;="), "{text}");
+            let sheet = Sheet::read(text.as_bytes(), "", &mut Findings::default()).unwrap();
+            let back: Vec<&str> = sheet.rows().iter().map(|row| row.string(1)).collect();
+            assert_eq!(back, texts, "{text}");
+        }
+    }
+
+    #[test]
+    fn both_dialects_are_written() {
+        let rows = rows(&[["1", "1.5", "-2"]]);
+        let columns = [columns(), vec![Column::text("comment")]].concat();
+        let rows: Vec<Vec<String>> = rows.into_iter().map(|row| [row, vec!["1.5; a".to_owned()]].concat()).collect();
+        assert_eq!(write(Dialect::COMMAS, &columns, &rows), "point,x_mm,y_mm,comment\n1,1.5,-2,1.5; a\n");
+        assert_eq!(write(Dialect::DECIMAL_COMMA, &columns, &rows), "point;x_mm;y_mm;comment\n1;1,5;-2;\"1.5; a\"\n");
+    }
+}
