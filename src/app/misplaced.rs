@@ -314,13 +314,9 @@ mod tests {
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
             ("armctl list alarm", "`armctl yerc alarm list` or `armctl yrcx alarm list` or `armctl toyo alarm list`"),
-            ("armctl yerc job list", "`armctl yerc file list`"),
             ("armctl yerc file ls", "`armctl yerc file list`"),
             ("armctl yerc io read 1", "`armctl yerc io get`"),
-            (
-                "armctl yerc start COUNT",
-                "`armctl yerc job select` or one that moves or powers the robot: see `armctl yerc job -h`",
-            ),
+            ("armctl yerc start COUNT", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
@@ -387,7 +383,7 @@ mod tests {
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
-        for line in ["armctl yerc job start x", "armctl yerc file delete", "armctl yerc status x"] {
+        for line in ["armctl yerc job start x y", "armctl yerc file delete", "armctl yerc status x"] {
             assert_eq!(tip(line), None, "{line}");
         }
     }

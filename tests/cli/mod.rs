@@ -49,6 +49,7 @@ transcripts! {
     repl
     robots
     robots_check
+    running
     sessions
     sheets
     signals

@@ -154,7 +154,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx point restore points.csv --dry-run", Destroy),
     ("yrcx point set 100 --mm 10.5,-20,5,-18", Destroy),
     ("yrcx point set 100 --pulse 1000,-2000,500,0", Destroy),
-    ("yrcx point set 100 @position.json", Destroy),
+    ("yrcx point set 100 --position position.json", Destroy),
     ("yrcx point-calc copy 1 --to 2", Destroy),
     ("yrcx point-calc copy 1 --to 2 --dry-run", Destroy),
     ("yrcx point-calc add 1 --to 2", Destroy),

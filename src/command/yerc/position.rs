@@ -535,7 +535,9 @@ mod tests {
         assert_eq!(
             render::csv(&report.view(), None),
             "axis,pulses,base,value,unit\nS,1,X,100.000,mm\nL,2,Y,0.000,mm\nU,3,Z,0.000,mm\nR,4,Rx,180.0000,deg\n\
-             B,5,Ry,0.0000,deg\nT,6,Rz,0.0000,deg\n,,tool,2,\n,,user,0,\n,,form,front+upper+noflip,\n"
+             B,5,Ry,0.0000,deg\nT,6,Rz,0.0000,deg\n,,tool,2,\n,,user,0,\n,,form,front+upper+noflip,\n\
+             text,text\n\"pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=2,user=0\",\"base:x=100.000,y=0.000,z=0.000,rx=180.0000,\
+             ry=0.0000,rz=0.0000,tool=2,user=0,form=front+upper+noflip\"\n"
         );
     }
 
@@ -547,7 +549,7 @@ mod tests {
             serde_json::to_value(&report).unwrap()["pulse"]["pulses"].to_string(),
             r#"{"axis_1":7,"axis_2":-8}"#
         );
-        assert_eq!(render::csv(&report.view(), None), "axis,pulses\n1,7\n2,-8\n");
+        assert_eq!(render::csv(&report.view(), None), "axis,pulses\n1,7\n2,-8\ntext\n\"pulse:1=7,2=-8\"\n");
     }
 
     #[test]

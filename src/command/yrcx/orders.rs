@@ -272,6 +272,7 @@ mod tests {
     fn the_unit_is_always_told() {
         let sent = written(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
         assert_eq!(sent[0][..4], ["0x2028", "0x0000", "0x752F", "0x0001"]);
+        assert_eq!(written(&["teach", "4000", "--in", "pulse"]).unwrap(), [example("4.2.9-teach")]);
         assert!(words(&["teach", "--point", "30000", "--in", "mm"]).unwrap_err().message.contains("0 to 29999"));
         assert!(objection(&["teach"]).contains("POINT"));
     }

@@ -57,23 +57,23 @@ impl Command for Teach {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
         let Context { link, authority, .. } = context;
         let read = table::Command::PointGet.order().with(Key::Point, self.number()).build()?;
-        let is_read = !link.is_dry() || self.unit_of_point.is_none();
-        let old = if is_read { there(link, &read, "what the point is").await? } else { None };
+        let old = there(link, &read, "what the point is").await?;
         let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
         let order = self.order(link, unit)?;
         // In a dry run nobody knows the unit of the point.
         let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
         overwrite::give_either(link, &authority, &order, &other).await?;
+        let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
+        let here = link.draft(row)?.build()?;
         if link.is_dry() {
             link.plan(&read, "reads it back");
+            link.plan(&here, "where the robot is, which it is compared with");
             return Err(unknown());
         }
         let name = self.number();
         let unread = |failure| not_read_back(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
         let held = there(link, &read, "").await.map_err(unread)?;
         let held = held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the controller has no such point")))?;
-        let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
-        let here = link.draft(row)?.build()?;
         let here = link.ask(&here).await.map_err(unread)?.values;
         let place = Position::of(&here, Some(unit));
         let (new, is_same) = (Coordinates::of(&held), unit_of(&held) == unit && is_near(&held, &here));

