@@ -383,7 +383,7 @@ mod tests {
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
-        for line in ["armctl yerc job start x y", "armctl yerc file delete", "armctl yerc status x"] {
+        for line in ["armctl yerc file delete", "armctl yerc status x"] {
             assert_eq!(tip(line), None, "{line}");
         }
     }

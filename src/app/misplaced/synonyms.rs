@@ -47,7 +47,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("search", &["robots discover"]),
     ("shell", &["repl"]),
     ("start", &["yerc job start", "yrcx run", "toyo run"]),
-    ("stop", &["yerc job stop", "yrcx stop", "toyo stop"]),
+    ("stop", &["yerc hold on", "yrcx stop", "toyo stop"]),
     ("upload", &["yerc file put", "toyo program put"]),
     ("version", &["--version", "yerc info", "yrcx info version", "toyo info"]),
     ("watch", &["top", "status --watch"]),
