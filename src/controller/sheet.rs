@@ -47,11 +47,12 @@ impl Dialect {
 
     /// A cell of a column.
     fn cell<'c>(self, column: &Column, text: &'c str) -> Cow<'c, str> {
-        match column.is_number {
-            true if self.decimal_comma => Cow::Owned(text.replace('.', ",")),
-            true => Cow::Borrowed(text),
-            false if is_formula(text) => Cow::Owned(format!("'{text}")),
-            false => Cow::Borrowed(text),
+        if column.is_number && self.decimal_comma {
+            Cow::Owned(text.replace('.', ","))
+        } else if !column.is_number && is_formula(text) {
+            Cow::Owned(format!("'{text}"))
+        } else {
+            Cow::Borrowed(text)
         }
     }
 }

@@ -115,9 +115,9 @@ pub fn aligned(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
         return ([WithoutDate::of(&old), WithoutDate::of(&new)], true);
     }
     let mut before = before.into_iter();
-    let mut dated =
+    let mut with_date =
         |line: &[u8]| if line.starts_with(DATE) { before.next() } else { None }.unwrap_or_else(|| line.to_vec());
-    let new = lines(&new).flat_map(&mut dated).collect();
+    let new = lines(&new).flat_map(&mut with_date).collect();
     ([old, new], true)
 }
 

@@ -21,8 +21,17 @@ pub struct Panel {
     pub go: fn(point: u32, system: &System, speed: u32) -> Vec<String>,
     /// How points are named: `P5`, `point 5`.
     pub point: fn(u32) -> String,
-    /// What a small step of the controller is: what asks for it, and its size in the answer, for axis 0, 1 and so on.
-    pub small_step: Option<(&'static [&'static str], fn(&Value, usize) -> Option<f64>)>,
+    /// The small step of a controller that moves by its own.
+    pub small_step: Option<SmallStep>,
+}
+
+/// What a small step of the controller is.
+#[derive(Debug, Clone, Copy)]
+pub struct SmallStep {
+    /// What asks for it.
+    pub words: &'static [&'static str],
+    /// Its size in the answer, for axis 0, 1 and so on.
+    pub size: fn(&Value, usize) -> Option<f64>,
 }
 
 /// A way in which axes move.

@@ -50,7 +50,7 @@ pub struct New {
 
 impl New {
     /// What was set to which value; the same in words.
-    pub fn new(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
+    pub fn of(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
         Self { set: set.into(), with: Map::new(), new: new.into(), words: words.into() }
     }
 

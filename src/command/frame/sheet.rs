@@ -79,10 +79,8 @@ impl SheetManner {
         let is_there = file.symlink_metadata().is_ok();
         let old = if self.update && is_there { Some(text_files::read(&file)?) } else { None };
         let target = Target::new(file, self.force || self.update);
-        let target = target.map_err(|failure| match is_there {
-            true => failure.hint("--update puts the values into it and keeps its comments; --force replaces it"),
-            false => failure,
-        })?;
+        let advice = "--update puts the values into it and keeps its comments; --force replaces it";
+        let target = target.map_err(|failure| if is_there { failure.hint(advice) } else { failure })?;
         let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
         Ok(SheetTarget { target, dialect, old })
     }

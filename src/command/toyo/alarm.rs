@@ -276,7 +276,7 @@ impl Command for Reset {
             None => "no error any more".to_owned(),
             Some(Explained { code, .. }) => format!("still there: {}: {}", code.code, code.meaning),
         };
-        let new = New::new("fault_code", left.as_ref().map(|error| error.code.code.clone()), words);
+        let new = New::of("fault_code", left.as_ref().map(|error| error.code.code.clone()), words);
         Ok(Cancelled { done: new.replaces(old), left })
     }
 }

@@ -89,7 +89,7 @@ impl Command for Set {
             new.insert(format!("{name}_mm"), number(name, value));
         }
         let words = format!("task {} has {}", field("task").meaning(task), self.aim());
-        let new = New::new("coordinates", new, words).with("task", number("task", task));
+        let new = New::of("coordinates", new, words).with("task", number("task", task));
         let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", number("speed", speed)) };
         Ok(new.replaces(Old::UNREAD))
     }

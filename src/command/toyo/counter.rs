@@ -101,7 +101,7 @@ impl Command for Set {
             return Err(not_held(&order, &format!("it stands at {}", found.unwrap_or_default()))
                 .hint("a program that runs may count on it meanwhile"));
         }
-        let new = New::new("count", value, format!("counter {counter} set to {value}"));
+        let new = New::of("count", value, format!("counter {counter} set to {value}"));
         Ok(new.with("counter", counter).with("count", value).replaces(old))
     }
 }

@@ -38,7 +38,7 @@ impl Command for Host {
         context.link.ask(&Request::bare(command)).await?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
-            return Ok(New::new("host_on", is_on, done).replaces(old));
+            return Ok(New::of("host_on", is_on, done).replaces(old));
         }
         Err(not_so("the host").hint("`toyo status` tells who commands"))
     }

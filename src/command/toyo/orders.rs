@@ -46,7 +46,7 @@ impl Command for Servo {
             Switch::On => (table::Command::Svon, true, "servo power is on"),
             Switch::Off => (table::Command::Svof, false, "servo power is off"),
         };
-        let (new, old) = (New::new("servo_on", is_on, words), link.status_before(3).await?);
+        let (new, old) = (New::of("servo_on", is_on, words), link.status_before(3).await?);
         let old = Old::read(old.map(Status::servo_on));
         authority.confirm(&new.question(self.intent(), &old)).await?;
         link.ask(&Request::bare(command)).await?;
@@ -147,7 +147,7 @@ impl Command for Mode {
         link.ask(&Request::bare(mode.command())).await?;
         if becomes(link, (2, "whether it is in force"), |status| mode.is_in_force(status)).await? {
             let (set, new) = mode.data();
-            return Ok(New::new(set, new, mode.in_force()).replaces(old));
+            return Ok(New::of(set, new, mode.in_force()).replaces(old));
         }
         Err(not_so("the mode").hint("parameter M10 may have chosen easy or external point mode: `toyo param get M10`"))
     }
@@ -171,7 +171,7 @@ impl Command for Reset {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
         context.link.ask(&Request::bare(table::Command::Rest)).await?;
         let words = "the controller was reset; errors are cancelled by `toyo alarm reset`";
-        Ok(New::new("programs", "reset", words).replaces(Old::UNREAD))
+        Ok(New::of("programs", "reset", words).replaces(Old::UNREAD))
     }
 }
 

@@ -80,7 +80,7 @@ impl Command for Set {
         let mut cells = Cells::default();
         let found = context.link.store(context.screen, &cell, &mut cells).await?;
         let old = Old::read(found.and_then(|record| record.number(field().name)));
-        let new = New::new("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
+        let new = New::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
         Ok(Written { done: new.with("override_percent", self.percent).replaces(old), cells })
     }
 }

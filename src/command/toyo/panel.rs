@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::command::face::panel::{Panel, System, words};
+use crate::command::face::panel::{Panel, SmallStep, System, words};
 
 const AXES: [(&str, &str); 4] = [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("R", "mm")];
 
@@ -27,7 +27,7 @@ pub const PANEL: Panel = Panel {
     store: |point, _| words(&format!("teach {point}")),
     go: |point, _, _| words(&format!("run point {point}")),
     point: |point| format!("point {point}"),
-    small_step: Some((&["param", "get", "P12"], small_step)),
+    small_step: Some(SmallStep { words: &["param", "get", "P12"], size: small_step }),
 };
 
 fn small_step(parameter: &Value, axis: usize) -> Option<f64> {

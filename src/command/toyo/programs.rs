@@ -94,6 +94,6 @@ impl<K: Kind> Command for Select<K> {
             );
         }
         let words = format!("{} {} is chosen; `{}` starts it", K::WHAT, self.program, K::RUN);
-        Ok(New::new(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
+        Ok(New::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

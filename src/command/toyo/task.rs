@@ -81,7 +81,7 @@ impl Command for Set {
                 .hint("somebody else may choose tasks at the same time; `toyo task get` tells"));
         }
         let words = current_in_words(chosen);
-        Ok(New::new("task", chosen, words).with("task", chosen).replaces(old))
+        Ok(New::of("task", chosen, words).with("task", chosen).replaces(old))
     }
 }
 

@@ -254,7 +254,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 context.link.ask(&$query).await?;
-                Ok(New::new($set, $new, $done).replaces(Old::UNREAD))
+                Ok(New::of($set, $new, $done).replaces(Old::UNREAD))
             }
         }
     };

@@ -300,11 +300,14 @@ impl Command for Select {
         let words = match (self.task, self.line) {
             (Some(task), _) => format!("{name} is the master job of task {task}"),
             (None, 0) => format!("{name} is selected"),
-            (None, line) => format!("{name} is selected from line {line} on"),
+            (None, first) => format!("{name} is selected from line {first} on"),
         };
-        let line = self.task.is_none().then_some(self.line);
-        let new = New::new("job", name, words).with("job", name);
-        Ok(Selected { done: new.replaces(Old::read(was)), line, task: self.task })
+        let new = New::of("job", name, words).with("job", name);
+        Ok(Selected {
+            done: new.replaces(Old::read(was)),
+            line: self.task.is_none().then_some(self.line),
+            task: self.task,
+        })
     }
 }
 

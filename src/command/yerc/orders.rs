@@ -53,7 +53,7 @@ macro_rules! order {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
                 let ($this, Context { link, authority, .. }) = (self, context);
-                let new = New::new($set, $new, $done);
+                let new = New::of($set, $new, $done);
                 let old = Old::UNREAD;
                 // A stop waits for nothing.
                 $(let old = if self.is_stop() {
@@ -164,7 +164,7 @@ impl Command for Say {
         let bytes = context.link.encode("the message", &self.text)?;
         context.link.ask(&query::Say::new(&bytes).map_err(usage)?).await?;
         let words = if self.text.is_empty() { "the message is cleared" } else { "the message is on the pendant" };
-        Ok(New::new("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
+        Ok(New::of("pendant_message", self.text.as_str(), words).replaces(Old::UNREAD))
     }
 }
 

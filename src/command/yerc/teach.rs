@@ -201,7 +201,7 @@ fn as_position(value: &Value) -> Position {
     let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
     match value {
         Value::Position(position) => *position,
-        Value::Base(base) => bare(base.kind, base.axes),
+        Value::Base(track) => bare(track.kind, track.axes),
         Value::External(station) => bare(station.kind, station.axes),
         _ => unlike()[0],
     }

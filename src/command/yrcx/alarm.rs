@@ -169,7 +169,7 @@ impl Command for Reset {
         let Some(image) = link.look().await.known()? else { return Err(unknown()) };
         let (alarm, servo_on) = (output::ALARM.is_on(&image), output::SERVO_ON.is_on(&image));
         let words = if alarm { "alarm reset accepted; there is still an alarm" } else { "alarm reset" };
-        let report = WasReset { done: New::new("alarm", alarm, words).replaces(old), alarm, servo_on };
+        let report = WasReset { done: New::of("alarm", alarm, words).replaces(old), alarm, servo_on };
         if !report.servo_on {
             if link.is_held() {
                 screen.note(POWER_OFF);

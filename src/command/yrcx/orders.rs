@@ -61,7 +61,7 @@ one_row! {
             SpeedSetting::Auto => "auto_percent",
             SpeedSetting::Program => "program_percent",
         };
-        New::new(name, number(percent), format!("set the {setting} speed to {percent} %"))
+        New::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
     };
 
     /// Limits the torque of an axis from the next motion on; the parameter stays as it is.
@@ -77,7 +77,7 @@ one_row! {
     done {
         let percent = self.percent.trim_end_matches('%');
         let words = format!("limited the torque of axis {} to {percent} % from the next motion on", self.axis);
-        New::new("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
+        New::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
     };
 
     /// Sets the inching distance.
@@ -92,7 +92,7 @@ one_row! {
             "set the inching distance to {}: so many pulses, or steps of 0.001 mm along coordinates",
             self.distance
         );
-        New::new("inch_distance", number(&self.distance), words)
+        New::of("inch_distance", number(&self.distance), words)
     };
 
     /// Selects a shift.
@@ -102,7 +102,7 @@ one_row! {
     }
     gives Command::ShiftSelect,
     with draft => draft.with(Key::Shift, self.shift.as_str()),
-    done New::new("shift", number(&self.shift), format!("selected shift {}", self.shift));
+    done New::of("shift", number(&self.shift), format!("selected shift {}", self.shift));
 
     /// Selects a hand.
     HandSelect(self) "yrcx.hand.select" -> Done {
@@ -111,7 +111,7 @@ one_row! {
     }
     gives Command::HandSelect,
     with draft => draft.with(Key::Hand, self.hand.as_str()),
-    done New::new("hand", number(&self.hand), format!("selected hand {}", self.hand));
+    done New::of("hand", number(&self.hand), format!("selected hand {}", self.hand));
 
     /// Selects a hand system.
     #[command(after_help = "`yrcx info arm` reads it.")]
@@ -123,7 +123,7 @@ one_row! {
     with draft => draft.with(Key::Arm, i32::from(self.side == HandSystem::Left)),
     done {
         let side = if self.side == HandSystem::Left { "left" } else { "right" };
-        New::new("arm", side, format!("selected the {side}-handed system"))
+        New::of("arm", side, format!("selected the {side}-handed system"))
     };
 
     /// Switches servos.
@@ -156,7 +156,7 @@ one_row! {
             ServoState::Off => "off",
             ServoState::Free => "free",
         };
-        let done = New::new("servo", state, format!("switched {} {state}", self.describe()));
+        let done = New::of("servo", state, format!("switched {} {state}", self.describe()));
         done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
@@ -176,11 +176,11 @@ one_row! {
         MotorState::Pwr => "switch motor power on",
     },
     done match self.state {
-        MotorState::On => New::new("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
+        MotorState::On => New::of("motor_power", true, "switched motor power and all servos on").with("servo_on", true),
         MotorState::Off => {
-            New::new("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
+            New::of("motor_power", false, "switched motor power and all servos off").with("servo_on", false)
         }
-        MotorState::Pwr => New::new("motor_power", true, "switched motor power on"),
+        MotorState::Pwr => New::of("motor_power", true, "switched motor power on"),
     };
 
     /// Resets the status of remote commands to ready.
@@ -191,7 +191,7 @@ one_row! {
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
-    done New::new("remote_command_status", "ready", "the controller is ready for a remote command");
+    done New::of("remote_command_status", "ready", "the controller is ready for a remote command");
 }
 
 /// Which speed.

@@ -65,8 +65,7 @@ pub struct Replaced {
 pub fn confirmation(command: Command) -> Confirmation {
     match (command, command.row().risk) {
         (Command::AbsoluteReset, _) => Confirmation::Word("reset"),
-        (Command::ServoOn | Command::ServoOff | Command::ServoFree, _) => Confirmation::WhenKnown,
-        (_, Risk::Destroy) => Confirmation::WhenKnown,
+        (Command::ServoOn | Command::ServoOff | Command::ServoFree, _) | (_, Risk::Destroy) => Confirmation::WhenKnown,
         (_, Risk::Read | Risk::Write | Risk::Motion) => Confirmation::Question,
     }
 }
@@ -421,7 +420,7 @@ impl Stored {
         let with = |new: orders::New, (key, value): (Key, Json)| {
             new.with(if key == Key::Axes { "axis" } else { key.name() }, value)
         };
-        let new = numbers.into_iter().fold(orders::New::new(name, after, done), with);
+        let new = numbers.into_iter().fold(orders::New::of(name, after, done), with);
         Self { done: new.replaces(Old::read(Some(before))), written: !is_there, there }
     }
 }

@@ -205,7 +205,7 @@ one_row! {
         } else {
             format!("{place} = {} ({:08b})", self.value, self.value)
         };
-        New::new(place, self.value, words)
+        New::of(place, self.value, words)
     };
 }
 

@@ -47,7 +47,7 @@ macro_rules! procedures {
                     let old = was(context.link, [$(output::$signal)?].into_iter().next()).await?;
                     let elapsed = context.link.carry_out(Procedure::$procedure()).await?;
                     let elapsed_ms = u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX);
-                    Ok(CarriedOut { done: New::new($set, $new, $done).replaces(old), elapsed_ms })
+                    Ok(CarriedOut { done: New::of($set, $new, $done).replaces(old), elapsed_ms })
                 }
             }
         )*

@@ -156,7 +156,7 @@ one_row! {
         let program = describe(self.program.program.as_ref(), self.program.name.as_ref(), None);
         let task = self.task.map_or_else(|| "the lowest vacant task".to_owned(), |task| format!("task {task}"));
         let words = format!("registered {program} in {task} with priority {}", self.priority);
-        let new = New::new("program_state", "registered", words);
+        let new = New::of("program_state", "registered", words);
         let new = named(new, self.program.program.as_ref(), self.program.name.as_ref(), None);
         new.with("task", self.task).with("priority", number(&self.priority))
     };
@@ -190,7 +190,7 @@ macro_rules! starts {
                 }
 
                 fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
-                    let new = New::new("program_state", $new, format!($done, self.which.describe()));
+                    let new = New::of("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(new).replaces(Old::UNREAD))
                 }
             }

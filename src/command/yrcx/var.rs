@@ -186,7 +186,7 @@ impl Operand {
             ("set", Self::Number(_)) => operand.clone(),
             _ => Json::Null,
         };
-        New::new(variable, new, words).with("operation", does).with("operand", operand)
+        New::of(variable, new, words).with("operation", does).with("operand", operand)
     }
 
     fn describe(&self) -> String {

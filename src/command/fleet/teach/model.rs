@@ -214,9 +214,8 @@ impl Model {
             }
             KeyAction::Store => self.asked = Some(Asked::Point(Use::Store, String::new())),
             KeyAction::Go if !self.is_too_fast() => self.asked = Some(Asked::Point(Use::Go, String::new())),
-            KeyAction::Go => {}
             KeyAction::Release if self.panel.release.is_some() => self.asked = Some(Asked::Release),
-            KeyAction::Release => {}
+            KeyAction::Go | KeyAction::Release => {}
         }
         None
     }

@@ -13,7 +13,7 @@ use super::keys::order;
 use super::model::{Model, Wish};
 use super::view::{Robot as Shown, draw};
 use super::{Teach, Types};
-use crate::command::face::panel::{Panel, Step};
+use crate::command::face::panel::{Panel, SmallStep, Step};
 use crate::command::fleet::top::{self, Pace, Update, follow};
 use crate::command::frame::interrupt::asked_to_end;
 use crate::failure::{Failure, Kind};
@@ -50,7 +50,7 @@ pub async fn show(
     lines: &impl Types,
 ) -> Result<(), Failure> {
     let mut model = Model::new(panel, teach.max_step, teach.max_speed);
-    if let Some((words, size)) = panel.small_step {
+    if let Some(SmallStep { words, size }) = panel.small_step {
         let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
         let told = lines.run(&words).await?;
         let sizes = (0..model.system().axes.len()).map(|axis| size(&told, axis)).collect::<Option<Vec<f64>>>();

@@ -34,6 +34,7 @@ const FILTER: usize = 40;
 
 /// Everything that a picture is made of.
 #[derive(Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Model {
     /// As they are now; a pause shows others.
     robots: Vec<Seen>,

@@ -201,7 +201,7 @@ impl Command for Direct {
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
         let words = format!("direct output F{}", self.number);
-        Ok(New::new("direct_output", self.number, words).replaces(Old::UNREAD))
+        Ok(New::of("direct_output", self.number, words).replaces(Old::UNREAD))
     }
 }
 

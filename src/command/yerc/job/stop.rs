@@ -30,6 +30,6 @@ impl Command for Stop {
         context.link.ask(&query::Hold(true)).await?;
         let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
         // A stop waits for nothing, as `hold on` does.
-        Ok(New::new("held", true, words).replaces(Old::UNREAD))
+        Ok(New::of("held", true, words).replaces(Old::UNREAD))
     }
 }

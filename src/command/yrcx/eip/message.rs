@@ -110,7 +110,7 @@ impl Command for Set {
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         let words = format!("set {object} to {}", shown(&self.data.0));
-        let new = New::new("attribute", text::hex(&self.data.0), words);
+        let new = New::of("attribute", text::hex(&self.data.0), words);
         let new = new.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute);
         Ok(new.replaces(Old::read(old)))
     }

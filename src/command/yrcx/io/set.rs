@@ -55,11 +55,11 @@ impl Change {
         match self {
             Self::Signal { signal, on } => {
                 let old = shown.map(|image| signal.is_on(image));
-                New::new(signal.to_string(), on, self.describe()).replaces(Old::read(old))
+                New::of(signal.to_string(), on, self.describe()).replaces(Old::read(old))
             }
             Self::Word { register, value } => {
                 let old = shown.map(|image| register.read(&image.command()));
-                New::new(register.to_string(), value, self.describe()).replaces(Old::read(old))
+                New::of(register.to_string(), value, self.describe()).replaces(Old::read(old))
             }
         }
     }
@@ -156,7 +156,7 @@ impl Command for Pulse {
         let old = context.link.shown().map(|image| self.signal.is_on(image));
         context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
         let words = format!("switched {} on and off again", self.signal.named());
-        Ok(New::new(self.signal.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
+        Ok(New::of(self.signal.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
     }
 }
 

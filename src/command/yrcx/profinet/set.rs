@@ -132,7 +132,7 @@ impl Command for Blink {
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
         let words = format!("station {} blinks for about three seconds", found.mac);
-        Ok(New::new("blinking", true, words).with("mac", found.mac.to_string()).replaces(Old::UNREAD))
+        Ok(New::of("blinking", true, words).with("mac", found.mac.to_string()).replaces(Old::UNREAD))
     }
 }
 
@@ -172,7 +172,7 @@ impl Command for SetName {
         });
         let found = found.await?;
         let words = format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary));
-        let new = New::new("station_name", self.name.as_str(), words).with("mac", found.mac.to_string());
+        let new = New::of("station_name", self.name.as_str(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(Some(found.station.name.as_str()))))
     }
 }
@@ -222,7 +222,7 @@ impl Command for SetIp {
         let found = found.await?;
         let words = format!("station {} has the address {address}{}", found.mac, kept(self.temporary));
         let old = found.station.address().map(|old| old.to_string());
-        let new = New::new("address", address.to_string(), words).with("mac", found.mac.to_string());
+        let new = New::of("address", address.to_string(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(old)))
     }
 }
@@ -267,7 +267,7 @@ impl Command for Reset {
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
         let words = format!("station {} has no name and no address of its own", found.mac);
-        let new = New::new("station_name", "", words).with("mac", found.mac.to_string());
+        let new = New::of("station_name", "", words).with("mac", found.mac.to_string());
         Ok(new.replaces(Old::read(Some(found.station.name.as_str()))))
     }
 }

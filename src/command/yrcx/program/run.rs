@@ -99,7 +99,7 @@ impl Command for Run {
         link.ask(&order).await?;
         let began = Instant::now();
         let what = self.which.describe();
-        let done = New::new("program_state", "running", format!("started {what}"));
+        let done = New::of("program_state", "running", format!("started {what}"));
         let done = named(done, self.which.program(), self.which.name(), self.which.task.as_ref());
         let done = if self.which.all_programs { done.with("all_programs", true) } else { done };
         let done = done.replaces(Old::UNREAD);
@@ -133,14 +133,11 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
     let rest = limit.map(|limit| limit.saturating_sub(began.elapsed()));
     let image = match rest {
         None => ends.await,
-        Some(rest) => match timeout(rest, ends).await {
-            Ok(image) => image,
-            Err(_) => {
-                let limit = duration::display(limit.unwrap_or_default());
-                return Err(Failure::new(Kind::ConditionNotMet, format!("{what} still runs after {limit}"))
-                    .hint("`yrcx info line` tells how far it is; the end of this connection stops it"));
-            }
-        },
+        Some(rest) => timeout(rest, ends).await.map_err(|_| {
+            let limit = duration::display(limit.unwrap_or_default());
+            Failure::new(Kind::ConditionNotMet, format!("{what} still runs after {limit}"))
+                .hint("`yrcx info line` tells how far it is; the end of this connection stops it")
+        })?,
     };
     let image = image.map_err(lost)?;
     let stopped = if output::EMERGENCY_STOP.is_on(&image) {
