@@ -13,7 +13,7 @@ fn words_and_flags_are_those_of_the_command() {
         ("armctl yerc st", &["status"]),
         ("yerc st", &["status"]),
         ("/usr/bin/yerc.exe job se", &["select"]),
-        ("armctl --sim yerc job ", &["show", "select", "start"]),
+        ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),
         ("armctl yerc --sim servo o", &["on", "off"]),
         ("armctl yerc job select --li", &["--line"]),
         ("armctl -o j", &["json", "jsonl"]),

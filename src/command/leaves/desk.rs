@@ -23,6 +23,8 @@ pub const LINES: &[&str] = &[
     "batch morning.txt --set job=WELD --dry-run",
     "top",
     "top -r cell3",
+    "teach -r cell3",
+    "teach -r cell3 --max-step 1 --max-speed 5",
     "robots list",
     "robots list --json",
     "robots show cell3",

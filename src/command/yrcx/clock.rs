@@ -328,7 +328,11 @@ mod tests {
         let both = ["clock", "set", "2014-02-02T08:45:00"];
         assert_eq!(words(&both).unwrap(), [example("4.8.2-set"), example("4.8.1-set")]);
         let done = read_in_turn(&["4.8.2-set", "4.8.1-set"], &both);
-        assert_eq!(done, json!({"date": "2014-02-02", "time": "08:45:00", "errors": []}));
+        let items = json!([
+            {"name": "date", "old": null, "new": "2014-02-02"},
+            {"name": "time", "old": null, "new": "08:45:00"},
+        ]);
+        assert_eq!(done, json!({"date": "2014-02-02", "time": "08:45:00", "items": items, "errors": []}));
     }
 
     fn answer(numbers: [u16; 3]) -> Reply {

@@ -56,6 +56,9 @@ struct Which {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct WhichOrAll {
+    /// Program by its name or its number
+    #[arg(value_name = "NAME|NUMBER", add = complete::PROGRAM_NAME)]
+    what: Option<String>,
     /// Program by its number, 1 to 100
     #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
@@ -108,19 +111,31 @@ impl Which {
 }
 
 impl WhichOrAll {
+    fn program(&self) -> Option<&String> {
+        self.program.as_ref().or_else(|| self.what.as_ref().filter(|what| is_number(what)))
+    }
+
+    fn name(&self) -> Option<&String> {
+        self.name.as_ref().or_else(|| self.what.as_ref().filter(|what| !is_number(what)))
+    }
+
     fn named(&self, new: New) -> New {
-        let new = named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref());
+        let new = named(new, self.program(), self.name(), self.task.as_ref());
         if self.all_programs { new.with("all_programs", true) } else { new }
     }
 
     fn put(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::Selection, self.all_programs.then_some(0));
-        put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+        put(draft, self.program(), self.name(), self.task.as_ref())
     }
 
     fn describe(&self) -> String {
-        describe(self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+        describe(self.program(), self.name(), self.task.as_ref())
     }
+}
+
+fn is_number(text: &str) -> bool {
+    text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// How a program is named that is in no task yet.

@@ -175,8 +175,9 @@ impl Motion<'_> {
             ));
         }
         let pulses = degrees.iter().zip(per_degree).map(|(degrees, per_degree)| whole(degrees * per_degree));
-        let pulses: Vec<i32> =
-            pulses.collect::<Option<_>>().ok_or_else(|| Failure::usage("--deg: too many degrees"))?;
+        let too_far =
+            || Failure::usage("--deg: this is more pulses than an axis has").hint("look at pulses_per_degree");
+        let pulses: Vec<i32> = pulses.collect::<Option<_>>().ok_or_else(too_far)?;
         let mut words = [0; MAX_AXES];
         words.iter_mut().zip(&pulses).for_each(|(word, pulses)| *word = *pulses);
         Ok(Position {

@@ -115,7 +115,7 @@ impl Command for Dump {
 
 /// Where a dump goes.
 enum Place {
-    Stdout,
+    Screen,
     /// Begun unless it is a dry run.
     Json(Option<Draft>),
     Sheet(SheetTarget),
@@ -140,7 +140,7 @@ impl Dump {
             return Err(Failure::usage("--update and --decimal-comma are for tables").hint("name a file NAME.csv"));
         }
         if self.file == Path::new("-") {
-            return Ok(Place::Stdout);
+            return Ok(Place::Screen);
         }
         if self.taken.get_or_init(|| robot.to_owned()) != robot {
             return Err(text_files::of_one_robot(&self.file));

@@ -55,6 +55,11 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.23-direct-pulse", "push --axis 3 --to-pulse 10000 --speed 50 --force 100 --time 0.1s --report pulse"),
 ];
 
+/// Examples of the section that a command gives alone: teaching also reads (its example is in `orders`).
+fn is_one_order(id: &str) -> bool {
+    id.starts_with("4.2.") && id != "4.2.9-teach"
+}
+
 fn split(line: &str) -> Vec<&str> {
     line.split(' ').collect()
 }
@@ -63,7 +68,7 @@ fn split(line: &str) -> Vec<&str> {
 fn there_is_a_line_for_each_example_of_the_section() {
     let printed = entries();
     let printed: Vec<&str> = printed.iter().filter_map(|entry| entry["id"].as_str()).collect();
-    let printed: Vec<&str> = printed.into_iter().filter(|id| id.starts_with("4.2.")).collect();
+    let printed: Vec<&str> = printed.into_iter().filter(|id| is_one_order(id)).collect();
     assert_eq!(EXAMPLES.iter().map(|(id, _)| *id).collect::<Vec<_>>(), printed);
 }
 
@@ -93,7 +98,7 @@ fn positions(entry: &Value) -> (Value, Value) {
 #[test]
 fn words_become_the_reports_of_the_examples() {
     for ((id, line), entry) in
-        EXAMPLES.iter().zip(entries().iter().filter(|entry| entry["id"].as_str().unwrap().starts_with("4.2.")))
+        EXAMPLES.iter().zip(entries().iter().filter(|entry| is_one_order(entry["id"].as_str().unwrap())))
     {
         let reply = if entry["refused"] == "12.400" { Reply::UntilStop } else { |words| Reply::Ends(1, words) };
         let mut line = split(line);

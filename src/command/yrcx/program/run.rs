@@ -7,16 +7,14 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::{Instant, timeout};
 
-use super::{describe, named, put};
+use super::WhichOrAll;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
-use crate::command::yrcx::complete;
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::Key;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Section, Tone, View};
 use crate::settings::duration;
@@ -29,50 +27,11 @@ use crate::settings::duration;
 )]
 pub struct Run {
     #[command(flatten)]
-    which: What,
+    which: WhichOrAll,
     /// Wait until no program runs any more, at most TIME
     #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
     #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
     wait: Option<Option<Duration>>,
-}
-
-/// A program, or all of them.
-#[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
-struct What {
-    /// Program by its name or its number
-    #[arg(value_name = "NAME|NUMBER", add = complete::PROGRAM_NAME)]
-    what: Option<String>,
-    /// Program by its number, 1 to 100
-    #[arg(long, value_name = "N", add = complete::PROGRAM)]
-    program: Option<String>,
-    /// Program by its name: the first 16 of A-Z, 0-9 and _
-    #[arg(long, value_name = "NAME", add = complete::PROGRAM_NAME)]
-    name: Option<String>,
-    /// Program by the task that it is registered in, 1 to 16
-    #[arg(long, value_name = "N", add = complete::TASK)]
-    task: Option<String>,
-    /// All programs that are registered
-    #[arg(long)]
-    all_programs: bool,
-}
-
-impl What {
-    fn program(&self) -> Option<&String> {
-        self.program.as_ref().or_else(|| self.what.as_ref().filter(|what| is_number(what)))
-    }
-
-    fn name(&self) -> Option<&String> {
-        self.name.as_ref().or_else(|| self.what.as_ref().filter(|what| !is_number(what)))
-    }
-
-    fn describe(&self) -> String {
-        describe(self.program(), self.name(), self.task.as_ref())
-    }
-}
-
-fn is_number(text: &str) -> bool {
-    text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// How long a program may take to show that it runs; what was not seen by then was over before.
@@ -93,16 +52,12 @@ impl Command for Run {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
         let Context { link, screen, .. } = context;
-        let draft = link.draft(table::Command::ProgramRun)?;
-        let draft = draft.with_some(Key::Selection, self.which.all_programs.then_some(0));
-        let order = put(draft, self.which.program(), self.which.name(), self.which.task.as_ref()).build()?;
+        let order = self.which.put(link.draft(table::Command::ProgramRun)?).build()?;
         link.ask(&order).await?;
         let began = Instant::now();
         let what = self.which.describe();
         let done = New::of("program_state", "running", format!("started {what}"));
-        let done = named(done, self.which.program(), self.which.name(), self.which.task.as_ref());
-        let done = if self.which.all_programs { done.with("all_programs", true) } else { done };
-        let done = done.replaces(Old::UNREAD);
+        let done = self.which.named(done).replaces(Old::UNREAD);
         let Some(limit) = self.wait else { return Ok(Ran { done, ended: None, elapsed_ms: None }) };
         if link.is_dry() {
             link.then("what the controller shows is looked at until SO(13) tells that no program runs");
