@@ -336,9 +336,8 @@ enum Frame {
 impl Frame {
     /// Whether this was sent, as far as it is known before: a word of what is read first is `?`.
     fn fits(&self, sent: &Self) -> bool {
-        let (planned, sent) = match (self, sent) {
-            (Self::Words(planned), Self::Words(sent)) | (Self::Bits(planned), Self::Bits(sent)) => (planned, sent),
-            _ => return false,
+        let ((Self::Words(planned), Self::Words(sent)) | (Self::Bits(planned), Self::Bits(sent))) = (self, sent) else {
+            return false;
         };
         planned.len() == sent.len() && planned.iter().zip(sent).all(|(planned, sent)| planned == sent || planned == "?")
     }
