@@ -237,7 +237,12 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(hint, "`yrcx status` tells whether servos and motor power are on");
+    // What is there is read first; without an answer nothing is written.
     let board = Board::start(&["--mischief", "reset"]);
+    let (exit, kind, _, message, _) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
+    assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
+    assert!(message.ends_with("nothing was written"), "{message}");
+    let board = Board::start(&["--mischief", "reset-set"]);
     let (exit, kind, _, message, hint) = told(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(

@@ -132,7 +132,7 @@ fn a_real_robot_is_moved_when_the_question_is_answered_over_a_link_that_others_s
     repl.press("home\r");
     repl.says("Continue? [y/N]");
     repl.press("n\r");
-    repl.says("not confirmed; nothing was sent");
+    repl.says("not confirmed; nothing was changed");
     let session = desk.data("session list")["sessions"][0].clone();
     assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
     assert!(desk.data(&format!("-t {} toyo status", simulator.url)).is_object());

@@ -20,6 +20,7 @@ mod repl;
 mod safety;
 mod session;
 mod setup;
+mod teach;
 mod top;
 mod toyo_safety;
 mod toyo_sim;

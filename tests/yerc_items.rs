@@ -242,7 +242,7 @@ fn a_word_of_a_position_is_read_changed_and_written_whole() {
     });
     let (exit, set, error) = at(&target, "var set P1.tool=0x2 P1.axis1=5");
     assert_eq!(exit, 0, "{error}");
-    let tool = json!({"name": "P1", "part": "tool", "attribute": 3, "old": 0, "value": 2});
+    let tool = json!({"name": "P1", "part": "tool", "attribute": 3, "old": 0, "new": 2, "value": 2});
     assert_eq!(set["data"]["parts"][0], tool, "{set}");
     let (_, get, _) = at(&target, "var get P1");
     let position = &get["data"]["variables"][0]["value"];

@@ -31,7 +31,9 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
         }
         ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
         ErrorKind::InvalidValue => folder(&error, &typed, whole),
-        ErrorKind::ValueValidation => std::error::Error::source(&error).and_then(|why| number(&why.to_string())),
+        ErrorKind::ValueValidation => {
+            std::error::Error::source(&error).and_then(|why| number(&why.to_string())).or_else(|| cut_off(&error, args))
+        }
         _ => None,
     };
     if let Some(tip) = tip {
@@ -118,6 +120,16 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     })
 }
 
+/// The rest of a text with blanks, behind a `NAME=VALUE` that stands for itself: `S1=HELLO WORLD`.
+fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidValue) else { return None };
+    let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
+    let at = words.iter().position(|other| other == word).filter(|_| !word.contains('='))?;
+    let pair = words[..at].last().filter(|before| before.contains('=') && !before.starts_with('-'))?;
+    let quote = if pair.contains('\'') || word.contains('\'') { '"' } else { '\'' };
+    Some(format!("a value with blanks stands in quotes: {quote}{pair} {word}{quote}"))
+}
+
 /// The flag for a folder, where that of the format was taken for it.
 fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
@@ -130,6 +142,9 @@ fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<Str
 fn number(why: &str) -> Option<String> {
     if let Some((least, most)) = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..=")) {
         return Some(format!("write a number from {least} to {most}"));
+    }
+    if why.ends_with(" given") {
+        return Some("commas part the numbers; each has a decimal point: 1.5,20".to_owned());
     }
     let is_std = ["invalid digit found", "number too large", "number too small"].iter().any(|it| why.starts_with(it));
     decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
@@ -375,6 +390,11 @@ mod tests {
                 "write numbers with commas and without blanks: 400,0,300,180,0,0",
             ),
             ("armctl yerc move relative --z 2,5 --speed 1mm/s", "use a decimal point: 2.5"),
+            ("armctl yerc var set S1=HELLO WORLD", "a value with blanks stands in quotes: 'S1=HELLO WORLD'"),
+            (
+                "armctl yerc move linear --to 1,5,2,3,4,5,6 --speed 1mm/s",
+                "commas part the numbers; each has a decimal point: 1.5,20",
+            ),
             ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
             ("armctl --count 1,5 yerc status", "write a whole number"),

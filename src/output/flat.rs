@@ -36,8 +36,15 @@ impl Rows {
         &self.columns
     }
 
-    /// Adds a report: one row, or one for each thing of its lists. `before` are cells in front.
-    pub fn add(&mut self, before: &[(&str, &str)], data: &Value, which: Lists<'_>) {
+    /// Adds a report: one row, or one for each thing of its lists. `before` are cells in front. Of a list without things
+    /// `columns` has the names of the fields that they would have.
+    pub fn add(
+        &mut self,
+        before: &[(&str, &str)],
+        data: &Value,
+        which: Lists<'_>,
+        columns: impl Fn(&str) -> Vec<String>,
+    ) {
         let before = || before.iter().map(|(name, text)| ((*name).to_owned(), harmless(text)));
         let all = if which == Lists::None { Vec::new() } else { lists(data) };
         let is_row = |name: &str| !matches!(which, Lists::One(one) if one != name);
@@ -57,7 +64,13 @@ impl Rows {
         let filled = lists.iter().filter(|(_, items)| !items.is_empty()).count();
         if filled == 0 {
             // A table of nothing has a head and no rows.
-            for (name, _) in beside {
+            let below = lists.iter().flat_map(|(list, _)| {
+                let is_taken = |name: &str| lists.len() > 1 || beside.iter().any(|(other, _)| other == name);
+                let named = |name: String| if is_taken(&name) { format!("{list}.{name}") } else { name };
+                columns(list).into_iter().map(named).collect::<Vec<_>>()
+            });
+            let below: Vec<String> = below.collect();
+            for name in beside.into_iter().map(|(name, _)| name).chain(below) {
                 self.column(name);
             }
             return;
@@ -156,7 +169,7 @@ mod tests {
 
     fn csv(data: &Value, which: Lists<'_>) -> String {
         let mut rows = Rows::default();
-        rows.add(&[], data, which);
+        rows.add(&[], data, which, |list| vec![format!("of_{list}")]);
         rows.csv(true)
     }
 
@@ -171,7 +184,7 @@ mod tests {
     fn a_list_is_a_row_for_each_thing() {
         let data = json!({"task": 1, "points": [{"point": 1, "ok": true}, {"point": 2, "error": {"code": "NG"}}]});
         assert_eq!(csv(&data, Lists::All), "task,point,ok,error.code\n1,1,true,\n1,2,,NG\n");
-        assert_eq!(csv(&json!({"task": 1, "points": []}), Lists::All), "task\n", "a head without rows");
+        assert_eq!(csv(&json!({"task": 1, "points": []}), Lists::All), "task,of_points\n", "a head without rows");
         assert_eq!(csv(&json!({"name": 1, "x": [{"name": 2}]}), Lists::All), "name,x.name\n1,2\n");
         let two = json!({"signals": [{"on": true}], "groups": [{"value": 7}]});
         assert_eq!(csv(&two, Lists::All), "signals.on,groups.value\ntrue,\n,7\n");
@@ -181,11 +194,11 @@ mod tests {
     #[test]
     fn several_reports_share_their_columns() {
         let mut rows = Rows::default();
-        rows.add(&[("robot", "a")], &json!({"x": 1}), Lists::None);
-        rows.add(&[("robot", "b")], &json!({"y": "2,5"}), Lists::None);
+        rows.add(&[("robot", "a")], &json!({"x": 1}), Lists::None, |_| Vec::new());
+        rows.add(&[("robot", "b")], &json!({"y": "2,5"}), Lists::None, |_| Vec::new());
         assert_eq!(rows.csv(true), "robot,x,y\na,1,\nb,,\"2,5\"\n");
         let mut later = Rows::under(rows.columns().to_vec());
-        later.add(&[("robot", "a")], &json!({"y": 3}), Lists::None);
+        later.add(&[("robot", "a")], &json!({"y": 3}), Lists::None, |_| Vec::new());
         assert_eq!(later.csv(false), "a,,3\n");
     }
 }

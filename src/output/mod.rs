@@ -3,6 +3,7 @@
 //! stdout carries data only; prompts, progress, hints and logs go to stderr.
 
 pub mod busy;
+pub mod columns;
 pub mod editor;
 pub mod envelope;
 pub mod escape;

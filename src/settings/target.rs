@@ -285,6 +285,9 @@ impl FromStr for Target {
     fn from_str(url: &str) -> Result<Self, Failure> {
         let (scheme, rest) = url.split_once(':').unwrap_or(("", url));
         let wrong = |why: String| Failure::usage(format!("target '{url}': {why}")).hint(hint(scheme));
+        if scheme.is_empty() && url.contains('.') && url.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.') {
+            return Err(wrong("it is no IPv4 address, which has four numbers from 0 to 255".into()));
+        }
         if scheme.is_empty() {
             return Err(wrong("there is no scheme such as udp:// in it".into()));
         }

@@ -8,7 +8,7 @@
 //! | `## TEXT` | a comment |
 //!
 //! JSON stands indented; that it came as a single line, in the envelope and as the schema says, is checked here. What
-//! differs from run to run stands as `[…]`. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own,
+//! differs from run to run stands as `[…]`; lines of progress, which depend on how long it takes, are left out. `udp://127.0.0.1:10040` is a yerc simulator of the transcript's own,
 //! `eip://127.0.0.1:44818` a yrcx one and `tcp://127.0.0.1:4001` a toyo one, elsewhere in truth; its start state is
 //! `NAME.toml` beside `NAME.console`, if there is one. What is in `files/` lies in the folder.
 
@@ -132,6 +132,7 @@ impl Desk {
         let stdout: String = stdout.lines().map(|line| json::shown(line) + "\n").collect();
         let stderr: String = shown(output.stderr)
             .lines()
+            .filter(|line| !is_progress(line))
             .map(|line| format!("2> {}\n", json::shown(line).replace('\n', "\n2> ")))
             .collect();
         let code = match output.status.code() {
@@ -141,6 +142,11 @@ impl Desk {
         };
         stdout + &stderr + &code
     }
+}
+
+/// Whether it is a line of progress, `reading points: 40 %, 466 of 999, 12 s left`: they come only where it takes long.
+fn is_progress(line: &str) -> bool {
+    line.ends_with(" left") && line.contains(" %, ")
 }
 
 impl Drop for Desk {

@@ -99,7 +99,7 @@ fn a_flag_that_means_nothing_is_a_mistake() {
         ("robots list -r foo", "--robot means nothing"),
         ("robots list --tag line1", "--tag means nothing"),
         ("robots remove foo --dry-run", "--dry-run means nothing"),
-        ("explain yerc 0x2060 --all", "--all means nothing"),
+        ("decode toyo @STOP --all", "--all means nothing"),
         ("decode toyo @STOP --timeout 1s", "--timeout means nothing"),
         ("yrcx io map --bus devicenet --sim", "--sim means nothing"),
         ("session list --watch", "--watch means nothing"),

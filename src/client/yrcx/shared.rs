@@ -2,6 +2,7 @@
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{Image, Output};
+use armctl_controller::yrcx::order::Order;
 use armctl_controller::{Now, Risk};
 use armctl_transport::session::client::SessionBusy;
 use armctl_transport::session::wire::Change;
@@ -50,6 +51,15 @@ impl Client {
             return Ok(());
         }
         link.claim_motion().await.map_err(Error::Session)
+    }
+
+    /// Becomes the only one who moves the robot before what an order replaces is read: where another client moves it, that
+    /// is said at once instead of waiting for a turn to read. Nothing is sent to the controller.
+    ///
+    /// # Errors
+    /// [`Error::Session`].
+    pub async fn reserve(&mut self, order: &Order) -> Result<(), Error> {
+        self.claim_motion(order.risk()).await
     }
 
     /// Waits until nobody else gives a remote command. What others gave until then is known when this returns: whoever

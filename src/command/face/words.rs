@@ -36,7 +36,26 @@ enum Verb<C: Subcommand> {
 
 /// The word of a family with all its commands, and what the help says of it.
 pub fn augment<C: CommandSet + Subcommand>(command: Command, about: &'static str) -> Command {
-    Verb::<C>::augment_subcommands(command).about(about).long_about(None).add(Headings(C::headings))
+    let command = Verb::<C>::augment_subcommands(command).mut_subcommands(with_verbs);
+    command.about(about).long_about(None).add(Headings(C::headings))
+}
+
+/// Most characters of the verbs that stand behind what a noun is.
+const VERBS: usize = 44;
+
+/// A noun is told with its verbs: `Jobs: show, list, select`.
+fn with_verbs(noun: Command) -> Command {
+    let mut verbs = String::new();
+    for verb in noun.get_subcommands().map(Command::get_name) {
+        if verbs.len() + verb.len() > VERBS {
+            verbs.push_str(", …");
+            break;
+        }
+        verbs.push_str(if verbs.is_empty() { "" } else { ", " });
+        verbs.push_str(verb);
+    }
+    let Some(about) = noun.get_about().filter(|_| !verbs.is_empty()).map(ToString::to_string) else { return noun };
+    noun.about(format!("{about}: {verbs}")).mut_subcommands(with_verbs)
 }
 
 /// Headings of the help over the words of a command, see [`CommandSet::headings`].

@@ -37,6 +37,8 @@ pub trait AnyReport {
     fn failure(&self) -> Option<Failure>;
     /// See [`Report::rows`].
     fn rows(&self) -> Option<&'static str>;
+    /// The schema of [`AnyReport::data`].
+    fn schema(&self) -> Schema;
 }
 
 impl<R: Report> AnyReport for R {
@@ -55,6 +57,14 @@ impl<R: Report> AnyReport for R {
     fn rows(&self) -> Option<&'static str> {
         Report::rows(self)
     }
+
+    fn schema(&self) -> Schema {
+        schema_of::<R>()
+    }
+}
+
+fn schema_of<R: JsonSchema>() -> Schema {
+    SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>()
 }
 
 /// The schema of a report, by command.
@@ -69,9 +79,6 @@ pub struct SchemaEntry {
 impl SchemaEntry {
     /// The schema of a report as it is written: what may be left out is not required.
     pub fn of<R: JsonSchema>(id: &'static str) -> Self {
-        Self {
-            id,
-            schema: || SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>(),
-        }
+        Self { id, schema: schema_of::<R> }
     }
 }

@@ -17,7 +17,7 @@ commands! {
         Status(status::Status),
         /// Current position of the axes
         Position(position::Position),
-        /// Alarms: list, history, reset, point
+        /// Alarms
         #[command(alias = "error")]
         Alarm(Subcommands<alarm::Alarm>),
         /// Robot type, versions, axes, task, override
@@ -50,7 +50,7 @@ commands! {
         /// Current coordinate offset
         Offset(offset::Offset),
         "Programs":
-        /// Sequential programs: read, write, edit, check
+        /// Sequential programs
         Program(Subcommands<program::Program>),
         /// Palletizing programs
         Palletizing(Subcommands<palletizing::Palletizing>),
@@ -65,7 +65,7 @@ commands! {
         Teach(point::Teach),
         /// Points of the coordinate table
         Point(Subcommands<point::Point>),
-        /// Parameters: read, change, save, restore
+        /// Parameters
         Param(Subcommands<param::Param>),
         /// Speed table
         SpeedTable(Subcommands<rows::SpeedTable>),
@@ -81,7 +81,7 @@ commands! {
         Restore(backup::Restore),
         /// Compare a backup with another one, or with the controller
         Diff(Diff<Toyo>),
-        /// Memory card: read, write
+        /// Memory card
         Card(Subcommands<card::Card>),
         /// Clear memory
         Init(init::Init),

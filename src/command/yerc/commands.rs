@@ -11,7 +11,7 @@ commands! {
         "Status and diagnosis":
         /// Show mode, cycle, servo, hold, alarm: every status bit
         Status(status::Status),
-        /// Alarms: list, history, reset, cancel
+        /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
         /// Current position of a control group
         Position(position::Position),
@@ -37,17 +37,17 @@ commands! {
         /// Show a message on the pendant
         Say(orders::Say),
         "Motion":
-        /// Move a robot or station: joint, linear, relative, pulse
+        /// Move a robot or station
         Move(Subcommands<moves::Move>),
         "Programs":
-        /// Jobs: show, select, start
+        /// Jobs
         Job(Subcommands<job::Job>),
-        /// Files: list, get, put, delete, diff, backup, restore, cmos
+        /// Files
         File(Subcommands<file::File>),
         "Data":
         /// Teach: store the current position in a variable
         Teach(teach::Teach),
-        /// Variables: get, set, dump, restore
+        /// Variables
         Var(Subcommands<var::Var>),
         /// Save every file of the controller to a folder
         Backup(Backup<Yerc>),
@@ -56,9 +56,9 @@ commands! {
         /// Compare a backup with another one, or with the controller
         Diff(Diff<Yerc>),
         "Signals":
-        /// Signals: get, set
+        /// Signals
         Io(Subcommands<io::Io>),
-        /// Registers: get, set
+        /// Registers
         Register(Subcommands<register::Register>),
         "Link":
         /// Send any request and decode the answer

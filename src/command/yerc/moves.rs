@@ -40,7 +40,7 @@ commands! {
         Linear(Linear),
         /// Linear move by a distance (IMOV)
         Relative(Relative),
-        /// Move to pulse positions: joint, linear
+        /// Move to pulse positions
         Pulse(Subcommands<Pulse>),
     }
 }

@@ -15,9 +15,9 @@ commands! {
         "Status and diagnosis":
         /// Signals, servos and position in words
         Status(status::Status),
-        /// Versions, positions, servos, tasks, alarms
+        /// What the controller tells
         Info(Subcommands<info::Info>),
-        /// Alarms: list, history, reset
+        /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
         /// Current position of a robot
         Position(info::Where),
@@ -86,7 +86,7 @@ commands! {
         Teach(teach::Teach),
         /// Points
         Point(Subcommands<data::Point>),
-        /// Point comments: get, set
+        /// Point comments
         Comment(Subcommands<data::Comment>),
         /// Pallets
         PalletData(Subcommands<data::PalletData>),
@@ -112,13 +112,13 @@ commands! {
         /// I/O ports of eight signals
         Port(Subcommands<port::Port>),
         "Link":
-        /// Diagnose the network board: identity, assemblies, attributes
+        /// Diagnose the network board
         Eip(Subcommands<eip::Eip>),
-        /// Diagnose DeviceNet: nodes of the bus, sizes, owner
+        /// Diagnose DeviceNet
         Devicenet(Subcommands<devicenet::DeviceNet>),
-        /// Diagnose PROFIBUS: stations of the line, without owning any
+        /// Diagnose PROFIBUS
         Profibus(Subcommands<profibus::Profibus>),
-        /// Diagnose PROFINET: stations, names, addresses, modules
+        /// Diagnose PROFINET
         Profinet(Subcommands<profinet::Profinet>),
         /// Reset the remote command status
         StatusReset(orders::StatusReset),

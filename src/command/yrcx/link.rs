@@ -263,6 +263,11 @@ impl Link {
         Err(Failure::usage(format!("--unit does not go with this: {why}")).hint("leave --unit away"))
     }
 
+    /// Whoever reads first and orders then has the robot for himself from before the read: [`Client::reserve`].
+    pub async fn reserve(&mut self, order: &Order) -> Result<(), Failure> {
+        self.client.reserve(order).await.map_err(|error| self.failure(error))
+    }
+
     /// Carries out an order; a refusal is a failure.
     pub async fn ask(&mut self, order: &Order) -> Result<Done, Failure> {
         self.client.ask(order).await.map(Done::from).map_err(|error| self.failure(error))

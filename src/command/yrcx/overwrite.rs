@@ -74,6 +74,10 @@ pub fn confirmation(command: Command) -> Confirmation {
 /// confirmed; what is there already is not written.
 pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
     if target(order).is_none() {
+        // While a person thinks, the robot is not kept from others.
+        if !authority.asks() {
+            link.reserve(order).await?;
+        }
         let old = before(link, order).await?;
         authority.confirm(&question(order, intent, &old)).await?;
         return Ok(Done { old, ..link.ask(order).await? });

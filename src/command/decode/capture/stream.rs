@@ -135,7 +135,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         self.rows(decoder, |row| {
             written = as_value(&row).and_then(|mut data| {
                 data.as_object_mut().and_then(|fields| fields.remove("fields"));
-                rows.add(&[], &data, Lists::None);
+                rows.add(&[], &data, Lists::None, |_| Vec::new());
                 count += 1;
                 if count.is_multiple_of(PIECE) { write(&mut rows) } else { Ok(()) }
             });

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
+use crate::output::columns;
 use crate::output::envelope::Envelope;
 use crate::output::flat::{Lists, Rows};
 use crate::output::view::{Section, Table, View};
@@ -211,7 +212,7 @@ impl Run {
             let time = time.iter().map(|time| ("time", time.as_str()));
             let before: Vec<(&str, &str)> =
                 time.chain(robot.iter().map(|robot| ("robot", robot.name.as_str()))).collect();
-            rows.add(&before, &data, lists);
+            rows.add(&before, &data, lists, |list| columns::of(&report.schema().to_value(), list));
         }
         let has_header = !is_later || rows.columns().len() > count;
         self.redraw.columns.replace(rows.columns().to_vec());

@@ -30,7 +30,7 @@ pub struct ServeArgs {
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
     /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
-    /// reset, mute, garbage, trailing, unowned
+    /// reset, reset-set, mute, garbage, trailing, unowned
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<AdapterFault>,
 }

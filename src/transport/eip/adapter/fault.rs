@@ -27,6 +27,8 @@ pub enum AdapterFault {
     Reset,
     /// Answers no request.
     Mute,
+    /// Ends the TCP connection instead of answering what sets an attribute.
+    ResetSet,
     /// Answers noise.
     Garbage,
     /// Puts a socket address behind the items that it counts when it answers ForwardOpen, as OpENer boards do.
@@ -40,7 +42,7 @@ pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0
 
 impl AdapterFault {
     /// All there are, with the names they are asked for by.
-    pub const ALL: [(&'static str, Self); 14] = [
+    pub const ALL: [(&'static str, Self); 15] = [
         ("drop", Self::Drop),
         ("stall", Self::Stall),
         ("stale", Self::Stale),
@@ -51,6 +53,7 @@ impl AdapterFault {
         ("frozen", Self::Frozen),
         ("unreadable", Self::Unreadable),
         ("reset", Self::Reset),
+        ("reset-set", Self::ResetSet),
         ("mute", Self::Mute),
         ("garbage", Self::Garbage),
         ("trailing", Self::Trailing),
@@ -84,6 +87,7 @@ pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>
         | AdapterFault::Frozen
         | AdapterFault::Unreadable
         | AdapterFault::Reset
+        | AdapterFault::ResetSet
         | AdapterFault::Mute
         | AdapterFault::Garbage
         | AdapterFault::Trailing

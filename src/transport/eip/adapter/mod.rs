@@ -230,6 +230,7 @@ impl<A: Application> Adapter<A> {
                 Some(AdapterFault::Reset) if frame.command == Command::SEND_RR_DATA => {
                     self.outputs.push_back(Output::HangUp(client));
                 }
+                Some(AdapterFault::ResetSet) if is_set(&frame) => self.outputs.push_back(Output::HangUp(client)),
                 Some(AdapterFault::Garbage) if frame.command == Command::SEND_RR_DATA => {
                     let noise = Frame { data: &[0xFF; 40], ..frame };
                     self.outputs.push_back(Output::Send(client, noise.emit()));
@@ -472,4 +473,10 @@ impl Setup {
     fn assembly(&self, instance: u32, purpose: Purpose) -> Option<&Assembly> {
         self.assemblies.iter().find(|assembly| assembly.instance == instance && assembly.purpose == purpose)
     }
+}
+
+/// Whether it is a message that sets an attribute.
+fn is_set(frame: &Frame<'_>) -> bool {
+    frame.command == Command::SEND_RR_DATA
+        && RrData::parse(frame.data).is_ok_and(|data| data.message.first() == Some(&service::SET_ATTRIBUTE_SINGLE))
 }

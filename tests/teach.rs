@@ -1,0 +1,221 @@
+//! `armctl teach` on a terminal, against simulated controllers on the loopback: that a key is one bounded step, and that
+//! whatever happens to the panel, the motion ends with it.
+#![cfg(unix)]
+
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::simulator::Simulator;
+use crate::support::terminal::Terminal;
+
+/// A user, and a controller whose servo power is on.
+struct Desk {
+    folder: TempDir,
+    family: &'static str,
+    controller: Simulator,
+}
+
+impl Desk {
+    fn new(family: &'static str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        Self { folder, family, controller: Simulator::start(family) }
+    }
+
+    /// One whose axes can move.
+    fn powered(family: &'static str) -> Self {
+        let desk = Self::new(family);
+        let on = desk.run(&[family, "servo", "on", "--yes"]);
+        assert!(on.status.success(), "{}", String::from_utf8_lossy(&on.stderr));
+        desk
+    }
+
+    fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8").args(["-t", &self.controller.url]).args(words);
+        command
+    }
+
+    fn run(&self, words: &[&str]) -> Output {
+        self.command(words).output().expect("it runs")
+    }
+
+    fn data(&self, words: &str) -> Value {
+        let words: Vec<&str> = words.split(' ').chain(["--json"]).collect();
+        let output = self.run(&words);
+        let envelope: Value = serde_json::from_slice(&output.stdout).expect("an envelope");
+        assert_eq!(envelope["ok"], true, "{words:?}: {envelope}");
+        envelope["data"].clone()
+    }
+
+    /// The panel, with its question.
+    fn asked(&self, words: &[&str]) -> Terminal {
+        let command = self.command(&[&["teach", self.family], words].concat());
+        let mut teach = Terminal::start(command, 100, 30).expect("a terminal");
+        teach.says("Continue? [y/N]");
+        teach
+    }
+
+    /// The panel, once it shows the robot.
+    fn panel(&self, words: &[&str]) -> Terminal {
+        let mut teach = self.asked(words);
+        teach.press("y\r");
+        teach.shows("REAL CONTROLLER");
+        teach.shows("axis");
+        teach
+    }
+
+    /// Waits until X of the base has left `start`: the step is under way.
+    fn moves_from(&self, start: f64) {
+        assert!((0..LOOKS).any(|_| self.x() > start), "nothing moves");
+    }
+
+    /// Where X of the base is.
+    fn x(&self) -> f64 {
+        self.data("yerc position --coordinates base")["base"]["x_mm"].as_f64().expect("a number")
+    }
+}
+
+/// Looks after which what does not happen will not.
+const LOOKS: usize = 2000;
+
+/// Ten millimetres at one millimetre a second: long enough to be met under way.
+const SLOW: &str = "<++";
+
+#[test]
+fn what_it_is_not_for_is_refused() {
+    let desk = Desk::new("yerc");
+    for (words, part) in [
+        (&["teach", "yerc", "--dry-run"][..], "moves as keys order"),
+        (&["teach", "yerc", "-o", "json"], "is for people"),
+        (&["teach", "yerc", "--max-step", "0"], "more than nothing"),
+        (&["teach", "yerc", "--yes"], "draws on a terminal"),
+        (&["teach", "yerc", "--watch"], "--watch"),
+    ] {
+        let output = desk.run(words);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        assert!(said.contains(part), "{words:?}: {said}");
+    }
+    let mut teach = desk.asked(&["--max-step", "1", "--max-speed", "5"]);
+    let question = String::from_utf8_lossy(&teach.written).replace("\r\n", " ");
+    for part in ["REAL CONTROLLER", "at most 1 mm", "at most 5 mm/s"] {
+        assert!(question.contains(part), "{question}");
+    }
+    teach.press("n\r");
+    teach.says("nothing was sent");
+    assert_eq!(teach.end().code(), Some(7));
+    assert!(teach.is_as_before());
+}
+
+#[test]
+fn sizes_and_speeds_end_where_they_are_limited() {
+    let desk = Desk::new("yerc");
+    for (words, largest, fastest) in [(&[][..], "step 10 mm", "speed 10 mm/s"), (&["--max-step", "1"], "step 1 mm", "")]
+    {
+        let mut teach = desk.panel(words);
+        teach.press("++++++>>>>>>");
+        teach.shows(largest);
+        teach.shows(fastest);
+        teach.press("------");
+        teach.shows("step 0.01 mm");
+        teach.press("q");
+        assert_eq!(teach.end().code(), Some(0));
+        let drawn = String::from_utf8_lossy(&teach.written).into_owned();
+        assert!(!drawn.contains("25 mm/s"), "{drawn}");
+        assert!(teach.is_as_before());
+    }
+}
+
+#[test]
+fn keys_move_one_axis_by_a_step() {
+    let desk = Desk::powered("yerc");
+    let before = desk.data("yerc position --coordinates base")["base"].clone();
+    let mut teach = desk.panel(&[]);
+    teach.press("\x1b[B\x1b[C");
+    teach.shows("ok move relative --y 0.1 --coordinate base --speed 5mm/s");
+    teach.press("c");
+    teach.shows("tool  axis Y");
+    teach.press("q");
+    assert_eq!(teach.end().code(), Some(0));
+    let after = desk.data("yerc position --coordinates base")["base"].clone();
+    let moved = |name: &str| after[name].as_f64().unwrap() - before[name].as_f64().unwrap();
+    assert!((moved("y_mm") - 0.1).abs() < 1e-6, "{before} {after}");
+    for name in ["x_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg"] {
+        assert!(moved(name).abs() < 1e-6, "{name}: {before} {after}");
+    }
+
+    let desk = Desk::powered("toyo");
+    let before = desk.data("toyo position");
+    let mut teach = desk.panel(&[]);
+    teach.press("\x1b[C");
+    teach.shows("ok jog X + inch");
+    teach.press("q");
+    assert_eq!(teach.end().code(), Some(0));
+    let after = desk.data("toyo position");
+    assert!(after["x_mm"].as_f64() > before["x_mm"].as_f64(), "{before} {after}");
+    assert_eq!((&after["y_mm"], &after["z_mm"]), (&before["y_mm"], &before["z_mm"]));
+}
+
+#[test]
+fn a_motion_ends_with_its_step_when_the_program_is_killed() {
+    let desk = Desk::powered("yerc");
+    let start = desk.x();
+    let mut teach = desk.panel(&[]);
+    teach.press("<+");
+    teach.shows("step 1 mm");
+    // Of keys that come while a step is under way none is remembered.
+    teach.press("\x1b[C\x1b[C\x1b[C\x1b[C");
+    teach.shows("MOVING");
+    desk.moves_from(start);
+    teach.child.kill().expect("it is killed");
+    teach.child.wait().expect("it is our child");
+    // The step goes on to its end, as the safety page says, and nothing follows.
+    let is_there = || (desk.x() - start - 1.0).abs() < 1e-6;
+    assert!((0..LOOKS).any(|_| is_there()), "{start} {}", desk.x());
+    assert_eq!(desk.data("yerc status")["running"], false);
+    assert!(is_there(), "{start} {}", desk.x());
+}
+
+#[test]
+fn a_stop_gets_through_while_a_step_is_under_way() {
+    let desk = Desk::powered("yerc");
+    let start = desk.x();
+    let mut teach = desk.panel(&[]);
+    teach.press(SLOW);
+    teach.shows("step 10 mm");
+    teach.press("\x1b[C");
+    teach.shows("MOVING");
+    desk.moves_from(start);
+    teach.press(" ");
+    teach.shows("ok hold on");
+    teach.until("it moves no more", |picture| !picture.text().contains("MOVING"));
+    let stopped = desk.x();
+    assert!(start < stopped && stopped < start + 10.0, "{start} {stopped}");
+    assert_eq!(desk.data("yerc status")["held"], true);
+    teach.press("q");
+    assert_eq!(teach.end().code(), Some(0));
+    assert!((desk.x() - stopped).abs() < 1e-6);
+}
+
+#[test]
+fn who_leaves_while_something_moves_stops_it() {
+    for (key, code) in [("q", 0), ("\x03", 130)] {
+        let desk = Desk::powered("yerc");
+        let start = desk.x();
+        let mut teach = desk.panel(&[]);
+        teach.press(SLOW);
+        teach.shows("step 10 mm");
+        teach.press("\x1b[C");
+        teach.shows("MOVING");
+        desk.moves_from(start);
+        teach.press(key);
+        assert_eq!(teach.end().code(), Some(code));
+        assert!(teach.is_as_before());
+        let left = desk.x();
+        assert!(left < start + 10.0, "{start} {left}");
+        assert_eq!(desk.data("yerc status")["running"], false);
+    }
+}
