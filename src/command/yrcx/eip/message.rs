@@ -8,7 +8,7 @@ use serde_json::json;
 use super::board::{Object, shown};
 use super::{NO_UNIT, board_of};
 use crate::command::frame::dry_run::Known as _;
-use crate::command::frame::orders::{BEFORE, Done, New, Old};
+use crate::command::frame::orders::{BEFORE, Done, New, Old, unwritten};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
@@ -105,7 +105,7 @@ impl Command for Set {
         let old = match board_of(context.link)?.get(object).await {
             Ok(bytes) => Some(text::hex(&bytes)),
             Err(failure) if failure.kind == Kind::Refused => None,
-            Err(failure) => return Err(failure),
+            Err(failure) => return Err(unwritten(failure)),
         };
         board_of(context.link)?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
