@@ -1,7 +1,7 @@
 //! The fieldbuses that a controller may be reached over. A new one is a folder whose `bus.rs` says what `fieldbus.rs` asks,
 //! and a line here; its URLs are registered in `settings/target/bus.rs`.
 
-use clap::Args;
+use clap::{Arg, Args, Command};
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
 // Not its folder as a whole, whose commands know the link, which knows this list.
@@ -43,6 +43,12 @@ macro_rules! fieldbuses {
             /// Each with its fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Serve)> {
                 vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
+            }
+
+            /// Each fieldbus with the arguments that are for it alone.
+            pub fn arguments() -> Vec<(&'static Fieldbus, Vec<Arg>)> {
+                let of = |command: Command| command.get_arguments().cloned().collect();
+                vec![$($(#[$cfg])* (&$bus::BUS, of($bus::ServeArgs::augment_args(Command::new("sim")))),)*]
             }
         }
 

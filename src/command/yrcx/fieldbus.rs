@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::fmt;
 use std::net::SocketAddr;
+use std::path::Path;
 use std::time::Duration;
 
 use futures_util::future::LocalBoxFuture;
@@ -167,9 +168,14 @@ pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> 
 
 /// How one fieldbus serves a controller, as the command line wants it.
 pub trait Serve {
+    /// Whether it has a pseudo-terminal, which can be given a name.
+    fn has_terminal(&self) -> bool {
+        false
+    }
+
     /// Begins to serve, with threads or tasks of its own. Where the fieldbus has several simulators, `simulator` is the
-    /// name of one.
-    fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure>;
+    /// name of one. `link` is what its pseudo-terminal is to be named, where it has one.
+    fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure>;
 }
 
 /// What lines of a console do.

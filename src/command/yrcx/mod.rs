@@ -36,6 +36,7 @@ mod failure;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;
+mod given;
 mod hold;
 mod info;
 mod io;

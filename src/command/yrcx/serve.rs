@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::buses::Servers;
-use super::fieldbus::Served;
+use super::fieldbus::{Fieldbus, Served};
+use super::given::Given;
 use super::simulated::start;
 use crate::command::serve::{self, Serving, Started};
 use crate::controller::simulator::console::help_line;
@@ -24,13 +25,35 @@ pub struct ServeArgs {
     #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
     bus: Option<String>,
     #[command(flatten)]
-    servers: Servers,
+    servers: Given<Servers>,
+    /// DeviceNet, PROFIBUS: name the pseudo-terminal by a symbolic link, which is removed at the end
+    #[arg(long, value_name = "PATH", alias = "slcan-link")]
+    link: Option<PathBuf>,
     /// Start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Take lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
+}
+
+impl ServeArgs {
+    /// Refuses what is for another fieldbus.
+    fn fits(&self, chosen: &Fieldbus) -> Result<(), Failure> {
+        for (fieldbus, arguments) in Servers::arguments() {
+            let strange = arguments.iter().find(|argument| self.servers.has(argument.get_id()));
+            if let Some(strange) = strange.filter(|_| fieldbus.name != chosen.name) {
+                let flag = strange.get_long().unwrap_or_default();
+                return Err(misplaced(flag, chosen.name, &format!("--bus {}", fieldbus.name)));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
+    Failure::usage(format!("--{flag} means nothing with --bus {chosen}: it is for {right}"))
+        .hint("`armctl sim yrcx -h` says which options are for which fieldbus")
 }
 
 /// Lines of the console that are about the fieldbus.
@@ -48,10 +71,14 @@ impl serve::Serve for ServeArgs {
     async fn start(self) -> Result<Started<Self>, Failure> {
         let wanted = self.bus.as_deref();
         let bus = simulators().find(|(name, _)| wanted.is_none_or(|wanted| wanted == *name)).map(|(_, bus)| bus);
-        let all = self.servers.each();
-        let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name)).map(|(_, serve)| serve);
-        let serve = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
-        let server = serve.serve(wanted, start(self.state.as_deref())?)?;
+        let all = self.servers.arguments.each();
+        let serve = all.into_iter().find(|(fieldbus, _)| bus == Some(fieldbus.name));
+        let (fieldbus, serve) = serve.ok_or_else(|| Failure::local("no fieldbus serves that simulator"))?;
+        self.fits(fieldbus)?;
+        if self.link.is_some() && !serve.has_terminal() {
+            return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
+        }
+        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref())?;
         Ok(Started {
             reach: serve::reach("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },

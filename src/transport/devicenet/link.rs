@@ -271,7 +271,7 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
                 .into()
         }
         Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
-        Error::Port(PortError::Open { advice, .. }) => (*advice).into(),
+        Error::Port(PortError::Open { advice, .. }) => advice.clone(),
         Error::Port(PortError::Setup { .. }) => {
             "check that it is an SLCAN (Lawicel) adapter, and baud of the URL".into()
         }

@@ -513,7 +513,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
 async fn open(adapter: &Adapter) -> Result<Box<dyn CanPort>, PortError> {
     let listens = adapter.identity.is_none();
     let name = adapter.place.to_string();
-    let failed = |why: String, advice| PortError::Open { path: name.clone(), why, advice };
+    let failed = |why: String, advice: &'static str| PortError::Open { path: name.clone(), why, advice: advice.into() };
     let pipe = match &adapter.place {
         Place::Serial { path, baud } => {
             let line = Line {
@@ -550,7 +550,7 @@ fn socket_can(interface: &str) -> Result<Box<dyn CanPort>, PortError> {
 #[cfg(not(target_os = "linux"))]
 fn socket_can(interface: &str) -> Result<Box<dyn CanPort>, PortError> {
     let why = "only Linux has CAN interfaces".to_owned();
-    Err(PortError::Open { path: interface.to_owned(), why, advice: "use an SLCAN adapter: slcan://" })
+    Err(PortError::Open { path: interface.to_owned(), why, advice: "use an SLCAN adapter: slcan://".into() })
 }
 
 const fn serial_advice(error: &serial::OpenError) -> &'static str {

@@ -1,7 +1,7 @@
 //! A simulated controller behind SLCAN adapters, for others.
 
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::Path;
 
 use clap::Args;
 
@@ -26,10 +26,6 @@ pub struct ServeArgs {
     /// DeviceNet: address of the SLCAN adapters, one for each TCP client; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:0", value_parser = listen)]
     slcan_bind: SocketAddr,
-    /// DeviceNet: make a pseudo-terminal, too, with a link to it here
-    #[cfg(unix)]
-    #[arg(long, value_name = "PATH")]
-    slcan_link: Option<PathBuf>,
     /// DeviceNet: MAC ID of the controller
     #[arg(long, value_name = "MAC", default_value = "5")]
     mac: Mac,
@@ -55,11 +51,15 @@ fn bitrate(text: &str) -> Result<Bitrate, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(&self, simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+    fn has_terminal(&self) -> bool {
+        cfg!(unix)
+    }
+
+    fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure> {
         let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
         let mut listen = vec![Listen::Tcp(self.slcan_bind)];
         #[cfg(unix)]
-        if self.slcan_link.is_some() {
+        if link.is_some() {
             listen.push(Listen::Pty);
         }
         let hub = simulated::serve(start, setup, &listen, self.frame_fault.clone(), self.node_fault);
@@ -70,7 +70,7 @@ impl Serve for ServeArgs {
         if self.bitrate != Bitrate::K500 {
             target.push_str(&format!("&bitrate={}", self.bitrate.name()));
         }
-        let link = self.link(&hub)?;
+        let link = terminal_link(link, &hub)?;
         Ok(Served {
             target,
             address,
@@ -83,18 +83,16 @@ impl Serve for ServeArgs {
     }
 }
 
-impl ServeArgs {
-    /// Puts the link to the pseudo-terminal where it is wanted.
-    #[cfg(unix)]
-    fn link(&self, hub: &Hub<Controller>) -> Result<Option<TerminalLink>, Failure> {
-        let (Some(path), Some(terminal)) = (&self.slcan_link, hub.places().get(1)) else { return Ok(None) };
-        TerminalLink::make(path, terminal).map(Some)
-    }
+/// Puts the link to the pseudo-terminal where it is wanted.
+#[cfg(unix)]
+fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Option<TerminalLink>, Failure> {
+    let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };
+    TerminalLink::make(path, terminal).map(Some)
+}
 
-    #[cfg(not(unix))]
-    fn link(&self, _hub: &Hub<Controller>) -> Result<Option<()>, Failure> {
-        Ok(None)
-    }
+#[cfg(not(unix))]
+fn terminal_link(_path: Option<&Path>, _hub: &Hub<Controller>) -> Result<Option<()>, Failure> {
+    Ok(None)
 }
 
 fn console(hub: &Hub<Controller>, line: &str) -> Result<String, String> {

@@ -1,6 +1,7 @@
 //! A simulated controller as an adapter with TCP and UDP ports, for others.
 
 use std::net::SocketAddrV4;
+use std::path::Path;
 
 use clap::Args;
 
@@ -20,16 +21,16 @@ use crate::transport::fault::FaultSpec;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// Address to listen on, with the TCP port of sessions; port 0 lets the system choose
+    /// EtherNet/IP: address to listen on, with the TCP port of sessions; port 0 lets the system choose
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
-    /// UDP port of images, 2222 unless given; any where the system chooses that of sessions
+    /// EtherNet/IP: UDP port of images, 2222 unless given; any where the system chooses that of sessions
     #[arg(long, value_name = "PORT")]
     io_port: Option<u16>,
-    /// Faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
+    /// EtherNet/IP: faults of images on their way, such as drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,seed=7
     #[arg(long, value_name = "FAULTS", value_parser = faults)]
     fault: Option<FaultSpec>,
-    /// What the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
+    /// EtherNet/IP: what the adapter does wrong: drop, stall, stale, double, wrong-sequence, wrong-id, wrong-size, frozen, unreadable,
     /// reset, reset-set, mute, garbage, trailing, unowned
     #[arg(long, value_name = "WHAT", value_parser = mischief)]
     mischief: Option<AdapterFault>,
@@ -43,7 +44,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(&self, _simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+    fn serve(&self, _simulator: Option<&str>, start: Start, _link: Option<&Path>) -> Result<Served, Failure> {
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, self.fault.clone()).map_err(|error| {

@@ -17,8 +17,15 @@ use crate::transport::image::tap::Tap;
 #[group(skip)]
 pub struct Search {
     /// Ask the stations of PROFIBUS behind this adapter, as in /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
-    #[arg(long, value_name = "PORT[?baud=RATE]")]
+    #[arg(long, value_name = "PORT[?baud=RATE]", value_parser = port)]
     profibus: Option<String>,
+}
+
+/// The port of a URL is meant by the URL, too.
+#[expect(clippy::unnecessary_wraps, reason = "it parses a value for clap")]
+fn port(text: &str) -> Result<String, String> {
+    let of_url = text.strip_prefix(SCHEME.name).and_then(|rest| rest.strip_prefix("://"));
+    Ok(of_url.unwrap_or(text).to_owned())
 }
 
 impl fieldbus::Search for Search {

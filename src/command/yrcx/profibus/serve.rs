@@ -1,6 +1,6 @@
 //! A simulated controller as a slave behind a pseudo-terminal, for others.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use clap::Args;
 
@@ -26,9 +26,6 @@ pub struct ServeArgs {
     /// PROFIBUS: bit rate, which characters take their time by: 9.6k, 19.2k, 45.45k, 93.75k, 187.5k, 500k, 1.5M
     #[arg(long, value_name = "RATE", default_value = "500k", value_parser = rate)]
     baud: Rate,
-    /// PROFIBUS: name the pseudo-terminal by a symbolic link, which is removed at the end
-    #[arg(long, value_name = "PATH")]
-    link: Option<PathBuf>,
     /// PROFIBUS: faults of characters, such as noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,echo,seed=7
     #[arg(long, value_name = "FAULTS")]
     line_fault: Option<LineFaultSpec>,
@@ -48,7 +45,11 @@ fn rate(text: &str) -> Result<Rate, String> {
 }
 
 impl fieldbus::Serve for ServeArgs {
-    fn serve(&self, _simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+    fn has_terminal(&self) -> bool {
+        true
+    }
+
+    fn serve(&self, _simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure> {
         let options = Options {
             station: self.station,
             ident: self.ident,
@@ -59,7 +60,7 @@ impl fieldbus::Serve for ServeArgs {
         let server = simulated::serve(start, options)?;
         // From here on there may be a link to remove.
         crate::command::frame::interrupt::catch_interrupts();
-        let link = self.link.as_ref().map(|link| TerminalLink::make(link, server.port())).transpose()?;
+        let link = link.map(|link| TerminalLink::make(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
         Ok(Served {
             target: server.url(name.as_deref()),

@@ -1,5 +1,7 @@
 //! A simulated controller as an IO device on a real interface, for others.
 
+use std::path::Path;
+
 use clap::Args;
 
 use super::simulated::{Controller, NAME, controller, fault, layout, setup};
@@ -34,7 +36,7 @@ pub struct ServeArgs {
 }
 
 impl Serve for ServeArgs {
-    fn serve(&self, _simulator: Option<&str>, start: Start) -> Result<Served, Failure> {
+    fn serve(&self, _simulator: Option<&str>, start: Start, _link: Option<&Path>) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a device of PROFINET needs an Ethernet interface")
                 .hint("add --interface IFACE; `ip link` lists them"));

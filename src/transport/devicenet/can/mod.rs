@@ -1,5 +1,6 @@
 //! CAN: frames with 11-bit identifiers, and what carries them.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::future::Future;
 use std::pin::Pin;
@@ -239,7 +240,7 @@ pub enum PortError {
         /// Why not, in words.
         why: String,
         /// What to do about it.
-        advice: &'static str,
+        advice: Cow<'static, str>,
     },
     /// It is no adapter, or cannot be set as it must be.
     #[error("{path}: {why}")]

@@ -1,5 +1,6 @@
 //! An interface of Linux's own CAN (`can0`). Bit rate and state are the administrator's.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io;
 
@@ -11,8 +12,13 @@ use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 /// Frames that wait to be sent beyond which the interface takes no more.
 const MOST_WAITING: usize = 256;
 /// How an interface is set up.
-const ADVICE: &str = "set the interface up: `ip link set can0 up type can bitrate 500000 restart-ms 100` (as root; the bit \
-     rate is that of the bus)";
+fn advice(interface: &str) -> Cow<'static, str> {
+    format!(
+        "set the interface up: `ip link set {interface} up type can bitrate 500000 restart-ms 100` (as root; the bit rate is \
+         that of the bus); `ip -br link show type can` lists those there are"
+    )
+    .into()
+}
 /// Numbers of errors of the system that `io::ErrorKind` does not name.
 const NO_DEVICE: i32 = 19;
 const NO_FAMILY: i32 = 97;
@@ -41,12 +47,12 @@ impl SocketCan {
     pub fn open(interface: &str) -> Result<Self, PortError> {
         let failed = |error: &io::Error| {
             let (why, advice) = match error.raw_os_error() {
-                Some(NO_DEVICE) => ("there is no such interface".to_owned(), ADVICE),
+                Some(NO_DEVICE) => ("there is no such interface".to_owned(), advice(interface)),
                 Some(NO_FAMILY) => (
                     "this system knows no CAN".to_owned(),
-                    "load the module can_raw, or use an SLCAN adapter: slcan://",
+                    "load the module can_raw, or use an SLCAN adapter: slcan://".into(),
                 ),
-                _ => (error.to_string(), ADVICE),
+                _ => (error.to_string(), advice(interface)),
             };
             PortError::Open { path: interface.to_owned(), why, advice }
         };
@@ -57,7 +63,7 @@ impl SocketCan {
 
     fn gone(&self, error: &io::Error) -> PortError {
         let why = match error.raw_os_error() {
-            Some(IS_DOWN) => "the interface is down: `ip link set can0 up` (as root)".to_owned(),
+            Some(IS_DOWN) => format!("the interface is down: `ip link set {} up` (as root)", self.interface),
             _ => error.to_string(),
         };
         PortError::Gone { path: self.interface.clone(), why }
