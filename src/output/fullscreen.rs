@@ -2,6 +2,7 @@
 //! while the process is suspended.
 
 use std::io::{self, BufWriter, Stdout, Write as _};
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Once};
 use std::thread::JoinHandle;
@@ -32,7 +33,8 @@ const GLANCE: Duration = Duration::from_millis(100);
 /// The terminal, taken until dropped.
 #[derive(Debug)]
 pub struct Fullscreen {
-    terminal: Terminal<CrosstermBackend<BufWriter<Stdout>>>,
+    /// Never dropped: [`restore`] gives the terminal back, and where that is gone, the drop of this would break down.
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stdout>>>>,
 }
 
 /// Keys and changes of size, on their way from a thread of their own until dropped.
@@ -67,7 +69,7 @@ impl Screen {
         let taken =
             take().and_then(|()| Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(PICTURE, io::stdout()))));
         match taken {
-            Ok(terminal) => Ok(Fullscreen { terminal }),
+            Ok(terminal) => Ok(Fullscreen { terminal: ManuallyDrop::new(terminal) }),
             Err(error) => {
                 restore();
                 Err(lost(&error))
@@ -124,10 +126,10 @@ impl Keys {
         let is_over = Arc::new(AtomicBool::new(false));
         let watched = Arc::clone(&is_over);
         let thread = std::thread::spawn(move || {
-            while !watched.load(Ordering::Relaxed) {
-                match event::poll(GLANCE) {
-                    // Where hanging up is ignored, as under `nohup`, no signal tells it, and what waits for keys goes on.
-                    Ok(_) if !is_terminal_there() => return,
+            // Where hanging up is ignored, as under `nohup`, no signal tells that the terminal is gone; and what waits for
+            // keys there spins for ever.
+            while !watched.load(Ordering::Relaxed) && is_terminal_there(GLANCE) {
+                match event::poll(Duration::ZERO) {
                     Ok(false) => {}
                     Ok(true) => {
                         let Ok(event) = event::read() else { return };
@@ -153,14 +155,22 @@ impl Drop for Keys {
     }
 }
 
-/// Whether there is still a terminal behind stdin.
+/// Whether there is still a terminal behind stdin, after a key or at most this time.
 #[cfg(unix)]
-fn is_terminal_there() -> bool {
-    rustix::termios::tcgetattr(io::stdin()).is_ok()
+fn is_terminal_there(within: Duration) -> bool {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let stdin = io::stdin();
+    let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
+    let within = Timespec::try_from(within).ok();
+    // An interrupted wait has seen nothing, which is no sign of an end.
+    let _seen = poll(&mut watched, within.as_ref());
+    !watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL)
 }
 
 #[cfg(not(unix))]
-fn is_terminal_there() -> bool {
+fn is_terminal_there(within: Duration) -> bool {
+    // Ends with the first key as well.
+    let _seen = event::poll(within);
     true
 }
 

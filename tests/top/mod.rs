@@ -4,8 +4,12 @@
 
 mod proxy;
 
+use std::io::Read as _;
+use std::os::unix::process::CommandExt as _;
 use std::process::Command;
+use std::time::Duration;
 
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
@@ -223,4 +227,39 @@ fn reads_of_yrcx(sent: &Sent) {
         }
     }
     assert!(asked > 3);
+}
+
+#[test]
+fn a_terminal_that_is_gone_ends_it_where_hanging_up_is_ignored() {
+    let desk = simulated();
+    // Closed in every child, which would keep the terminal there.
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
+    grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");
+    let name = ptsname(&master, Vec::new()).expect("it has a name").into_string().expect("in UTF-8");
+    let slave = std::fs::File::options().read(true).write(true).open(name).expect("opened");
+    let mut master = std::fs::File::from(master);
+    let command = desk.command(&[]);
+    let armctl = command.get_program().to_owned();
+    let mut program = Command::new("sh");
+    program.args(["-c", "trap '' HUP; exec \"$0\" top"]).arg(armctl).env_clear();
+    program.envs(command.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    program.stdin(slave.try_clone().expect("another")).stdout(slave.try_clone().expect("another")).stderr(slave);
+    let mut child = program.process_group(0).spawn().expect("it starts");
+    drop(program);
+    let mut written: Vec<u8> = Vec::new();
+    // The alternate screen: it waits for keys now.
+    while !written.windows(8).any(|part| part == b"\x1b[?1049h") {
+        let mut buffer = [0; 4096];
+        let len = master.read(&mut buffer).expect("it draws");
+        written.extend(&buffer[..len]);
+    }
+    drop(master);
+    let ended = (0..3000).find_map(|_| {
+        std::thread::park_timeout(Duration::from_millis(20));
+        child.try_wait().expect("it is our child")
+    });
+    child.kill().unwrap_or_default();
+    // Whether a picture or a key was wanted at that moment: it ends, and says so by its code.
+    let code = ended.expect("it goes on without a terminal").code();
+    assert!(matches!(code, Some(1 | 130)), "{code:?}");
 }
