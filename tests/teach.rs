@@ -67,6 +67,17 @@ impl Desk {
         teach
     }
 
+    /// A panel in the middle of a step: ten millimetres at one millimetre a second, long enough to be met under way.
+    fn under_way(&self, start: f64) -> Terminal {
+        let mut teach = self.panel(&[]);
+        teach.press("<++");
+        teach.shows("step 10 mm");
+        teach.press("\x1b[C");
+        teach.shows("MOVING");
+        self.moves_from(start);
+        teach
+    }
+
     /// Waits until X of the base has left `start`: the step is under way.
     fn moves_from(&self, start: f64) {
         assert!((0..LOOKS).any(|_| self.x() > start), "nothing moves");
@@ -80,9 +91,6 @@ impl Desk {
 
 /// Looks after which what does not happen will not.
 const LOOKS: usize = 2000;
-
-/// Ten millimetres at one millimetre a second: long enough to be met under way.
-const SLOW: &str = "<++";
 
 #[test]
 fn what_it_is_not_for_is_refused() {
@@ -183,12 +191,7 @@ fn a_motion_ends_with_its_step_when_the_program_is_killed() {
 fn a_stop_gets_through_while_a_step_is_under_way() {
     let desk = Desk::powered("yerc");
     let start = desk.x();
-    let mut teach = desk.panel(&[]);
-    teach.press(SLOW);
-    teach.shows("step 10 mm");
-    teach.press("\x1b[C");
-    teach.shows("MOVING");
-    desk.moves_from(start);
+    let mut teach = desk.under_way(start);
     teach.press(" ");
     teach.shows("ok hold on");
     teach.until("it moves no more", |picture| !picture.text().contains("MOVING"));
@@ -205,12 +208,7 @@ fn who_leaves_while_something_moves_stops_it() {
     for (key, code) in [("q", 0), ("\x03", 130)] {
         let desk = Desk::powered("yerc");
         let start = desk.x();
-        let mut teach = desk.panel(&[]);
-        teach.press(SLOW);
-        teach.shows("step 10 mm");
-        teach.press("\x1b[C");
-        teach.shows("MOVING");
-        desk.moves_from(start);
+        let mut teach = desk.under_way(start);
         teach.press(key);
         assert_eq!(teach.end().code(), Some(code));
         assert!(teach.is_as_before());
