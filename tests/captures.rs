@@ -63,7 +63,8 @@ fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
         let mut buffer = [0; 2048];
         while let Ok((len, from)) = socket.recv_from(&mut buffer) {
             let request = &buffer[..len];
-            let is_it = |sent: &[u8]| [&sent[..ID], &sent[ID + 1..]].concat() == [&request[..ID], &request[ID + 1..]].concat();
+            let is_it =
+                |sent: &[u8]| [&sent[..ID], &sent[ID + 1..]].concat() == [&request[..ID], &request[ID + 1..]].concat();
             let Some((_, answer)) = pairs.iter().find(|(sent, _)| is_it(sent)) else { continue };
             let mut answer = answer.clone();
             answer[ID] = request[ID];

@@ -54,9 +54,8 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
     setup.says("added cell3");
     assert_eq!(setup.end().code(), Some(0));
     assert!(setup.is_as_before());
-    let expected = format!(
-        "default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}\"\nread_only = true\n"
-    );
+    let expected =
+        format!("default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}\"\nread_only = true\n");
     assert_eq!(desk.inventory(), Some(expected));
 }
 

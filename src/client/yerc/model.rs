@@ -219,6 +219,7 @@ mod tests {
         client
     }
 
+    #[expect(clippy::unnecessary_wraps, reason = "what is made for a model may fail")]
     fn strings(model: Model) -> Result<VariableKind, QueryError> {
         Ok(VariableKind::S32.string_form(model, false))
     }

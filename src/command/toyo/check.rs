@@ -71,7 +71,8 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.left_over(&left_over(status));
     // Power that nobody uses may be what somebody left; it is nothing wrong.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
-    let on = if is_idle { "on; nothing runs, and no session holds it: `toyo servo off` takes power away" } else { "on" };
+    let on =
+        if is_idle { "on; nothing runs, and no session holds it: `toyo servo off` takes power away" } else { "on" };
     layers.judge("servo", status.servo_on(), (on, "off"), "motion wants servo power: `toyo servo on`");
     layers.judge("origin", status.homed(), ("done", "not done"), "motion wants the origin: `toyo home`");
 }

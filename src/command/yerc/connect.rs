@@ -22,7 +22,11 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
-            let start = simulated::start(sim.state.as_deref(), robot.model.value.named().unwrap_or(Model::Dx200), faults.as_ref())?;
+            let start = simulated::start(
+                sim.state.as_deref(),
+                robot.model.value.named().unwrap_or(Model::Dx200),
+                faults.as_ref(),
+            )?;
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {

@@ -47,7 +47,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
             Failure { message: format!("{label}: {message}"), ..failure }.hint(NAME_MODEL)
         }
         Error::UnknownSoftware { .. } => {
-            about(Kind::Malformed, format!("{error_text}; what was to be asked depends on it, and was not")).hint(NAME_MODEL)
+            about(Kind::Malformed, format!("{error_text}; what was to be asked depends on it, and was not"))
+                .hint(NAME_MODEL)
         }
         Error::AnotherModel { .. } => {
             about(Kind::Refused, error_text).hint("repeat the command: from now on it is taken for what it is")
@@ -58,7 +59,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
 }
 
 /// What to do where the controller does not tell its model.
-const NAME_MODEL: &str = "name the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
+const NAME_MODEL: &str =
+    "name the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
 
 /// The socket has bad news.
 fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {

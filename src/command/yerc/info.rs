@@ -59,7 +59,9 @@ impl Command for Info {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions, Failure> {
         let link = context.link;
-        let make = |model| self.parts(model).into_iter().map(|part| ReadSystemInfo::new(model, part)).collect::<Result<Vec<_>, _>>();
+        let make = |model| {
+            self.parts(model).into_iter().map(|part| ReadSystemInfo::new(model, part)).collect::<Result<Vec<_>, _>>()
+        };
         let (model, encoding) = (link.model_for(make).await?, link.encoding);
         let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));
         let parts = self.parts(model).into_iter();

@@ -260,8 +260,8 @@ impl Select {
             let message = format!("the job name takes {} bytes in {encoding}; at most {MAX_NAME} fit", bytes.len());
             return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
         }
-        let line = self.line;
-        let selection = self.task.map_or(Selection::Execute { line }, |task| Selection::Master { task });
+        let execute = Selection::Execute { line: self.line };
+        let selection = self.task.map_or(execute, |task| Selection::Master { task });
         link.by_model(|model| SelectJob::new(model, &bytes, selection)).await
     }
 }

@@ -66,7 +66,10 @@ impl Command for Position {
             Which::Both => &[Coordinates::Pulse, Coordinates::Base],
         };
         let questions = |model| {
-            wanted.iter().map(|coordinates| ReadPosition::new(model, self.group, *coordinates)).collect::<Result<Vec<_>, _>>()
+            wanted
+                .iter()
+                .map(|coordinates| ReadPosition::new(model, self.group, *coordinates))
+                .collect::<Result<Vec<_>, _>>()
         };
         let questions = link.by_model(questions).await?;
         let mut report = PositionReport::nowhere(self.group);

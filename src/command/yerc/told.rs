@@ -37,7 +37,10 @@ impl Told {
             if self.kept.take().is_some()
                 && let Err(error) = store.forget(&self.address)
             {
-                screen.detail(1, &format!("{label}: the model that was kept is wrong, and could not be removed: {error}"));
+                screen.detail(
+                    1,
+                    &format!("{label}: the model that was kept is wrong, and could not be removed: {error}"),
+                );
             }
             return;
         };

@@ -14,8 +14,7 @@ use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
 
 /// The layers behind those of the fieldbus.
-const SIGNALS: [&str; 8] =
-    ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
+const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
 
 /// Looks at them; reads only. What a session sees is asked of it, and no link besides.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
@@ -91,7 +90,10 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     let runs = output::PROGRAM_RUNNING.is_on(image);
     let is_idle = !runs && !held;
     // Whose it is the signals do not tell; that one runs is nothing wrong.
-    layers.ok("program", if runs { "one runs; `yrcx info tasks` tells which, `yrcx stop` stops it" } else { "none runs" });
+    layers.ok(
+        "program",
+        if runs { "one runs; `yrcx info tasks` tells which, `yrcx stop` stops it" } else { "none runs" },
+    );
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
@@ -101,7 +103,14 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     layers.judge(
         "servo",
         output::SERVO_ON.is_on(image),
-        (if is_idle { "motor power on; nothing runs, and no session holds it: `yrcx motor off`" } else { "motor power on" }, "motor power off"),
+        (
+            if is_idle {
+                "motor power on; nothing runs, and no session holds it: `yrcx motor off`"
+            } else {
+                "motor power on"
+            },
+            "motor power off",
+        ),
         "motion wants it: `yrcx power-on`, or `yrcx motor on`",
     );
     layers.judge(

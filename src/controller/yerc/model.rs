@@ -27,8 +27,13 @@ pub enum Model {
 /// FS100: examples of FS. DX100: versions that its users report (ros-industrial/motoman, issue 651: `DS3.93.00(us/de)-14`,
 /// `DS4.42.00A(…)-14`); DX repeats such an example, but no DX200 is known to have one. DX200, YRC1000, YRC1000micro:
 /// requirements of `MotoROS2`, by the maker (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`), and a captured `YAS2.02`.
-const SOFTWARE: [(&str, Model); 5] =
-    [("FS", Model::Fs100), ("DS", Model::Dx100), ("DN", Model::Dx200), ("YAS", Model::Yrc1000), ("YBS", Model::Yrc1000)];
+const SOFTWARE: [(&str, Model); 5] = [
+    ("FS", Model::Fs100),
+    ("DS", Model::Dx100),
+    ("DN", Model::Dx200),
+    ("YAS", Model::Yrc1000),
+    ("YBS", Model::Yrc1000),
+];
 
 impl Model {
     /// Every model, in the order help texts list them.

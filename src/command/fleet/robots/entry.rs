@@ -144,7 +144,9 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
         Ok(target.url().into())
     }),
     ("family", "yerc, yrcx or toyo", |text, _| Ok(parsed::<Family>(text)?.name().into())),
-    ("model", "auto, fs100, dx100, dx200 or yrc1000 (yerc)", |text, _| Ok(parsed::<ModelSetting>(text)?.to_string().into())),
+    ("model", "auto, fs100, dx100, dx200 or yrc1000 (yerc)", |text, _| {
+        Ok(parsed::<ModelSetting>(text)?.to_string().into())
+    }),
     ("read_only", "on or off: take read commands only", |text, _| Ok(switch(text)?.into())),
     ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),

@@ -26,9 +26,8 @@ impl Recorded for ActiveAlarms {
 
 impl Recorded for PastAlarms {
     fn recorded(&self) -> Vec<Occurrence> {
-        let of = |alarm: &PastAlarm| {
-            Some(alarm.outcome.data()?.occurrence(format!("{} {}", alarm.class, alarm.number)))
-        };
+        let of =
+            |alarm: &PastAlarm| Some(alarm.outcome.data()?.occurrence(format!("{} {}", alarm.class, alarm.number)));
         self.alarms.iter().filter_map(of).collect()
     }
 }

@@ -126,7 +126,9 @@ impl AlarmEntry {
     /// With what `alarms.toml` says of it.
     pub(super) async fn explained(mut self, robot: &Robot, link: &mut Link) -> Result<Self, Failure> {
         let code = self.code.to_string();
-        let find = |model| robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code);
+        let find = |model| {
+            robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code)
+        };
         let model = link.model_for(find).await?;
         self.explained = find(model)?;
         Ok(self)

@@ -1,4 +1,4 @@
-//! What the list of a backup says of an FS100 or DX200.
+//! What the list of a backup says of a Yaskawa controller.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,8 +7,8 @@ use crate::command::backup::manifest;
 use crate::command::backup::manifest::{About, Entry};
 use crate::command::yerc::link::Link;
 use crate::controller::text::unhex;
-use crate::controller::yerc::files::FileName;
 use crate::controller::yerc::Model;
+use crate::controller::yerc::files::FileName;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::query::{ReadSystemInfo, SystemPart};
 use crate::failure::{Failure, Kind};
@@ -61,7 +61,8 @@ impl Controller {
     /// What [`ask`](Self::ask) sends.
     pub fn question() -> Result<ReadSystemInfo, Failure> {
         // The same to every model; what it tells is the model, too.
-        ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1)).map_err(|error| Failure::local(error.to_string()))
+        ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1))
+            .map_err(|error| Failure::local(error.to_string()))
     }
 }
 

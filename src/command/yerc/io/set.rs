@@ -160,12 +160,7 @@ impl Set {
 }
 
 /// Notes in a dry run a change that depends on what is read first: signals that were not named are not known.
-fn plan(
-    link: &mut Link,
-    model: Model,
-    partial: &[u16],
-    changes: &BTreeMap<u16, Change>,
-) -> Result<Failure, Failure> {
+fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
     let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
     plan_in_parts(link, reads, partial, |_| Parts::Halves, about)?;

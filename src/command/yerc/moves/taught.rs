@@ -99,7 +99,12 @@ impl Motion<'_> {
         }
     }
 
-    async fn pulses(&self, link: &mut Link, value: &Value, name: Option<Reference>) -> Result<Going<MovePulse>, Failure> {
+    async fn pulses(
+        &self,
+        link: &mut Link,
+        value: &Value,
+        name: Option<Reference>,
+    ) -> Result<Going<MovePulse>, Failure> {
         let group = self.target.mover.group;
         let (robot, station) = self.target.mover.words();
         let mut order = PulseMove {

@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::entry::Entry;
-use super::{in_form, model_of};
 use super::read::{once, read_all};
+use super::{in_form, model_of};
 use crate::command::frame::items;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::complete;

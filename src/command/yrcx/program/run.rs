@@ -66,7 +66,9 @@ impl Command for Run {
             let early = |failure| ended_early(failure, self.repeat, &times_ms);
             link.ask(&order).await.map_err(early)?;
             let began = Instant::now();
-            let Some(limit) = limit else { return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: None, with_stats: false }) };
+            let Some(limit) = limit else {
+                return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: None, with_stats: false });
+            };
             if link.is_dry() {
                 return Err(self.plan(link));
             }
@@ -100,7 +102,8 @@ impl Run {
 
 fn not_seen(what: &str) -> Failure {
     let limit = duration::display(BEGIN_WITHIN);
-    let message = format!("{what} was started, and was not seen running within {limit}: it may have ended at once, or not begun");
+    let message =
+        format!("{what} was started, and was not seen running within {limit}: it may have ended at once, or not begun");
     Failure::new(Kind::ConditionNotMet, message).hint("`yrcx info tasks` and `yrcx info line` tell how it stands")
 }
 
