@@ -1,14 +1,16 @@
 //! Pairs of request and answer captured from a controller, replayed where their file exists.
 //!
 //! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000, whose requests for
-//! these commands are those of a DX200.
+//! these commands are those of a DX200; it is known by what it says of its software.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
 
+use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
-use armctl::controller::yerc::Model::Dx200;
+use armctl::client::yerc::{Client, Endpoint, Options};
+use armctl::controller::yerc::Model::{self, Yrc1000};
 use armctl::controller::yerc::describe::{Sender, describe};
 use armctl::controller::yerc::group::Group;
 use armctl::controller::yerc::payload::PositionKind;
@@ -18,6 +20,7 @@ use armctl::controller::yerc::query::{
 };
 use armctl::controller::yerc::request::Request;
 use armctl::controller::yerc::simulator::{Simulator, Start};
+use armctl::controller::yerc::variables::VariableKind;
 use armctl::controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status};
 
 const SKIPPED: &str = "skipped: ARMCTL_YERC_CAPTURES does not name the file of captured pairs";
@@ -38,7 +41,7 @@ fn pairs() -> Option<Vec<(Vec<u8>, Vec<u8>)>> {
 fn the_simulator_answers_in_the_captured_form() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
     // This controller has no words for axes that are not fitted; others have.
-    let start = Start::parse("trim_axes = true", |_| Err("there are no files".to_owned())).unwrap();
+    let start = Start::parse("model = 'yrc1000'\ntrim_axes = true", |_| Err("there are no files".to_owned())).unwrap();
     let mut simulator = Simulator::new(start);
     for (sent, received) in pairs {
         simulator.receive(Duration::ZERO, Division::Robot, 0, &sent);
@@ -49,6 +52,45 @@ fn the_simulator_answers_in_the_captured_form() {
         assert_eq!(answer.len(), received.len(), "{what}");
         assert_eq!(answer[..32], received[..32], "{what}");
     }
+}
+
+/// Answers as the captured controller did, on the loopback; the id of a request is copied back.
+fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
+    const ID: usize = 11;
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let address = socket.local_addr().unwrap();
+    std::thread::spawn(move || {
+        let mut buffer = [0; 2048];
+        while let Ok((len, from)) = socket.recv_from(&mut buffer) {
+            let request = &buffer[..len];
+            let is_it =
+                |sent: &[u8]| [&sent[..ID], &sent[ID + 1..]].concat() == [&request[..ID], &request[ID + 1..]].concat();
+            let Some((_, answer)) = pairs.iter().find(|(sent, _)| is_it(sent)) else { continue };
+            let mut answer = answer.clone();
+            answer[ID] = request[ID];
+            socket.send_to(&answer, from).unwrap();
+        }
+    });
+    address
+}
+
+/// Nobody names the model: the client asks once, and only when something depends on it.
+#[tokio::test]
+async fn the_captured_controller_is_known_by_its_software() {
+    let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
+    let port = replayer(pairs).port();
+    let endpoint = Endpoint::Udp { host: "127.0.0.1".to_owned(), ports: [port, port] };
+    let mut client = Client::connect(endpoint, Options::auto()).await.unwrap();
+    let position = |model| ReadPosition::new(model, Group::R1, Coordinates::Pulse);
+    let model = client.model_for(position).await.unwrap();
+    assert_eq!(client.ask(&position(model).unwrap()).await.unwrap().axes.as_slice().len(), 6);
+    assert_eq!(client.known_model(), None, "where it stands is asked in the same bytes of every model");
+    let strings = |model: Model| Ok::<_, ()>(VariableKind::S32.string_form(model, false));
+    assert_eq!(client.model_for(strings).await.unwrap(), Yrc1000);
+    assert_eq!(client.identity().unwrap().software.as_bytes(), b"YAS2.02.11A(JP/EN)-97");
+    let job = client.model_for(|model| ReadJob::new(model, 0)).await.unwrap();
+    assert!(!client.ask(&ReadJob::new(job, 0).unwrap()).await.unwrap().name.is_empty());
+    assert_eq!(client.close().await.unwrap().exchanges, 3);
 }
 
 #[test]
@@ -96,36 +138,36 @@ fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
             assert_eq!(status.emit(), answer.data);
         }
         (0x73, 1) => {
-            let job = decoded(ReadJob::new(Dx200, 0).unwrap(), sent, id, answer);
+            let job = decoded(ReadJob::new(Yrc1000, 0).unwrap(), sent, id, answer);
             assert!(!job.name.is_empty());
             assert_eq!(job.emit(), answer.data);
         }
         (0x73, instance) => {
-            assert_eq!(ReadJob::new(Dx200, instance - 1).unwrap().request().frame(id), sent);
+            assert_eq!(ReadJob::new(Yrc1000, instance - 1).unwrap().request().frame(id), sent);
             assert_eq!(answer.status, Status::refused(0xA001));
         }
         (0x74, 1) => {
-            let query = ReadAxes::new(Dx200, Group::R1, Coordinates::Pulse).unwrap();
+            let query = ReadAxes::new(Yrc1000, Group::R1, Coordinates::Pulse).unwrap();
             let names = decoded(query, sent, id, answer);
             assert_eq!(names.emit(), answer.data);
         }
         (0x75, 1) => {
-            let query = ReadPosition::new(Dx200, Group::R1, Coordinates::Pulse).unwrap();
+            let query = ReadPosition::new(Yrc1000, Group::R1, Coordinates::Pulse).unwrap();
             let position = decoded(query, sent, id, answer);
             assert_eq!((position.kind, position.axes.as_slice().len()), (PositionKind::Pulse, 6));
             assert_eq!(position.emit_fitted(), answer.data);
         }
         (0x77, 1) => {
-            let torque = decoded(ReadTorque::new(Dx200, Group::R1).unwrap(), sent, id, answer);
+            let torque = decoded(ReadTorque::new(Yrc1000, Group::R1).unwrap(), sent, id, answer);
             assert_eq!((torque.as_slice().len(), torque.emit().as_slice()), (6, answer.data));
         }
         (0x88, _) => replay_time(request.instance, sent, id, answer),
         (0x89, 11) => {
-            let query = ReadSystemInfo::new(Dx200, SystemPart::Group(Group::R1)).unwrap();
+            let query = ReadSystemInfo::new(Yrc1000, SystemPart::Group(Group::R1)).unwrap();
             assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
         }
         (0x89, instance) => {
-            let query = ReadSystemInfo::new(Dx200, SystemPart::Application(instance - 100)).unwrap();
+            let query = ReadSystemInfo::new(Yrc1000, SystemPart::Application(instance - 100)).unwrap();
             assert_eq!(decoded(query, sent, id, answer).emit(), answer.data);
         }
         other => panic!("no replay for {other:x?}"),
@@ -140,7 +182,7 @@ fn replay_time(instance: u16, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
         210 => TimeCounter::Motion(None),
         _ => TimeCounter::Application(1),
     };
-    let time = decoded(ReadManagementTime::new(Dx200, counter).unwrap(), sent, id, answer);
+    let time = decoded(ReadManagementTime::new(Yrc1000, counter).unwrap(), sent, id, answer);
     assert!(time.seconds().is_some());
     assert_eq!(time.emit(), answer.data);
 }

@@ -45,17 +45,17 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
     let (address, _) = controller.place();
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
-    answer(&mut setup, &[("Which controller is it?", "1"), ("Which model is it?", "1")]);
+    answer(&mut setup, &[("Which controller is it?", "1")]);
     setup.says("it answers a status request");
+    setup.says("dx200, by its software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
     setup.says("read_only = true");
     answer(&mut setup, &[("Write this to robots.toml? [Y/n]", "")]);
     setup.says("added cell3");
     assert_eq!(setup.end().code(), Some(0));
     assert!(setup.is_as_before());
-    let expected = format!(
-        "default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}?model=dx200\"\nread_only = true\n"
-    );
+    let expected =
+        format!("default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}\"\nread_only = true\n");
     assert_eq!(desk.inventory(), Some(expected));
 }
 
@@ -84,7 +84,7 @@ fn what_is_in_the_way_is_shown_and_asked_about() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", "4"), ("type a number from 1 to 3", "1"), ("a URL:", "robot")]);
     setup.says("error:");
-    answer(&mut setup, &[("Where is the robot?", "1"), ("a URL:", "udp://127.0.0.1:1"), ("Which model is it?", "2")]);
+    answer(&mut setup, &[("Where is the robot?", "1"), ("a URL:", "udp://127.0.0.1:1")]);
     setup.says("failed");
     answer(
         &mut setup,

@@ -73,7 +73,7 @@ impl<'a> Origin<'a> {
 
     /// Of this robot.
     pub fn of(robot: &'a Robot) -> Self {
-        let model = (robot.family == Family::Yerc).then_some(robot.model.value);
+        let model = (robot.family == Family::Yerc).then(|| robot.likely_model()).flatten();
         Self { robot: Some(&robot.name), model, ..Self::any(robot.family) }
     }
 }
@@ -141,7 +141,7 @@ impl Table {
             let family = family.map_err(|why| wrong(&raw.family, &why).hint("families are yerc, yrcx and toyo"))?;
             let model = raw.model.as_ref().map(|model| {
                 let parsed = model.as_ref().parse::<Model>();
-                parsed.map_err(|why| wrong(model, &why).hint("models are fs100 and dx200"))
+                parsed.map_err(|why| wrong(model, &why).hint("models are fs100, dx100, dx200 and yrc1000"))
             });
             let model = model.transpose()?;
             let RawEntry { code, robot, text, cause, remedy, .. } = raw;

@@ -23,10 +23,10 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::duration;
+use super::model::ModelSetting;
 use super::target::{Family, Given, Target};
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
-use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::MAX_AXES;
 use crate::failure::{Failure, plain};
 use crate::files;
@@ -48,7 +48,7 @@ pub struct Options {
     /// Whether the first command that needs a command connection opens a session (yrcx).
     pub hold: Option<bool>,
     /// Controller model (yerc).
-    pub model: Option<Model>,
+    pub model: Option<ModelSetting>,
 }
 
 /// A robot of the inventory.

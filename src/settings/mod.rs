@@ -6,6 +6,7 @@ pub mod alarms;
 pub mod document;
 pub mod duration;
 pub mod inventory;
+pub mod model;
 pub mod target;
 
 use std::fmt;
@@ -17,6 +18,7 @@ use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
+use model::{ModelSetting, ToldModels};
 use target::{Address, Family, Given, Target};
 
 /// Where a setting came from.
@@ -82,7 +84,7 @@ pub struct Robot {
     /// Whether the first command that needs a command connection opens a session for it.
     pub hold: Setting<bool>,
     /// Controller model; means something for yerc alone.
-    pub model: Setting<Model>,
+    pub model: Setting<ModelSetting>,
     /// Pulses of a degree of each axis of the first robot; empty where nobody said. Means something for yerc alone.
     pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
@@ -97,6 +99,14 @@ impl Robot {
     /// Whether this is an address of it, as far as is known.
     pub fn is_at(&self, address: &Address) -> bool {
         self.target.value.address().meets(address) || self.aliases.iter().any(|alias| alias.meets(address))
+    }
+
+    /// The model of its controller, as far as it is known here: named, told another time, or that of the simulator.
+    pub fn likely_model(&self) -> Option<Model> {
+        let target = &self.target.value;
+        let told = || ToldModels::of_user()?.find(&target.address()).map(|told| told.model());
+        let simulated = || target.is_simulated().then_some(Model::Dx200);
+        self.model.value.named().or_else(told).or_else(simulated)
     }
 
     /// How messages name it: `cell3 (udp://192.168.1.31)`.
@@ -393,7 +403,7 @@ impl Sources {
             timeout: setting!(timeout, family.timeout()),
             retries: setting!(retries, RETRIES),
             encoding: setting!(encoding, Encoding::default()),
-            model: url_model.unwrap_or_else(|| setting!(model, Model::Dx200)),
+            model: url_model.unwrap_or_else(|| setting!(model, ModelSetting::Auto)),
             pulses_per_degree: Vec::new(),
             tags,
             sessions: self.selection.sessions,

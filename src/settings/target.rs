@@ -17,10 +17,11 @@ use std::time::Duration;
 
 use serialport::{DataBits, Parity, StopBits};
 
-use crate::controller::yerc::Model;
 use crate::failure::Failure;
 
 use self::url::{Query, authority, baud, choice, host_and_port, percent_decoded, port};
+
+use super::model::ModelSetting;
 
 pub use address::Address;
 pub use bare::Given;
@@ -29,7 +30,7 @@ pub use bus::{BUSES, Bus};
 /// A controller family, named like its subcommand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
-    /// Yaskawa FS100 / DX200, high-speed Ethernet server.
+    /// Yaskawa FS100, DX100, DX200, YRC1000: high-speed Ethernet server.
     Yerc,
     /// OMRON / Yamaha YRCX, remote commands over a fieldbus.
     Yrcx,
@@ -111,7 +112,7 @@ pub struct Target {
 /// What a target URL leads to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
-    /// `udp://HOST[:10040][?file_port=10041&model=fs100|dx200&move_words=25|26]`.
+    /// `udp://HOST[:10040][?file_port=10041&model=auto|fs100|dx100|dx200|yrc1000&move_words=25|26]`.
     Udp(Udp),
     /// `serial:///dev/ttyUSB0[?baud=9600&parity=even|odd|none&data_bits=7|8&stop_bits=1|2]`, `serial://COM3`.
     Serial(Serial),
@@ -140,7 +141,7 @@ pub struct Udp {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct YercTraits {
     /// Controller model.
-    pub model: Option<Model>,
+    pub model: Option<ModelSetting>,
     /// Words of the cartesian move, 25 or 26 (FS 3.3.39 prints 25 for the FS100; every public client sends 26).
     pub move_words: Option<u8>,
 }
@@ -324,7 +325,7 @@ fn hint(scheme: &str) -> String {
 
 /// What other URLs look like.
 const FORMS: [(&str, &str); 4] = [
-    ("udp", "udp://HOST[:10040][?file_port=10041&model=dx200]"),
+    ("udp", "udp://HOST[:10040][?file_port=10041&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
     ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
@@ -431,6 +432,7 @@ fn traits(query: &mut Query) -> Result<YercTraits, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::controller::yerc::Model;
 
     fn target(url: &str) -> Target {
         url.parse().unwrap()
@@ -448,7 +450,7 @@ mod tests {
             panic!("not udp")
         };
         assert_eq!((udp.host.as_str(), udp.port, udp.file_port), ("::1", 2000, 2001));
-        assert_eq!(udp.traits, YercTraits { model: Some(Model::Fs100), move_words: Some(25) });
+        assert_eq!(udp.traits, YercTraits { model: Some(ModelSetting::Is(Model::Fs100)), move_words: Some(25) });
     }
 
     #[test]
@@ -461,7 +463,7 @@ mod tests {
             ("udp://h:0", "1 to 65535"),
             ("udp://h:70000", "1 to 65535"),
             ("udp://h?modle=fs100", "modle"),
-            ("udp://h?model=yrc1000", "unknown model"),
+            ("udp://h?model=xrc", "there are auto, fs100, dx100, dx200 and yrc1000"),
             ("udp://h?model=fs100&model=dx200", "twice"),
             ("sim:dx200", "means nothing"),
             ("sim:?fault=%4", "damaged"),

@@ -42,6 +42,7 @@ transcripts! {
     inventory
     jobs
     mistakes
+    models
     moves
     orders
     positions

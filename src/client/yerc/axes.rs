@@ -56,7 +56,7 @@ impl Client {
     /// Notes in a dry run that [`Client::fit`] may ask for the axes.
     pub fn plan_fit(&mut self, group: Group, coordinates: Coordinates) {
         let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
-        let Ok(question) = ReadAxes::new(self.model, group, coordinates) else { return };
+        let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return };
         if !is_noted {
             let reason = Reason::about("which axes exist, if all eight are answered");
             self.plan_if(&question.request(), reason.depending_on("how many axes the answer before has"));
@@ -69,7 +69,7 @@ impl Client {
         if let Some((.., fitted)) = known {
             return *fitted;
         }
-        let Ok(question) = ReadAxes::new(self.model, group, coordinates) else { return Fitted::ALL };
+        let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return Fitted::ALL };
         let fitted = match self.try_ask(&question).await {
             Ok(Ok(names)) => Fitted::from_names(&names),
             // Asked again next time: the screen may be closed by then.

@@ -6,6 +6,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
+use armctl_controller::yerc::Model;
 use armctl_controller::yerc::payload::PayloadError;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{Counters, DownloadEnd};
@@ -83,6 +84,23 @@ pub enum Error {
         /// The news.
         #[source]
         error: Arc<io::Error>,
+    },
+    /// The controller does not tell what it is, and what was to be asked depends on it. Nothing else was sent.
+    #[error("the controller did not tell its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
+    ModelRefused(Refusal),
+    /// Its software is that of no known model, and what was to be asked depends on it. Nothing else was sent.
+    #[error("the system software '{version}' is of no model that armctl knows")]
+    UnknownSoftware {
+        /// Its version, with what is no letter escaped.
+        version: String,
+    },
+    /// It refused what the model takes that it was another time, and is another one now.
+    #[error("it was a {remembered}, and is a {found} now, which refused this")]
+    AnotherModel {
+        /// What it was taken for.
+        remembered: Model,
+        /// What it says that it is.
+        found: Model,
     },
     /// A dry run sends nothing, and so has no answer.
     #[error("a dry run has no answer")]

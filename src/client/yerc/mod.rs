@@ -1,8 +1,9 @@
-//! The client of a Yaskawa FS100 or DX200: the one driver that moves datagrams between sessions and a transport.
+//! The client of a Yaskawa FS100, DX100, DX200 or YRC1000: the one driver that moves datagrams between sessions and a transport.
 
 mod axes;
 mod each;
 mod error;
+mod model;
 mod plan;
 mod simulated;
 #[cfg(test)]
@@ -32,6 +33,8 @@ use tokio::time::Instant;
 pub use self::axes::Fitted;
 pub use self::each::{Denied, Outcome, Round};
 pub use self::error::{Asked, Cause, Error, Refusal, TransferError};
+pub use self::model::Identity;
+use self::model::Known;
 pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
@@ -50,8 +53,12 @@ pub struct Client {
     granted: Grant,
     /// Whether a request left that moves the robot.
     has_moved: bool,
-    /// Model of the controller: number ranges and layouts follow from it.
-    pub model: Model,
+    /// Model of the controller, as far as it is known: number ranges and layouts follow from it.
+    known: Known,
+    /// What the controller said that it is.
+    identity: Option<Identity>,
+    /// The model that what a dry run notes is shown for, where it depends on one that nobody knows.
+    shown_for: Option<Model>,
     started: Instant,
     buffer: Box<[u8; BUFFER]>,
     watcher: Box<dyn Watcher<Event>>,
@@ -67,8 +74,8 @@ pub struct Client {
 /// How a client asks.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The controller's model; that of a simulator is its own.
-    pub model: Model,
+    /// The controller's model; without one it is asked where a request depends on it. That of a simulator is its own.
+    pub model: Option<Model>,
     /// The most that may leave.
     pub granted: Grant,
     /// Patience: for an exchange as a whole, for a transfer without progress.
@@ -80,8 +87,13 @@ pub struct Options {
 impl Options {
     /// To read from a controller of this model, with the usual patience: 3 s, and 3 repeats.
     pub fn new(model: Model) -> Self {
+        Self { model: Some(model), ..Self::auto() }
+    }
+
+    /// The same of a controller of a model that it has to tell.
+    pub fn auto() -> Self {
         let Policy { deadline: timeout, retries, .. } = Policy::default();
-        Self { model, granted: Grant::default(), timeout, retries }
+        Self { model: None, granted: Grant::default(), timeout, retries }
     }
 
     /// The same, and what is not riskier than this may leave.
@@ -138,7 +150,7 @@ impl Client {
     /// # Errors
     /// [`Error::HostNotFound`].
     pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
-        let model = endpoint.model().unwrap_or(options.model);
+        let model = endpoint.model().or(options.model);
         Ok(Self::over(endpoint.open().await?, Options { model, ..options }))
     }
 
@@ -161,7 +173,9 @@ impl Client {
             ids: Ids::default(),
             granted,
             has_moved: false,
-            model,
+            known: Known::from_named(model),
+            identity: None,
+            shown_for: None,
             started: Instant::now(),
             buffer: Box::new([0; BUFFER]),
             watcher: Box::new(()),
@@ -193,6 +207,7 @@ impl Client {
         }
         let Reply { status, data, .. } = self.raw(&request).await?;
         if !status.is_ok() {
+            self.doubt(&request, status).await?;
             return Ok(Err(Refusal { status, to: Asked::from(&request) }));
         }
         Ok(Ok(query.decode(&data)?))
@@ -201,7 +216,9 @@ impl Client {
     /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
         self.prepare(request).await?;
-        self.transact(request, request.risk() == Risk::Read).await
+        let reply = self.transact(request, request.risk() == Risk::Read).await?;
+        self.hear(request, &reply);
+        Ok(reply)
     }
 
     /// Stops the robot: HOLD on, whatever was granted. It is the one order that is repeated after silence, whatever the

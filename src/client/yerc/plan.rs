@@ -62,6 +62,8 @@ impl Client {
         let id = self.ids.next_id();
         let (frame, other_frame) = (request.frame(id), other.frame(id));
         let fields = in_common(fields(request, &frame), &fields(other, &other_frame));
+        let depends_on = self.depends_on(reason);
+        let reason = Reason { depends_on: depends_on.as_deref(), ..reason };
         if let Some(plan) = self.transport.notes() {
             plan.note(with_fields(json!({ "hex": masked(&frame, &other_frame) }), &fields), reason);
         }
@@ -117,12 +119,22 @@ impl Client {
 
     fn note(&mut self, request: &Request, reason: Reason<'_>) -> u8 {
         let id = self.ids.next_id();
-        let reason = Reason { about: reason.about.or(self.purpose.take()), ..reason };
+        let depends_on = self.depends_on(reason);
+        let reason = Reason { about: reason.about.or(self.purpose.take()), depends_on: depends_on.as_deref() };
         if let Some(plan) = self.transport.notes() {
             let frame = request.frame(id);
             plan.note(with_fields(json!({ "hex": hex(&frame) }), &fields(request, &frame)), reason);
         }
         id
+    }
+
+    /// What a frame depends on, with the model where nobody knows that.
+    fn depends_on(&self, reason: Reason<'_>) -> Option<String> {
+        let model = self.shown_for.map(|model| format!("which model it is; shown as for a {model}"));
+        match (reason.depends_on, model) {
+            (Some(before), Some(model)) => Some(format!("{before}, and {model}")),
+            (before, model) => model.or(before.map(ToOwned::to_owned)),
+        }
     }
 
     /// Notes a frame that is either of two: where they differ nothing is known.

@@ -6,6 +6,8 @@ pub mod edit;
 pub mod entry;
 pub mod file;
 
+use std::time::Duration;
+
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -16,7 +18,8 @@ use crate::command::ValueKind;
 use crate::command::frame::run::{Run, RunError};
 use crate::output::view::{Table, View};
 use crate::settings::inventory::Inventory;
-use crate::settings::{Origin, Setting, duration};
+use crate::settings::model::ToldModels;
+use crate::settings::{Origin, Robot, Setting, duration};
 
 /// What can be done with the inventory.
 #[derive(Debug, Subcommand)]
@@ -93,6 +96,7 @@ impl Show {
         let mut settings = vec![row("target", &robot.target, ToString::to_string)];
         if robot.family.has_model() {
             settings.push(row("model", &robot.model, ToString::to_string));
+            settings.extend(told_model(&robot));
         }
         settings.extend([
             row("read_only", &robot.read_only, ToString::to_string),
@@ -111,6 +115,16 @@ impl Show {
             &Shown { name: robot.name, family, tags: robot.tags, settings, with_origin: self.origin },
         )
     }
+}
+
+/// The model that the controller told another time, where nobody names it.
+fn told_model(robot: &Robot) -> Option<Value> {
+    if robot.model.value.named().is_some() {
+        return None;
+    }
+    let told = ToldModels::of_user()?.find(&robot.target.value.address())?;
+    let origin = format!("controller, {} ago", duration::display(Duration::from_secs(told.age().as_secs() / 60 * 60)));
+    Some(Value { name: "told_model", value: format!("{} ({})", told.model(), told.software()), origin })
 }
 
 /// A setting as a row.

@@ -10,7 +10,6 @@ use crate::command::families::{self, FAMILIES};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
-use crate::controller::yerc::Model;
 use crate::failure::{Failure, Kind};
 use crate::output::render;
 use crate::output::view::View;
@@ -167,18 +166,8 @@ async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Fou
         Some(family) => family,
         None => family(run).await?,
     };
-    let mut target = given.of(Some(family))?;
+    let target = given.of(Some(family))?;
     target.check(family).map_err(Failure::usage)?;
-    let is_open = family.has_model() && !target.is_simulated() && target.traits().model.is_none();
-    // Simulators serve the first model unless they are told otherwise, and say the other one in their URL.
-    if is_open && known.is_none() {
-        let models = [Model::Dx200, Model::Fs100];
-        let names = models.map(|model| model.name().to_uppercase());
-        let at = choice(run, "Which model is it?", names.into()).await?;
-        let url = target.url();
-        let sign = if url.contains('?') { '&' } else { '?' };
-        target = format!("{url}{sign}model={}", models[at.min(1)]).parse()?;
-    }
     Ok(Found { family, target })
 }
 

@@ -181,6 +181,7 @@ pub const LEAVES: &[Leaf] = &[
     ("yrcx program select --program 1 --priority 32", Write),
     ("yrcx program select --name PICK --priority 32 --task 2", Write),
     ("yrcx program run COUNT --wait", Motion),
+    ("yrcx program run COUNT --repeat 20 --stats", Motion),
     ("yrcx program run --program 1", Motion),
     ("yrcx program run --all-programs", Motion),
     ("yrcx program step --task 1", Motion),

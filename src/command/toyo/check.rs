@@ -5,6 +5,7 @@ use super::link::Link;
 use super::link::Toyo;
 use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
+use crate::command::frame::attach::is_held;
 use crate::command::{Access, Family as _};
 use crate::controller::toyo::errors;
 use crate::controller::toyo::status::RunMode;
@@ -22,14 +23,14 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         Err(failure) => layers.fail("line", &failure),
         Ok(mut link) => {
             layers.ok("line", format!("{} is open", robot.target.value));
-            look(&mut link, &mut layers).await;
+            look(robot, &mut link, &mut layers).await;
             Toyo::close(link, screen).await?;
         }
     }
     Ok(layers.finish())
 }
 
-async fn look(link: &mut Link, layers: &mut Layers) {
+async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     let status = match link.status().await {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),
@@ -68,6 +69,10 @@ async fn look(link: &mut Link, layers: &mut Layers) {
         layers.ok("error", "none");
     }
     layers.left_over(&left_over(status));
-    layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `toyo servo on`");
+    // Power that nobody uses may be what somebody left; it is nothing wrong.
+    let is_idle = !status.executing() && !status.homing() && !is_held(robot);
+    let on =
+        if is_idle { "on; nothing runs, and no session holds it: `toyo servo off` takes power away" } else { "on" };
+    layers.judge("servo", status.servo_on(), (on, "off"), "motion wants servo power: `toyo servo on`");
     layers.judge("origin", status.homed(), ("done", "not done"), "motion wants the origin: `toyo home`");
 }

@@ -1,11 +1,12 @@
 //! `yerc alarm list|history|reset|cancel`.
 
 mod recorded;
+mod report;
 
 use clap::{Args, ValueEnum};
-use schemars::JsonSchema;
-use serde::Serialize;
 
+pub(super) use self::report::in_a_line;
+use self::report::{ActiveAlarm, ActiveAlarms, AlarmEntry, PastAlarm, PastAlarms};
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
 use super::link::Yerc;
@@ -14,20 +15,15 @@ use super::orders::usage;
 use crate::command::face::sample;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
-use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::items::ItemOutcome;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::{Command, Context, Report, commands};
+use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
-use crate::controller::text::Encoding;
-use crate::controller::yerc::Model;
 use crate::controller::yerc::payload;
 use crate::controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use crate::controller::yerc::wire::Status;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Table, Tone, View};
-use crate::settings::Robot;
-use crate::settings::alarms::{Explanation, Origin};
 
 commands! {
     /// Alarms.
@@ -74,7 +70,7 @@ impl Command for List {
             let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
                 Ok(alarm) => {
-                    Ok(AlarmEntry::new(&alarm, link.encoding, link.model).explained(context.robot, link.model)?)
+                    AlarmEntry::new(&alarm, link.encoding, link.model_to_show()).explained(context.robot, link).await
                 }
                 Err(denied) => Err(denied.into()),
             };
@@ -161,7 +157,7 @@ impl Command for History {
                 asked += 1;
                 let outcome = match read(link, &mut round, &mut texts, |texts| question(list, number, texts)).await? {
                     Ok(alarm) if alarm.is_none() => break,
-                    Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model)),
+                    Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model_to_show())),
                     Err(denied) => Err(denied.into()),
                 };
                 let outcome = ItemOutcome::new(format!("{class} alarm {number}"), outcome);
@@ -183,7 +179,7 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
         let outcome = read(link, &mut round, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
         match outcome {
             Ok(alarm) if alarm.is_none() => {}
-            Ok(alarm) => alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model).sample()),
+            Ok(alarm) => alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model_to_show()).sample()),
             Err(denied) => {
                 let failure = Failure::from(denied);
                 if failure.kind == Kind::NoAnswer {
@@ -270,225 +266,12 @@ order! {
     Cancel, "yerc.alarm.cancel", query::CancelError, "error" = "cancelled", "the error is cancelled"
 }
 
-/// The alarms that are present, the latest first.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct ActiveAlarms {
-    alarms: Vec<ActiveAlarm>,
-    /// Whether sub-code texts were asked for and the controller has them.
-    with_texts: bool,
-    #[serde(skip)]
-    asked: usize,
-}
-
-/// The alarms of the past.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct PastAlarms {
-    alarms: Vec<PastAlarm>,
-    /// Whether sub-code texts were asked for and the controller has them.
-    with_texts: bool,
-    #[serde(skip)]
-    asked: usize,
-}
-
-#[derive(Debug, Serialize, JsonSchema)]
-struct ActiveAlarm {
-    /// 1 is the latest.
-    slot: u8,
-    #[serde(flatten)]
-    outcome: ItemOutcome<AlarmEntry>,
-}
-
-#[derive(Debug, Serialize, JsonSchema)]
-struct PastAlarm {
-    /// `major`, `monitor`, `system`, `user` or `offline`.
-    class: &'static str,
-    /// 1 is the latest of its class.
-    number: u8,
-    #[serde(flatten)]
-    outcome: ItemOutcome<AlarmEntry>,
-}
-
-/// An alarm in words.
-#[derive(Debug, Serialize, JsonSchema)]
-struct AlarmEntry {
-    /// 1 to 9999.
-    code: u32,
-    name: String,
-    /// As the controller shows it, `YYYY/MM/DD HH:MM`.
-    time: String,
-    /// How to read the sub-code.
-    #[serde(rename = "type")]
-    kind: u32,
-    /// The type in words.
-    type_name: &'static str,
-    sub_code: SubCode,
-    /// Where it comes from, such as `[SV#1]`; null without texts.
-    board: Option<String>,
-    /// What `alarms.toml` says of it; null where it says nothing.
-    explained: Option<Explanation>,
-}
-
-#[derive(Debug, Serialize, JsonSchema)]
-struct SubCode {
-    /// As received, 0 where there is none.
-    raw: u32,
-    /// In the form of the pendant; bytes in hexadecimal if `trust` is `raw`; empty where there is none.
-    rendered: String,
-    /// How far to trust `rendered`: `printed` in the manuals, `inferred`, or `raw`.
-    trust: &'static str,
-    /// What the pendant shows, by the controller itself; null without texts.
-    text: Option<String>,
-    /// A 1 for each character of the text that the pendant shows reversed; null without texts.
-    reversed: Option<String>,
-    /// `rendered` with the raw value wherever it is not certain.
-    #[serde(skip)]
-    shown: String,
-}
-
-impl SubCode {
-    /// What the pendant shows, or the best that is known of it; nothing where there is none.
-    fn describe(&self) -> Option<&str> {
-        let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
-        Some(text.unwrap_or(&self.shown)).filter(|told| !told.is_empty())
-    }
-}
-
-impl AlarmEntry {
-    fn new(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> Self {
-        let rendered = alarm.sub_code(model);
-        let texts = alarm.texts.as_ref();
-        Self {
-            code: alarm.code,
-            name: encoding.decode(alarm.name.as_bytes()),
-            time: encoding.decode(alarm.time.as_bytes()),
-            kind: alarm.kind.0,
-            type_name: rendered.type_name,
-            sub_code: SubCode {
-                raw: alarm.data,
-                trust: rendered.trust.name(),
-                text: texts.map(|texts| encoding.decode(texts.sub_code.as_bytes())),
-                reversed: texts.map(|texts| encoding.decode(texts.reversed.as_bytes())),
-                shown: rendered.to_string(),
-                rendered: rendered.text,
-            },
-            board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
-            explained: None,
-        }
-    }
-
-    /// With what `alarms.toml` says of it.
-    fn explained(mut self, robot: &Robot, model: Model) -> Result<Self, Failure> {
-        let origin = Origin { model: Some(model), ..Origin::of(robot) };
-        self.explained = robot.alarms.find(origin, &self.code.to_string())?;
-        Ok(self)
-    }
-
-    /// The same as a line below a table.
-    fn explanation(&self) -> Option<String> {
-        Some(format!("{}: {}", self.code, self.explained.as_ref()?.line()))
-    }
-
-    fn sample(&self) -> sample::Alarm {
-        let sub_code = self.sub_code.describe().unwrap_or_default();
-        let text = [self.name.as_str(), sub_code].join(" ").trim_end().to_owned();
-        sample::Alarm { code: self.code.to_string(), text, remedy: String::new() }
-    }
-
-    /// Code, name, sub-code, time, board. The type is in JSON alone: here it would leave no room for the name.
-    fn cells(&self) -> [Cell; 5] {
-        let given = |text: &str| (!text.is_empty()).then(|| Cell::from(text));
-        [
-            Cell::from(self.code).tone(Tone::Bad),
-            self.name.as_str().into(),
-            Cell::maybe(self.sub_code.describe().map(Cell::from)),
-            Cell::from(self.time.as_str()).whole(),
-            Cell::maybe(self.board.as_deref().and_then(given)),
-        ]
-    }
-}
-
-/// One line for messages: `alarm 4315 COLLISION DETECT [3]`.
-pub(super) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> String {
-    let sub_code = alarm.sub_code(model).to_string();
-    let words = [format!("alarm {}", alarm.code), encoding.decode(alarm.name.as_bytes()), sub_code];
-    words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-}
-
-/// The cells of an alarm, or of the reason why it is not there.
-fn cells(outcome: &ItemOutcome<AlarmEntry>) -> [Cell; 5] {
-    let blank = || Cell::maybe(None::<Cell>);
-    match (outcome.data(), outcome.error()) {
-        (Some(alarm), _) => alarm.cells(),
-        (None, error) => [blank(), error.map_or_else(blank, ItemError::cell), blank(), blank(), blank()],
-    }
-}
-
-impl ActiveAlarms {
-    fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
-    }
-}
-
-impl PastAlarms {
-    fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
-    }
-}
-
-impl Report for ActiveAlarms {
-    fn view(&self) -> View {
-        let mut table = Table::new(&["slot", "code", "name", "sub-code", "time", "board"], "no alarm");
-        for ActiveAlarm { slot, outcome } in &self.alarms {
-            let [code, name, sub_code, time, board] = cells(outcome);
-            table.row([(*slot).into(), code, name, sub_code, time, board]);
-        }
-        let told = self.alarms.iter().filter_map(|alarm| alarm.outcome.data()?.explanation());
-        let told: Vec<Cell> = told.map(Cell::from).collect();
-        let view = View::table(table);
-        if told.is_empty() { view } else { view.and(Section::Lines(told)) }
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked, self.errors())
-    }
-}
-
-impl Report for PastAlarms {
-    fn view(&self) -> View {
-        let columns = ["class", "#", "code", "name", "sub-code", "time", "board"];
-        let mut table = Table::new(&columns, "no alarm");
-        for PastAlarm { class, number, outcome } in &self.alarms {
-            let [code, name, sub_code, time, board] = cells(outcome);
-            table.row([(*class).into(), (*number).into(), code, name, sub_code, time, board]);
-        }
-        View::table(table)
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked, self.errors())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
     use super::*;
     use crate::command::yerc::testing::{frames, golden, objection, reports};
-    use crate::controller::yerc::payload::{AlarmKind, AlarmTexts, Text};
-    use crate::output::render;
-
-    fn entry(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry {
-        let alarm = payload::Alarm {
-            code: 4315,
-            data,
-            kind: AlarmKind(kind),
-            time: Text::cut(b"2026/01/02 03:04"),
-            name: Text::cut(b"\x8F\xD5\x93\xCB"),
-            texts,
-        };
-        AlarmEntry::new(&alarm, Encoding::ShiftJis, Model::Dx200)
-    }
 
     #[test]
     fn present_alarms_are_asked_with_texts_in_four_slots() {
@@ -539,38 +322,6 @@ mod tests {
         for status in [Status::refused(0x2010), Status::refused(0x2100), Status { code: 0x1F, ..Status::OK }] {
             assert!(!may_be_unknown(status), "{status:?}");
         }
-    }
-
-    #[test]
-    fn a_sub_code_shows_how_far_it_can_be_trusted() {
-        let alarm = entry(3, 3, None);
-        let json = serde_json::to_value(&alarm).unwrap();
-        assert_eq!(json["sub_code"]["raw"], 3);
-        assert_eq!(json["sub_code"]["rendered"], "[SL]");
-        assert_eq!(json["sub_code"]["trust"], "inferred");
-        assert_eq!(json["type_name"], "user axes (SLURBT)");
-        assert_eq!(json["name"], "衝突");
-        assert_eq!(alarm.cells()[2].text, "[SL]? (3 = 0x3)");
-    }
-
-    #[test]
-    fn the_text_of_the_controller_wins_in_the_table() {
-        let texts =
-            AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
-        let outcome = ItemOutcome::new("alarm slot 1", Ok(entry(20, 1, Some(texts))));
-        let alarms = ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, outcome }], with_texts: true, asked: 4 };
-        let csv = render::csv(&alarms.view(), None);
-        assert_eq!(
-            csv,
-            "slot,code,name,sub_code,time,board\n\
-             1,4315,衝突,[R1: S],2026/01/02 03:04,[SV#1]\n"
-        );
-    }
-
-    #[test]
-    fn nothing_is_said_as_such() {
-        let none = ActiveAlarms { alarms: Vec::new(), with_texts: true, asked: 4 };
-        assert_eq!(render::text(&none.view(), 80, false), "no alarm\n");
     }
 
     #[tokio::test(start_paused = true)]

@@ -73,7 +73,11 @@ impl Command for AxesOf {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Configuration, Failure> {
         let link = context.link;
-        let (model, encoding) = (link.model, link.encoding);
+        let model = match self.group {
+            Groups::One(group) => link.model_for(|model| ReadAxes::new(model, group, Coordinates::Pulse)).await?,
+            Groups::All => link.model().await?,
+        };
+        let encoding = link.encoding;
         let groups: Vec<Group> = match self.group {
             Groups::One(group) => vec![group],
             Groups::All => groups_of(model).collect(),
@@ -179,7 +183,7 @@ macro_rules! by_axis {
 
             async fn run(&self, context: Context<'_, Yerc>) -> Result<$report, Failure> {
                 let link = context.link;
-                let question = $query::new(link.model, self.group).map_err(usage)?;
+                let question = link.by_model(|model| $query::new(model, self.group)).await?;
                 let Some(axes) = link.ask(&question).await.known()? else {
                     link.plan_fit(self.group, Coordinates::Pulse);
                     return Err(unknown());

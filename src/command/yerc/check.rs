@@ -4,7 +4,9 @@ use super::link::Link;
 use super::link::Yerc;
 use super::overview::left_over;
 use crate::command::face::layers::{Layer, Layers};
+use crate::command::frame::attach::is_held;
 use crate::command::{Access, Family as _};
+use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::StatusBit;
 use crate::controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
@@ -12,7 +14,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-const LAYERS: &[&str] = &["name", "answer", "software", "mode", "command remote", "hold", "alarm", "servo"];
+const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
 /// Looks at them; reads only.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
@@ -21,14 +23,14 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         Err(failure) => layers.fail("name", &failure),
         Ok(mut link) => {
             layers.ok("name", robot.target.value.to_string());
-            look(&mut link, &mut layers).await;
+            look(robot, &mut link, &mut layers).await;
             Yerc::close(link, screen).await?;
         }
     }
     Ok(layers.finish())
 }
 
-async fn look(link: &mut Link, layers: &mut Layers) {
+async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     let status = match link.ask(&ReadStatus).await {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),
@@ -36,8 +38,9 @@ async fn look(link: &mut Link, layers: &mut Layers) {
     layers.ok("answer", "it answers a status request");
     match software(link).await {
         Ok(version) => layers.ok("software", version),
-        Err(failure) => layers.warn("software", failure.message, "check model in the URL: fs100 or dx200"),
+        Err(failure) => layers.warn("software", failure.message, failure.hint.unwrap_or_default()),
     }
+    model(robot, link, layers);
     let is_teach = status.has(StatusBit::Teach);
     layers.judge(
         "mode",
@@ -64,11 +67,39 @@ async fn look(link: &mut Link, layers: &mut Layers) {
         layers.ok("alarm", "none");
     }
     layers.left_over(&left_over(status));
-    layers.judge("servo", status.servo_on(), ("on", "off"), "motion wants servo power: `yerc servo on`");
+    // Power that nobody uses may be what somebody left; it is nothing wrong.
+    let is_idle = !status.running() && !status.held() && !is_held(robot);
+    let on =
+        if is_idle { "on; nothing runs, and no session holds it: `yerc servo off` takes power away" } else { "on" };
+    layers.judge("servo", status.servo_on(), (on, "off"), "motion wants servo power: `yerc servo on`");
+}
+
+/// Which model it is taken for, and by whose word.
+fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
+    const NAME: &str = "name it: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
+
+    let by_software = link.identity().and_then(|identity| identity.model);
+    let in_words = |model: Model, by: &str| {
+        let unproven = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
+        format!("{model}, {by}{unproven}")
+    };
+    match (robot.model.value.named(), by_software) {
+        (Some(named), Some(told)) if named != told => layers.warn(
+            "model",
+            format!("named {named}, and its software is that of a {told}"),
+            "leave the model away, so that the controller is asked, or name the right one",
+        ),
+        (Some(named), _) => layers.ok("model", in_words(named, "as named")),
+        (None, Some(told)) => layers.ok("model", in_words(told, "by its software")),
+        (None, None) => match link.known_model() {
+            Some(known) => layers.ok("model", in_words(known, "as it told another time")),
+            None => layers.warn("model", "it tells none that armctl knows", NAME),
+        },
+    }
 }
 
 async fn software(link: &mut Link) -> Result<String, Failure> {
-    let question = ReadSystemInfo::new(link.model, SystemPart::Group(Group::R1)).map_err(super::orders::usage)?;
+    let question = link.by_model(|model| ReadSystemInfo::new(model, SystemPart::Group(Group::R1))).await?;
     let encoding = link.encoding;
     let info = link.ask(&question).await?;
     let (version, name) = (encoding.decode(info.version.as_bytes()), encoding.decode(info.name.as_bytes()));

@@ -1,7 +1,6 @@
 //! The job that a start runs: what the question about it says, and whether it is still the same after the answer.
 
 use super::link::Link;
-use super::orders::usage;
 use crate::controller::text::Encoding;
 use crate::controller::units;
 use crate::controller::yerc::payload::JobInfo;
@@ -24,7 +23,7 @@ impl Chosen {
     /// Asks what the master task would execute (FS and DX 3.3.4).
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let unread = |failure: &Failure| Self::Unread(failure.message.trim_end_matches('.').to_owned());
-        let question = ReadJob::new(link.model, 0).map_err(usage)?;
+        let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
         match link.is_for("which job is selected").try_ask(&question).await {
             Ok(Ok(info)) if info.name.is_empty() => Ok(Self::None),
             Ok(Ok(info)) => Ok(Self::Job(info)),

@@ -6,7 +6,7 @@ use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
 commands! {
-    /// What can be asked of an FS100 or DX200.
+    /// What can be asked of an FS100, DX100, DX200 or YRC1000.
     pub enum Commands {
         "Status and diagnosis":
         /// Show mode, cycle, servo, hold, alarm: every status bit

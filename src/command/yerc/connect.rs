@@ -7,6 +7,7 @@ use super::simulated;
 use crate::client::yerc::{Client, Endpoint, Options};
 use crate::command::frame::attach::attach;
 use crate::command::{Access, Family as _};
+use crate::controller::yerc::Model;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::target::Place;
@@ -21,7 +22,11 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             let faults = sim.fault.as_deref().map(str::parse::<FaultSpec>).transpose().map_err(|error| {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
-            let start = simulated::start(sim.state.as_deref(), robot.model.value, faults.as_ref())?;
+            let start = simulated::start(
+                sim.state.as_deref(),
+                robot.model.value.named().unwrap_or(Model::Dx200),
+                faults.as_ref(),
+            )?;
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {
@@ -34,18 +39,20 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
 /// Connects in the way that a robot's target names.
 pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Client, Failure> {
     let options = Options {
-        model: robot.model.value,
+        model: robot.model.value.named(),
         granted: access.granted.clone(),
         timeout: robot.timeout.value,
         retries: robot.retries.value,
     };
     if access.dry_run {
-        return Ok(Client::dry_run(options));
+        // A simulator is what its start state says; of a controller no dry run asks.
+        let simulated = if robot.target.value.is_simulated() { endpoint(robot)?.model() } else { None };
+        return Ok(Client::dry_run(Options { model: simulated.or(options.model), ..options }));
     }
     let endpoint = endpoint(robot)?;
     match Box::pin(attach(robot, access, screen)).await? {
         Some(session) => {
-            let model = endpoint.model().unwrap_or(options.model);
+            let model = endpoint.model().or(options.model);
             Ok(Client::through(session, Options { model, ..options }))
         }
         None => Client::connect(endpoint, options).await.map_err(|error| failure(&robot.label(), error)),

@@ -12,7 +12,7 @@ use crate::output::view::{Cell, Section, View};
 use crate::settings::alarms::{Alarms, Explanation, Origin};
 use crate::settings::target::Family;
 
-/// Status code (1 byte) or added status code (2 bytes) of an FS100 or DX200
+/// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
 #[derive(Debug, Args)]
 pub struct Explain {
     /// The code in hexadecimal, as in 0x2060, 2060 or 1F

@@ -35,10 +35,10 @@ impl Declaration for Yerc {
     type Poller = Poller;
 
     const NAME: Family = Family::Yerc;
-    const TITLE: &'static str = "Yaskawa FS100 / DX200";
-    const ABOUT: &'static str = "Yaskawa FS100 / DX200 over the high-speed Ethernet server (UDP)";
+    const TITLE: &'static str = "Yaskawa FS100, DX100, DX200, YRC1000";
+    const ABOUT: &'static str = "Yaskawa FS100, DX100, DX200 and YRC1000 over the high-speed Ethernet server (UDP)";
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
-    const SETUP: (&'static str, &'static str) = ("settings of an FS100 or DX200", include_str!("setup.txt"));
+    const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = panel::PANEL;
     const GUARD: Guard = Guard { sends: passing::only_reads_or_stops, shows: |_, _| false };

@@ -13,6 +13,7 @@ use crate::failure::{Failure, Kind, plain};
 /// An error of the client of the robot that is called `label`.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
+    let error_text = error.to_string();
     match error {
         Error::Refused(refusal) => refusal.into(),
         Error::NoAnswer { .. } => about(Kind::NoAnswer, error.to_string()).hint(
@@ -22,7 +23,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Garbage { .. } => about(Kind::Malformed, error.to_string())
             .hint("is this the high-speed Ethernet server of a controller? -vvv shows the bytes"),
         Error::Unexpected(_) => about(Kind::Malformed, error.to_string())
-            .hint("check the model (?model=fs100 or dx200); -vvv shows the bytes"),
+            .hint("check the model (?model=fs100, dx100, dx200 or yrc1000); -vvv shows the bytes"),
         Error::OutcomeUnknown { request, waited, counters } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             let what = format!("sent once, no answer within {waited:?}{seen}: it may or may not have been done");
@@ -40,10 +41,26 @@ pub fn failure(label: &str, error: Error) -> Failure {
             about(Kind::NoAnswer, error.to_string()).hint("check the name, or use the address of the controller")
         }
         Error::Io { port, error } => broken(label, port, &error),
+        Error::ModelRefused(refusal) => {
+            let failure = Failure::from(refusal);
+            let message = format!("{error_text}; what was to be asked depends on it, and was not");
+            Failure { message: format!("{label}: {message}"), ..failure }.hint(NAME_MODEL)
+        }
+        Error::UnknownSoftware { .. } => {
+            about(Kind::Malformed, format!("{error_text}; what was to be asked depends on it, and was not"))
+                .hint(NAME_MODEL)
+        }
+        Error::AnotherModel { .. } => {
+            about(Kind::Refused, error_text).hint("repeat the command: from now on it is taken for what it is")
+        }
         Error::NotKnown => unknown(),
         _ => about(Kind::Malformed, error.to_string()).hint("-vvv shows the bytes"),
     }
 }
+
+/// What to do where the controller does not tell its model.
+const NAME_MODEL: &str =
+    "name the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME model=…`";
 
 /// The socket has bad news.
 fn broken(label: &str, port: Option<u16>, error: &io::Error) -> Failure {

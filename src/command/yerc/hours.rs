@@ -62,7 +62,10 @@ impl Command for Hours {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Times, Failure> {
         let link = context.link;
-        let (model, encoding) = (link.model, link.encoding);
+        let make = |model| {
+            self.counters(model).into_iter().map(|it| ReadManagementTime::new(model, it)).collect::<Result<Vec<_>, _>>()
+        };
+        let (model, encoding) = (link.model_for(make).await?, link.encoding);
         let question = |counter| Ok((counter, ReadManagementTime::new(model, counter)?));
         let counters = self.counters(model).into_iter();
         let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;

@@ -48,7 +48,7 @@ impl Info {
 const fn applications(model: Model) -> u8 {
     match model {
         Model::Fs100 => 1,
-        Model::Dx200 => 8,
+        Model::Dx100 | Model::Dx200 | Model::Yrc1000 => 8,
     }
 }
 
@@ -59,7 +59,10 @@ impl Command for Info {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Versions, Failure> {
         let link = context.link;
-        let (model, encoding) = (link.model, link.encoding);
+        let make = |model| {
+            self.parts(model).into_iter().map(|part| ReadSystemInfo::new(model, part)).collect::<Result<Vec<_>, _>>()
+        };
+        let (model, encoding) = (link.model_for(make).await?, link.encoding);
         let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));
         let parts = self.parts(model).into_iter();
         let questions: Vec<_> = parts.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
@@ -193,7 +196,7 @@ mod tests {
     async fn only_what_exists_is_listed() {
         let [all, one] = reports("groups = [\"R1\"]", &["info", "info --group R2"]).await.try_into().unwrap();
         let all = all.unwrap();
-        assert_eq!(all["software_version"], "DS2.07.00A(JP/US)-00");
+        assert_eq!(all["software_version"], "DN2.07.00A(JP/US)-00");
         assert_eq!(all["parts"][0]["name"], "ES0165D-A0*");
         assert_eq!(all["parts"].as_array().map(Vec::len), Some(2), "{all}");
         assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name to tell");

@@ -16,7 +16,7 @@ use super::each::{Denied, Outcome};
 use super::file::Edit;
 use super::link::{Link, Yerc};
 use super::numbers::within;
-use super::orders::{refuse_controls, usage};
+use super::orders::refuse_controls;
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::frame::orders::{Done, New, Old};
@@ -26,7 +26,6 @@ use crate::controller::Risk;
 use crate::controller::text::{Encoding, Name};
 use crate::controller::typed;
 use crate::controller::units;
-use crate::controller::yerc::Model;
 use crate::controller::yerc::payload::JobInfo;
 use crate::controller::yerc::query::{ReadJob, SelectJob, Selection};
 use crate::controller::yerc::status::{self, is_absent};
@@ -94,11 +93,14 @@ impl Command for Show {
                 if link.is_dry() && self.source {
                     link.then("the file of the job, if it has one, is got");
                 }
-                let job = link.ask(&ReadJob::new(link.model, task).map_err(usage)?).await?;
+                let job = {
+                    let question = link.by_model(|model| ReadJob::new(model, task)).await?;
+                    link.ask(&question).await?
+                };
                 vec![(task, Ok(job))]
             }
             Tasks::All => {
-                let model = link.model;
+                let model = link.model().await?;
                 let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
                 let outcomes = link.ask_each(&questions).await?;
                 if let Some(Err(denied)) = outcomes.first().filter(|_| outcomes.iter().all(Result::is_err)) {
@@ -248,7 +250,8 @@ pub struct Select {
 const MAX_NAME: usize = 32;
 
 impl Select {
-    fn query(&self, name: &str, encoding: Encoding, model: Model) -> Result<SelectJob, Failure> {
+    async fn query(&self, name: &str, link: &mut Link) -> Result<SelectJob, Failure> {
+        let encoding = link.encoding;
         refuse_controls("the job name", name)?;
         let bytes = encoding.encode_name(name).map_err(|error| {
             Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
@@ -257,9 +260,9 @@ impl Select {
             let message = format!("the job name takes {} bytes in {encoding}; at most {MAX_NAME} fit", bytes.len());
             return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
         }
-        let line = self.line;
-        let selection = self.task.map_or(Selection::Execute { line }, |task| Selection::Master { task });
-        SelectJob::new(model, &bytes, selection).map_err(usage)
+        let execute = Selection::Execute { line: self.line };
+        let selection = self.task.map_or(execute, |task| Selection::Master { task });
+        link.by_model(|model| SelectJob::new(model, &bytes, selection)).await
     }
 }
 
@@ -292,11 +295,15 @@ impl Command for Select {
         }
         // Of the master job of a task nothing tells which it is.
         let was = match self.task {
-            None => link.before(&ReadJob::new(link.model, 0).map_err(usage)?).await?,
+            None => {
+                let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
+                link.before(&question).await?
+            }
             Some(_) => None,
         };
         let was = was.filter(|job| !job.name.is_empty()).map(|job| link.encoding.name(job.name.as_bytes()).text);
-        link.ask(&self.query(name, link.encoding, link.model)?).await?;
+        let query = self.query(name, link).await?;
+        link.ask(&query).await?;
         let words = match (self.task, self.line) {
             (Some(task), _) => format!("{name} is the master job of task {task}"),
             (None, 0) => format!("{name} is selected"),

@@ -8,6 +8,8 @@ use derive_more::{Deref, DerefMut};
 use super::connect;
 use super::each::{Outcome, Round};
 use super::failure::{failure, refused};
+use super::orders::usage;
+use super::told::Told;
 use super::trace::Trace;
 use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
@@ -17,13 +19,15 @@ use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
 use crate::command::{Access, Family};
 use crate::controller::text::Encoding;
+use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
-use crate::controller::yerc::query::Query;
+use crate::controller::yerc::query::{Query, QueryError};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
+use crate::settings::model::ToldModel;
 use crate::settings::target;
 use crate::transport::tap::Direction;
 
@@ -46,6 +50,8 @@ pub struct Link {
     pulses_per_degree: Vec<f64>,
     /// Words of a cartesian move, 25 or 26.
     pub move_words: u8,
+    /// Where it is kept what the controller told of its model.
+    told: Told,
 }
 
 impl Family for Yerc {
@@ -60,7 +66,8 @@ impl Family for Yerc {
         let move_words = robot.target.value.traits().move_words.unwrap_or(26);
         let pulses_per_degree = robot.pulses_per_degree.clone();
         let encoding = robot.encoding.value;
-        Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words })
+        let told = Told::recall(robot, &mut client);
+        Ok(Link { client, trace, screen: *screen, label, encoding, pulses_per_degree, move_words, told })
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
@@ -77,7 +84,8 @@ impl Family for Yerc {
         link.take_plan()
     }
 
-    async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
+    async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
+        link.keep_model();
         let Link { client, trace, label, .. } = link;
         let totals = client.close().await.map_err(|error| failure(&label, error))?;
         let [sent, received] = [totals.sent, totals.received];
@@ -91,6 +99,38 @@ impl Link {
     /// Pulses of a degree of each axis of a group, as far as they are known.
     pub fn pulses_per_degree(&self, group: Group) -> &[f64] {
         if group == Group::R1 { &self.pulses_per_degree } else { &[] }
+    }
+
+    /// The model of the controller, which is asked if nobody knows it.
+    pub async fn model(&mut self) -> Result<Model, Failure> {
+        let model = self.client.model().await;
+        self.keep_model();
+        model.map_err(|error| self.failure(error))
+    }
+
+    /// A model to make something for; the controller is asked only if it matters: [`Client::model_for`].
+    pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Failure> {
+        let model = self.client.model_for(make).await;
+        self.keep_model();
+        model.map_err(|error| self.failure(error))
+    }
+
+    /// Makes something that may depend on the model.
+    pub async fn by_model<T: PartialEq>(
+        &mut self,
+        make: impl Fn(Model) -> Result<T, QueryError>,
+    ) -> Result<T, Failure> {
+        let model = self.model_for(&make).await?;
+        make(model).map_err(usage)
+    }
+
+    /// Keeps what the controller told of its model, if it is news.
+    fn keep_model(&mut self) {
+        if let Some(identity) = self.client.identity() {
+            let software = self.encoding.decode(identity.software.as_bytes());
+            let news = identity.model.map(|model| ToldModel::now(model, software));
+            self.told.keep(news, &self.screen, &self.label);
+        }
     }
 
     /// Asks one question or gives one order; a refusal is a failure.

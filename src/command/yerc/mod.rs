@@ -1,4 +1,4 @@
-//! `yerc`: Yaskawa FS100 and DX200 over the high-speed Ethernet server.
+//! `yerc`: Yaskawa FS100, DX100, DX200 and YRC1000 over the high-speed Ethernet server.
 
 mod alarm;
 mod axes;
@@ -36,6 +36,7 @@ mod status;
 mod teach;
 #[cfg(test)]
 mod testing;
+mod told;
 pub mod top;
 mod trace;
 mod var;

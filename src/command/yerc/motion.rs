@@ -87,7 +87,9 @@ async fn present_alarm(link: &mut Link) -> String {
         Err(failure) => return format!("an alarm came up ({failure})"),
     };
     match link.ask(&question).await {
-        Ok(alarm) if !alarm.is_none() => format!("{} came up", alarm::in_a_line(&alarm, link.encoding, link.model)),
+        Ok(alarm) if !alarm.is_none() => {
+            format!("{} came up", alarm::in_a_line(&alarm, link.encoding, link.model_to_show()))
+        }
         Ok(_) => "an alarm came up and is gone again".to_owned(),
         Err(failure) => format!("an alarm came up, which could not be read: {failure}"),
     }

@@ -19,12 +19,10 @@ use self::question::Question;
 use self::taught::Motion;
 use super::link::Link;
 use super::link::Yerc;
-use super::orders::usage;
 use crate::command::yerc::numbers::within;
 use crate::command::{Command, Context, Subcommands, commands};
 use crate::controller::Risk;
 use crate::controller::units;
-use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
 use crate::controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
@@ -101,7 +99,7 @@ impl Target {
     ) -> Result<MotionReport, Failure> {
         match self.to.destination() {
             Some(destination) => Motion { target: self, kind, way, speed }.run(context, &destination).await,
-            None => self.going(context.link, kind, speed)?.run(context, &self.question(way, speed)).await,
+            None => self.going(context.link, kind, speed).await?.run(context, &self.question(way, speed)).await,
         }
     }
 
@@ -123,7 +121,7 @@ impl Target {
         }
     }
 
-    fn going(&self, link: &Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
         let coordinate = frame.kind();
@@ -145,7 +143,7 @@ impl Target {
                 (Goal::Pulses(axes.0.clone()), vec![(mover.group, axes.0.len(), "--station-axes")])
             }
         };
-        let order = MoveCartesian::new(link.model, kind, order).map_err(usage)?;
+        let order = link.by_model(|model| MoveCartesian::new(model, kind, order)).await?;
         Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
     }
 }
@@ -242,7 +240,7 @@ motion! {
         speed: Speed::path, distance: Distance
     }, "yerc.move.relative",
     |this, context| this.distance.question(this.speed),
-    this.distance.going(context.link, this.speed)?.run(context, &this.distance.question(this.speed))
+    this.distance.going(context.link, this.speed).await?.run(context, &this.distance.question(this.speed))
 }
 motion! {
     /// Moves to pulses, axes interpolated (0x8B, instance 1).
@@ -302,7 +300,7 @@ impl Distance {
         }
     }
 
-    fn going(&self, link: &Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
+    async fn going(&self, link: &mut Link, speed: Speed) -> Result<Going<MoveCartesian>, Failure> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let mut order = plain(link, mover, speed, frame);
         let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
@@ -323,7 +321,7 @@ impl Distance {
             return Err(Failure::usage("every distance is 0: nothing would move")
                 .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
         }
-        let order = MoveCartesian::new(link.model, MoveKind::Incremental, order).map_err(usage)?;
+        let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
         Ok(Going { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.no_wait })
     }
 }
@@ -370,10 +368,10 @@ impl PulseTarget {
         way: &'static str,
         speed: Speed,
     ) -> Result<MotionReport, Failure> {
-        self.going(context.link.model, kind, speed)?.run(context, &self.question(way, speed)).await
+        self.going(context.link, kind, speed).await?.run(context, &self.question(way, speed)).await
     }
 
-    fn going(&self, model: Model, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {
+    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         let part = split(mover.group, pulses.as_ref(), "--pulses", base_axes.as_ref(), station_axes.as_ref())?;
         let (robot, station) = mover.words();
@@ -400,7 +398,7 @@ impl PulseTarget {
                 (axes, vec![(mover.group, axes.0.len(), "--station-axes")])
             }
         };
-        let order = MovePulse::new(model, kind, order).map_err(usage)?;
+        let order = link.by_model(|model| MovePulse::new(model, kind, order)).await?;
         let goal = Goal::Pulses(target.0.clone());
         Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
     }

@@ -17,8 +17,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         Some(status) => status::fault(link, status).await?,
         None => plan_latest(link).map(|()| Fault::default())?,
     };
-    let query = ReadPosition::new(link.model, Group::R1, Coordinates::Base);
-    let query = query.map_err(|error| Failure::local(error.to_string()))?;
+    let query = link.by_model(|model| ReadPosition::new(model, Group::R1, Coordinates::Base)).await?;
     // A controller without a first robot has no position to show; that is no failure.
     let position = link.try_ask(&query).await.known()?.and_then(Result::ok);
     Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))

@@ -8,7 +8,6 @@ use serde::{Serialize, Serializer};
 
 use super::link::Link;
 use super::link::Yerc;
-use super::orders::usage;
 use super::var::{PositionData, held};
 use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::{Known as _, unknown};
@@ -66,8 +65,13 @@ impl Command for Position {
             Which::Base => &[Coordinates::Base],
             Which::Both => &[Coordinates::Pulse, Coordinates::Base],
         };
-        let question = |coordinates: &Coordinates| ReadPosition::new(link.model, self.group, *coordinates);
-        let questions: Vec<ReadPosition> = wanted.iter().map(question).collect::<Result<_, _>>().map_err(usage)?;
+        let questions = |model| {
+            wanted
+                .iter()
+                .map(|coordinates| ReadPosition::new(model, self.group, *coordinates))
+                .collect::<Result<Vec<_>, _>>()
+        };
+        let questions = link.by_model(questions).await?;
         let mut report = PositionReport::nowhere(self.group);
         let Some(outcomes) = link.ask_each(&questions).await.known()? else {
             for coordinates in wanted {
@@ -98,7 +102,7 @@ pub(super) async fn ask(
     group: Group,
     coordinates: Coordinates,
 ) -> Result<(payload::Position, PositionReport), Failure> {
-    let question = ReadPosition::new(link.model, group, coordinates).map_err(usage)?;
+    let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
     let Some(position) = link.ask(&question).await.known()? else {
         link.plan_fit(group, coordinates);
         return Err(unknown());
@@ -129,8 +133,6 @@ pub struct PositionReport {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct PulsePosition {
-    /// As `var set` takes it: `P5=pulse:s=…`.
-    text: String,
     /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups; only axes answered.
     pulses: ByAxis,
     /// The same in degrees, where the inventory says the pulses of a degree.
@@ -138,13 +140,13 @@ struct PulsePosition {
     #[schemars(with = "std::collections::BTreeMap<String, f64>")]
     degrees: Option<Degrees>,
     tool: u32,
+    /// As `var set` takes it: `P5=pulse:s=…`.
+    text: String,
 }
 
 /// Six coordinates and how the arm reaches them.
 #[derive(Debug, Serialize, JsonSchema)]
 struct CartesianPosition {
-    /// As `var set` takes it: `P5=base:x=…`.
-    text: String,
     x_mm: Option<f64>,
     y_mm: Option<f64>,
     z_mm: Option<f64>,
@@ -164,6 +166,8 @@ struct CartesianPosition {
     extended_form: Vec<&'static str>,
     /// The word of the extended form as received.
     extended_form_code: u32,
+    /// As `var set` takes it: `P5=base:x=…`.
+    text: String,
     #[serde(skip)]
     axes: Axes,
     #[serde(skip)]

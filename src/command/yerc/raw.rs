@@ -16,6 +16,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::hex;
 use crate::controller::typed;
+use crate::controller::yerc::Model;
 use crate::controller::yerc::describe::{FieldNote, Sender, describe};
 use crate::controller::yerc::request::Request;
 use crate::controller::yerc::session::{DownloadEnd, Reply};
@@ -124,7 +125,13 @@ impl Command for Raw {
             return Err(Failure::usage(format!("file service {:#04x} sends blocks", request.service))
                 .hint("use `yerc file put`"));
         }
-        let doubt = request.check(link.model).err().map(|error| error.to_string());
+        // What some model takes is no mistake as long as nobody knows which one it is.
+        let doubt = match link.known_model() {
+            Some(model) => request.check(model).err(),
+            None if Model::ALL.iter().any(|model| request.check(*model).is_ok()) => None,
+            None => request.check(link.model_to_show()).err(),
+        };
+        let doubt = doubt.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
             if self.check {
                 return Err(Failure::usage(doubt.clone()).hint("without --check it is sent all the same"));

@@ -87,7 +87,7 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
         let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
         let link = context.link;
-        let model = link.model;
+        let model = link.model_for(|model| plan_register_reads(model, &numbers)).await?;
         let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
         let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
         let words = numbers.into_iter().filter_map(|number| {
@@ -113,9 +113,10 @@ impl Command for Set {
             return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
         }
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
-        let steps = plan_register_writes(link.model, &values).map_err(usage)?;
+        let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;
         let numbers: Vec<u16> = values.iter().map(|(number, _)| *number).collect();
-        let old = before(link, &plan_register_reads(link.model, &numbers).map_err(usage)?).await?;
+        let reads = link.by_model(|model| plan_register_reads(model, &numbers)).await?;
+        let old = before(link, &reads).await?;
         write_all(link, screen, &steps).await?;
         let written = values.into_iter().map(|(number, value)| {
             Written::new(Word::new(number, Ok(value)), Old::read(old.get(&number).copied()), value)

@@ -19,7 +19,7 @@ use crate::output::view::View;
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::server::Server;
 
-/// An FS100 or DX200 on two UDP ports
+/// An FS100, DX100, DX200 or YRC1000 on two UDP ports
 #[derive(Debug, Args)]
 pub struct Serve {
     /// Address to listen on, with the port of the robot server; port 0 lets the system choose
@@ -33,7 +33,7 @@ pub struct Serve {
     /// Port of the file server; one above the robot server's unless given
     #[arg(long, value_name = "PORT")]
     file_port: Option<u16>,
-    /// Controller model, fs100 or dx200
+    /// Controller model: fs100, dx100, dx200, yrc1000 [default: dx200]
     #[arg(long, value_name = "MODEL")]
     model: Option<Model>,
     /// Start state (TOML): modes, variables, jobs, files, alarms, timed events

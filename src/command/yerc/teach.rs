@@ -81,7 +81,7 @@ impl Command for Teach {
         let Context { link, authority, .. } = context;
         let (name, group) = (self.variable.to_string(), self.group()?);
         let Some(old) = self.read(link.is_for("what the variable holds")).await.known()? else {
-            return Err(self.plan(link, group)?);
+            return Err(self.plan(link, group).await?);
         };
         let coordinates = self.coordinates(old.as_ref())?;
         let (here, report) = position::ask(link, group, coordinates).await?;
@@ -176,8 +176,9 @@ impl Teach {
     }
 
     /// Notes in a dry run what follows the first question.
-    fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
-        let asked = |coordinates| ReadPosition::new(link.model, group, coordinates).map_err(usage);
+    async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
+        let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
+        let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
         let one = asked(coordinates)?;
         let is_open = self.coordinates.is_none() && group.cartesian_instance().is_some();

@@ -58,7 +58,7 @@ impl declared::Poller for Poller {
 
 impl Poller {
     async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
-        let model = self.link.model;
+        let model = self.link.model_to_show();
         let pulses = self.position(Coordinates::Pulse).await?;
         let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
         let error = self.ask(ReadPositionError::new(model, Group::R1)).await?;
@@ -76,7 +76,7 @@ impl Poller {
     }
 
     async fn position(&mut self, coordinates: Coordinates) -> Result<Option<Position>, Failure> {
-        let position = self.ask(ReadPosition::new(self.link.model, Group::R1, coordinates)).await?;
+        let position = self.ask(ReadPosition::new(self.link.model_to_show(), Group::R1, coordinates)).await?;
         let Some(position) = position else { return Ok(None) };
         let (axes, _) = self.link.fit(Group::R1, coordinates, position.axes).await;
         Ok(Some(Position { axes, ..position }))

@@ -14,7 +14,7 @@ use crate::output::Screen;
 use crate::settings::{Robot, Sessions};
 
 /// The layers behind those of the fieldbus.
-const SIGNALS: [&str; 7] = ["CPU", "emergency stop", "alarm", "remote command", "mode", "servo", "origin"];
+const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
 
 /// Looks at them; reads only. What a session sees is asked of it, and no link besides.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
@@ -46,7 +46,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         }
     }
     if let Some(image) = image {
-        signals(&image, &mut layers);
+        signals(&image, held, &mut layers);
     }
     Ok(layers.finish())
 }
@@ -61,7 +61,7 @@ async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Resu
     image
 }
 
-fn signals(image: &Image, layers: &mut Layers) {
+fn signals(image: &Image, held: bool, layers: &mut Layers) {
     let mut must = |layer, is_well: bool, (well, ill): (&str, &str), advice: &str| {
         if is_well { layers.ok(layer, well) } else { layers.wrong(layer, ill, advice) }
     };
@@ -87,6 +87,13 @@ fn signals(image: &Image, layers: &mut Layers) {
         "another command runs, or was left over",
     );
     layers.left_over(&left_over(image));
+    let runs = output::PROGRAM_RUNNING.is_on(image);
+    let is_idle = !runs && !held;
+    // Whose it is the signals do not tell; that one runs is nothing wrong.
+    layers.ok(
+        "program",
+        if runs { "one runs; `yrcx info tasks` tells which, `yrcx stop` stops it" } else { "none runs" },
+    );
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
@@ -96,7 +103,14 @@ fn signals(image: &Image, layers: &mut Layers) {
     layers.judge(
         "servo",
         output::SERVO_ON.is_on(image),
-        ("motor power on", "motor power off"),
+        (
+            if is_idle {
+                "motor power on; nothing runs, and no session holds it: `yrcx motor off`"
+            } else {
+                "motor power on"
+            },
+            "motor power off",
+        ),
         "motion wants it: `yrcx power-on`, or `yrcx motor on`",
     );
     layers.judge(

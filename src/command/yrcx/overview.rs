@@ -83,20 +83,8 @@ pub(super) fn report(link: &Link, image: &Image, alarm: Option<&Alarm>) -> Overv
 /// What a client that is gone left behind, as far as the signals tell it.
 pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     let status = Status::from_word(image.0[0]);
+    // A program that runs may be anybody's, and is as it should be.
     let is_command = !matches!(status, Status::Ready | Status::Running);
-    [
-        LeftOver::new(
-            output::PROGRAM_RUNNING.is_on(image),
-            "a program runs (SO(13))",
-            "`yrcx stop` stops it; `yrcx info tasks` tells which tasks there are",
-        ),
-        LeftOver::new(
-            is_command,
-            &format!("a remote command left its status: {status}"),
-            "`yrcx status-reset` clears it",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let what = format!("a remote command left its status: {status}");
+    LeftOver::new(is_command, &what, "`yrcx status-reset` clears it").into_iter().collect()
 }

@@ -51,7 +51,7 @@ impl Group {
     pub const fn counts(model: Model) -> (u8, u8, u8) {
         match model {
             Model::Fs100 => (2, 2, 3),
-            Model::Dx200 => (8, 8, 24),
+            Model::Dx100 | Model::Dx200 | Model::Yrc1000 => (8, 8, 24),
         }
     }
 }

@@ -206,7 +206,7 @@ fn known_group(model: Model, group: Group) -> Result<Group, QueryError> {
 const fn last_task(model: Model) -> u8 {
     match model {
         Model::Fs100 => 5,
-        Model::Dx200 => 15,
+        Model::Dx100 | Model::Dx200 | Model::Yrc1000 => 15,
     }
 }
 

@@ -17,6 +17,7 @@
 use std::fmt;
 
 use super::Model;
+use super::group::Group;
 use super::table::ALARM_KINDS;
 
 /// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
@@ -148,10 +149,7 @@ impl Form {
                 (data >> count == 0).then(|| (bracketed(&set), Trust::Inferred))
             }
             Self::Groups => {
-                let robots = match model {
-                    Model::Fs100 => 2,
-                    Model::Dx200 => 8,
-                };
+                let robots = u32::from(Group::counts(model).0);
                 let name = |bit| if bit < robots { format!("R{}", bit + 1) } else { format!("(bit {bit})") };
                 let set: String = (0..u32::BITS).filter(|bit| is_set(data, *bit)).map(name).collect();
                 Some((bracketed(&set), Trust::Inferred))

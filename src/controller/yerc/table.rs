@@ -49,18 +49,18 @@ pub const BATCH_BACKUP_PATH: &[u8] = b"/SPDRV/CMOSBK.BIN";
 /// Which controllers have a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Availability {
-    /// FS100 and DX200.
+    /// Every one.
     Both,
     /// DX200, and FS100 from system software FS1.14.
     Fs114,
-    /// DX200 only.
+    /// From the DX200 on.
     Dx200,
 }
 
 impl Availability {
     /// Whether a controller of this model can have the command.
     pub const fn on(self, model: Model) -> bool {
-        !matches!((self, model), (Self::Dx200, Model::Fs100))
+        !matches!((self, model), (Self::Dx200, Model::Fs100 | Model::Dx100))
     }
 
     /// What to tell somebody whose controller refuses the command.
@@ -68,7 +68,7 @@ impl Availability {
         match self {
             Self::Both => None,
             Self::Fs114 => Some("an FS100 needs system software FS1.14 or later"),
-            Self::Dx200 => Some("DX200 only"),
+            Self::Dx200 => Some("DX200 and later only"),
         }
     }
 }

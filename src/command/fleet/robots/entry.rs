@@ -16,6 +16,7 @@ use crate::output::jq::after_a_change;
 use crate::output::view::{self, Cell, View};
 use crate::settings::duration;
 use crate::settings::inventory::{Entry, Inventory, is_name};
+use crate::settings::model::ModelSetting;
 use crate::settings::target::{Family, Given, Target};
 
 /// Arguments of `robots add`.
@@ -143,7 +144,9 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
         Ok(target.url().into())
     }),
     ("family", "yerc, yrcx or toyo", |text, _| Ok(parsed::<Family>(text)?.name().into())),
-    ("model", "fs100 or dx200 (yerc)", |text, _| Ok(parsed::<Model>(text)?.name().into())),
+    ("model", "auto, fs100, dx100, dx200 or yrc1000 (yerc)", |text, _| {
+        Ok(parsed::<ModelSetting>(text)?.to_string().into())
+    }),
     ("read_only", "on or off: take read commands only", |text, _| Ok(switch(text)?.into())),
     ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
@@ -170,7 +173,9 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
 ];
 
 fn candidates() -> Vec<Candidate> {
-    SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).begun()).collect()
+    let keys = SETTINGS.iter().map(|(key, about, _)| Candidate::new(format!("{key}="), *about).begun());
+    let models = Model::ALL.map(Model::name).into_iter().chain([ModelSetting::AUTO]);
+    keys.chain(models.map(|model| Candidate::new(format!("model={model}"), "model of a yerc robot"))).collect()
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {

@@ -1,6 +1,6 @@
 //! The alarms of a controller as `explain` shows them.
 
-use super::{ActiveAlarms, AlarmEntry, PastAlarms};
+use super::{ActiveAlarms, AlarmEntry, PastAlarm, PastAlarms};
 use crate::command::face::explain::{Occurrence, Recorded};
 
 impl AlarmEntry {
@@ -26,9 +26,8 @@ impl Recorded for ActiveAlarms {
 
 impl Recorded for PastAlarms {
     fn recorded(&self) -> Vec<Occurrence> {
-        let of = |alarm: &super::PastAlarm| {
-            Some(alarm.outcome.data()?.occurrence(format!("{} {}", alarm.class, alarm.number)))
-        };
+        let of =
+            |alarm: &PastAlarm| Some(alarm.outcome.data()?.occurrence(format!("{} {}", alarm.class, alarm.number)));
         self.alarms.iter().filter_map(of).collect()
     }
 }

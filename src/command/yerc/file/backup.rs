@@ -75,7 +75,7 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
     if link.is_dry() {
-        let question = Controller::question(link)?.request();
+        let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, asked(&task.scope).0.iter().map(|kind| files::list(*kind)))?;
         link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");

@@ -198,7 +198,7 @@ async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     if !link.ask(&ReadStatus).await?.running() {
         return Ok(());
     }
-    let model = link.model;
+    let model = link.model().await?;
     let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
     let stem = file.as_bytes().len().saturating_sub(ENDING.len());
     let runs = link

@@ -1,4 +1,4 @@
-//! What the list of a backup says of an FS100 or DX200.
+//! What the list of a backup says of a Yaskawa controller.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,6 +7,7 @@ use crate::command::backup::manifest;
 use crate::command::backup::manifest::{About, Entry};
 use crate::command::yerc::link::Link;
 use crate::controller::text::unhex;
+use crate::controller::yerc::Model;
 use crate::controller::yerc::files::FileName;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::query::{ReadSystemInfo, SystemPart};
@@ -19,7 +20,7 @@ pub type Manifest = manifest::Manifest<Controller>;
 /// What kind of controller it is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
-    /// `fs100` or `dx200`.
+    /// `fs100`, `dx100`, `dx200` or `yrc1000`.
     pub model: String,
     /// Version of the system software; null if the controller refused to tell.
     pub software: Option<String>,
@@ -32,7 +33,8 @@ pub struct Controller {
 impl Controller {
     /// Asks the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
-        let info = match link.ask(&Self::question(link)?).await {
+        let question = Self::question()?;
+        let info = match link.ask(&question).await {
             Ok(info) => Some(info),
             Err(failure) if failure.kind == Kind::Refused => None,
             Err(failure) => return Err(failure),
@@ -40,17 +42,27 @@ impl Controller {
         let encoding = link.encoding;
         let text = |bytes: &[u8]| Some(encoding.decode(bytes)).filter(|text| !text.is_empty());
         Ok(Self {
-            model: link.model.to_string(),
+            model: link.model().await?.to_string(),
             software: info.as_ref().and_then(|info| text(info.version.as_bytes())),
             robot_model: info.as_ref().and_then(|info| text(info.name.as_bytes())),
             encoding: encoding.label().to_owned(),
         })
     }
 
+    /// The model that the software is of, or else that was written down: once whatever was no FS100 was called a DX200.
+    pub fn taken_of(&self) -> &str {
+        let told = self.software.as_ref().and_then(|software| Model::from_software(software.as_bytes()));
+        match told {
+            Some(model) => model.name(),
+            None => &self.model,
+        }
+    }
+
     /// What [`ask`](Self::ask) sends.
-    pub fn question(link: &Link) -> Result<ReadSystemInfo, Failure> {
-        let first = SystemPart::Group(Group::Robot(1));
-        ReadSystemInfo::new(link.model, first).map_err(|error| Failure::local(error.to_string()))
+    pub fn question() -> Result<ReadSystemInfo, Failure> {
+        // The same to every model; what it tells is the model, too.
+        ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1))
+            .map_err(|error| Failure::local(error.to_string()))
     }
 }
 

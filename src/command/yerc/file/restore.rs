@@ -104,9 +104,9 @@ impl Command for Restore {
         let folder = own_folder(&self.folder, &robot.name, several);
         manifest::check_origin(&manifest::existing::<Value>(&folder)?, robot, self.force)?;
         let manifest: Manifest = manifest::existing(&folder)?;
-        let model = &manifest.controller.model;
-        if *model != link.model.to_string() && !self.force {
-            let message = format!("the backup is of a {model}, {} is a {}", robot.label(), link.model);
+        let (taken_of, model) = (manifest.controller.taken_of(), link.model().await?);
+        if taken_of != model.name() && !link.is_dry() && !self.force {
+            let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint("check the model (?model=…); --force sends the files all the same"));
         }

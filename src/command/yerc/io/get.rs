@@ -51,13 +51,11 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<States, Failure> {
         let link = context.link;
-        let model = link.model;
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
         let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
         let wanted: Vec<u16> = signals.iter().map(|signal| signal.group()).chain(groups.iter().copied()).collect();
-        for &group in &wanted {
-            signal::class(model, group)?;
-        }
+        let model = link.model_for(|model| signal::reads(model, &wanted, false)).await?;
+        signal::reads(model, &wanted, false)?;
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
         let bytes = read_in_parts(link, plan, &once(wanted.into_iter()), |_| Parts::Halves, |_, _| {}).await?;
         let byte = |group| Some(bytes.get(&group)?.clone().map_err(Failure::from));

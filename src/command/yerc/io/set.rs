@@ -19,6 +19,7 @@ use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::typed;
+use crate::controller::yerc::Model;
 use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::signal::{Signal, SignalError};
 use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
@@ -98,16 +99,15 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Switched, Failure> {
         let Context { link, screen, .. } = context;
-        let model = link.model;
         let changes = self.changes()?;
-        for &group in changes.keys() {
-            signal::writable(model, group)?;
-        }
+        let groups: Vec<u16> = changes.keys().copied().collect();
+        let model = link.model_for(|model| signal::reads(model, &groups, true)).await?;
+        signal::reads(model, &groups, true)?;
         let (whole, partial): (Vec<u16>, Vec<u16>) =
             changes.keys().partition(|group| changes.get(group).is_some_and(|change| change.mask == u8::MAX));
         let mut found = before(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
         if link.is_dry() && !partial.is_empty() {
-            return Err(plan(link, &partial, &changes)?);
+            return Err(plan(link, model, &partial, &changes)?);
         }
         let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
         for (group, outcome) in read_in_parts(link, plan, &partial, |_| Parts::Halves, |_, _| {}).await? {
@@ -160,14 +160,13 @@ impl Set {
 }
 
 /// Notes in a dry run a change that depends on what is read first: signals that were not named are not known.
-fn plan(link: &mut Link, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
-    let model = link.model;
+fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
     let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
     let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
     plan_in_parts(link, reads, partial, |_| Parts::Halves, about)?;
     let writes = |byte: u8| {
         let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
-        plan_io_writes(link.model, &values).map_err(usage)
+        plan_io_writes(model, &values).map_err(usage)
     };
     let steps: Vec<(WriteIoStep, WriteIoStep)> = writes(0)?.into_iter().zip(writes(u8::MAX)?).collect();
     for (one, other) in steps {

@@ -1,9 +1,11 @@
 //! Signals and groups as the operator names them.
 
+use super::super::orders::usage;
 use crate::controller::typed;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::{Signal, io_class};
 use crate::controller::yerc::table::{Row, Span};
+use crate::controller::yerc::variables::{IoStep, plan_io_reads};
 use crate::failure::Failure;
 
 /// A signal or a range of them, as typed.
@@ -29,6 +31,13 @@ pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
         Failure::usage(format!("group {group} ({}) does not exist on a {model}", name(group, 0)))
             .hint(format!("there are {}", listed(model, |_| true)))
     })
+}
+
+/// What groups are, which can all be written where that is wanted, and how they are read.
+pub fn reads(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
+    let class = if to_write { writable } else { class };
+    let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_, Failure>>()?;
+    Ok((meanings, plan_io_reads(model, groups).map_err(usage)?))
 }
 
 /// The class of a group that can be written.

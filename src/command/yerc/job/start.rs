@@ -15,7 +15,6 @@ use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
 use crate::command::yerc::numbers::within;
-use crate::command::yerc::orders::usage;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yerc::payload::{ControllerStatus, StatusBit};
@@ -68,7 +67,10 @@ impl Command for Start {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
         let Context { link, screen, authority, .. } = context;
-        let named = self.name.as_deref().map(|name| self.selection(link, without_suffix(name))).transpose()?;
+        let named = match self.name.as_deref() {
+            Some(name) => Some(self.selection(link, without_suffix(name)).await?),
+            None => None,
+        };
         if self.repeat.repeat.is_some() {
             check_cycle(link).await?;
         }
@@ -102,10 +104,10 @@ impl Command for Start {
                 return Ok(Started { accepted: true, job, ..Started::default() });
             };
             if link.is_dry() {
-                return Err(self.plan(link)?);
+                return Err(self.plan(link).await?);
             }
             let what = self.repeat.repeat.map_or("the job runs".to_owned(), |count| format!("run {run} of {count}"));
-            let ended = wait(link, screen, limit, &what).await;
+            let ended = wait(link, screen, limit, &what, &chosen).await;
             let (elapsed_ms, at) = ended.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
             times_ms.push(elapsed_ms);
             line = at;
@@ -118,9 +120,9 @@ impl Command for Start {
 }
 
 impl Start {
-    fn selection(&self, link: &Link, name: &str) -> Result<(Vec<u8>, SelectJob), Failure> {
+    async fn selection(&self, link: &mut Link, name: &str) -> Result<(Vec<u8>, SelectJob), Failure> {
         let select = Select { name: name.to_owned(), line: self.line.unwrap_or(0), task: None };
-        let query = select.query(name, link.encoding, link.model)?;
+        let query = select.query(name, link).await?;
         Ok((link.encode("the job name", name)?, query))
     }
 
@@ -134,9 +136,9 @@ impl Start {
     }
 
     /// Notes in a dry run what follows a start.
-    fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
         link.plan(&ReadStatus.request(), "again and again until the job has ended");
-        let job = ReadJob::new(link.model, 0).map_err(usage)?;
+        let job = link.by_model(|model| ReadJob::new(model, 0)).await?;
         link.plan(&job.request(), "at which line it ended");
         plan_alarm(link)?;
         if let Some(count) = self.repeat.repeat {
@@ -188,13 +190,19 @@ async fn wait(
     screen: &Screen,
     limit: Option<Duration>,
     what: &str,
+    chosen: &Chosen,
 ) -> Result<(u64, Option<u32>), Failure> {
     let progress = screen.spinner(what);
     let began = Instant::now();
     let mut watch = Watch::new(limit);
     loop {
         let status = link.ask(&ReadStatus).await.map_err(|failure| lost("the job was started", failure))?;
-        match watch.look(began.elapsed(), status) {
+        let look = watch.look(began.elapsed(), status);
+        // A short job may be over before the first look: then it stands at another line than before.
+        if !watch.seen && matches!(look, Look::Running | Look::NotSeen) && has_gone_on(link, chosen).await? {
+            break;
+        }
+        match look {
             Look::Running => {}
             Look::Ended => break,
             Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
@@ -212,8 +220,17 @@ async fn wait(
     }
     let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
     // That it has ended is known whatever the controller says of its line.
-    let at = link.ask(&ReadJob::new(link.model, 0).map_err(usage)?).await;
+    let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
+    let at = link.ask(&question).await;
     Ok((elapsed_ms, at.ok().map(|job| job.line)))
+}
+
+/// Whether the job stands at another line than before it was started.
+async fn has_gone_on(link: &mut Link, chosen: &Chosen) -> Result<bool, Failure> {
+    let Chosen::Job(before) = chosen else { return Ok(false) };
+    let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
+    let now = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
+    Ok(now.is_ok_and(|now| now.name == before.name && now.line != before.line))
 }
 
 /// Job and line for the eye, where there is one; a controller that refuses is not asked to explain here.
@@ -221,7 +238,7 @@ async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure>
     if !is_seen {
         return Ok(None);
     }
-    let question = ReadJob::new(link.model, 0).map_err(usage)?;
+    let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
     let answer = link.try_ask(&question).await.map_err(|failure| lost("the job was started", failure))?;
     let encoding = link.encoding;
     Ok(answer.ok().map(|job| format!("{} line {}", encoding.decode(job.name.as_bytes()), job.line)))

@@ -10,11 +10,11 @@ use super::question::{Question, moved_meanwhile};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::yerc::link::{Link, Refusal, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
-use crate::command::yerc::orders::usage;
 use crate::command::yerc::position::{self, PositionReport, in_a_line};
 use crate::command::yerc::var::PositionData;
 use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
+use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
@@ -132,6 +132,9 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         for (group, named, flag) in unnamed {
             refuse_silent_zeros(link, group, named, flag).await?;
         }
+        if link.known_model() == Some(Model::Dx100) {
+            screen.note("warning: the layout of moves is unproven for a dx100; it is that of a DX200");
+        }
         let is_asked = authority.asks();
         if (is_asked || !no_wait)
             && let Some((position, _)) =
@@ -150,7 +153,7 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         let start = start.filter(|_| !no_wait);
         link.is_for("orders the motion").ask(&order).await?;
         if link.is_dry() && !no_wait {
-            plan_looks(link, group, coordinates)?;
+            plan_looks(link, group, coordinates).await?;
         }
         let mut moved = MotionReport { accepted: true, group: group.to_string(), ..MotionReport::default() };
         let Some(start) = start else { return Ok(moved) };
@@ -199,10 +202,10 @@ impl<Q: Query<Answer = ()>> Going<Q> {
 }
 
 /// Notes in a dry run what is asked while the robot moves.
-pub(super) fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
+pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
     let about = "again and again until the motion has ended";
     link.plan(&ReadStatus.request(), about);
-    let question = ReadPosition::new(link.model, group, coordinates).map_err(usage)?;
+    let question = link.by_model(|model| ReadPosition::new(model, group, coordinates)).await?;
     link.plan(&question.request(), about);
     plan_alarm(link)
 }
@@ -237,7 +240,7 @@ async fn refuse_silent_zeros(link: &mut Link, group: Group, named: usize, flag: 
     if named >= words(group) {
         return Ok(());
     }
-    let question = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
+    let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
     let Some(answer) = link.is_for("where axes stand that were not named").try_ask(&question).await.known()? else {
         link.plan_fit(group, Coordinates::Pulse);
         return Ok(());

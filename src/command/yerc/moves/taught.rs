@@ -51,16 +51,16 @@ impl Motion<'_> {
                 suits(*variable, group)?;
                 match read(link, *variable).await.known()? {
                     Some(value) => (Some(*variable), value),
-                    None => return Err(self.plan(link, *variable)?),
+                    None => return Err(self.plan(link, *variable).await?),
                 }
             }
         };
         let data = PositionData::of(&value);
         let mut report = match value {
             Value::Position(position) if position.kind.is_cartesian() => {
-                self.cartesian(context.link, position, name)?.run(context, &self.question(name, &value)).await?
+                self.cartesian(context.link, position, name).await?.run(context, &self.question(name, &value)).await?
             }
-            _ => self.pulses(context.link, &value, name)?.run(context, &self.question(name, &value)).await?,
+            _ => self.pulses(context.link, &value, name).await?.run(context, &self.question(name, &value)).await?,
         };
         report.leads_to(name.map(|name| name.to_string()), data);
         Ok(report)
@@ -99,7 +99,12 @@ impl Motion<'_> {
         }
     }
 
-    fn pulses(&self, link: &Link, value: &Value, name: Option<Reference>) -> Result<Going<MovePulse>, Failure> {
+    async fn pulses(
+        &self,
+        link: &mut Link,
+        value: &Value,
+        name: Option<Reference>,
+    ) -> Result<Going<MovePulse>, Failure> {
         let group = self.target.mover.group;
         let (robot, station) = self.target.mover.words();
         let mut order = PulseMove {
@@ -127,14 +132,14 @@ impl Motion<'_> {
             }
             _ => return Err(not_a_target(name, "it is neither pulses nor coordinates that the manual defines")),
         };
-        let order = MovePulse::new(link.model, self.kind, order).map_err(usage)?;
+        let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
         Ok(Going { order, group, goal, unnamed, no_wait: self.target.mover.no_wait })
     }
 
-    fn cartesian(
+    async fn cartesian(
         &self,
-        link: &Link,
+        link: &mut Link,
         position: Position,
         name: Option<Reference>,
     ) -> Result<Going<MoveCartesian>, Failure> {
@@ -150,7 +155,8 @@ impl Motion<'_> {
         (order.target, order.form, order.extended) = (target, position.form, position.extended);
         // The user coordinate number is of use with user coordinates alone; a move elsewhere takes 0.
         (order.tool, order.user) = (position.tool, if position.kind == PositionKind::User { position.user } else { 0 });
-        let order = MoveCartesian::new(link.model, self.kind, order).map_err(|error| {
+        let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
+        let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
             let why = error.to_string();
             not_a_target(name, &format!("a move cannot say it: {why}"))
                 .hint("teach it in pulses, which a move takes whole")
@@ -191,15 +197,16 @@ impl Motion<'_> {
     }
 
     /// Notes in a dry run what follows: nobody knows which of the two moves it is.
-    fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
+    async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
         let group = self.target.mover.group;
+        let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         if let Group::Robot(number) = group {
-            let base = ReadPosition::new(link.model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
+            let base = ReadPosition::new(model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
             link.plan(&base.request(), "where axes stand that were not named");
         }
         let reason = Reason::about("where it stands").depending_on("whether the variable holds pulses");
-        let pulse = ReadPosition::new(link.model, group, Coordinates::Pulse).map_err(usage)?;
-        let base = ReadPosition::new(link.model, group, Coordinates::Base).unwrap_or(pulse);
+        let pulse = ReadPosition::new(model, group, Coordinates::Pulse).map_err(usage)?;
+        let base = ReadPosition::new(model, group, Coordinates::Base).unwrap_or(pulse);
         link.plan_depending(&pulse.request(), &base.request(), reason);
         link.plan_fit(group, Coordinates::Pulse);
         let holds = format!("orders the motion, if {variable} holds");
@@ -215,7 +222,7 @@ impl Motion<'_> {
             base: [0; 3],
             station_axes: if robot == 0 { [word; 6] } else { [0; 6] },
         };
-        let order = |word| MovePulse::new(link.model, self.kind, pulses(word)).map_err(usage);
+        let order = |word| MovePulse::new(model, self.kind, pulses(word)).map_err(usage);
         let (first, second) = (order(0)?, order(-1)?);
         let about = format!("{holds} pulses");
         link.plan_depending(&first.request(), &second.request(), Reason::about(&about).depending_on("what it holds"));
@@ -225,7 +232,7 @@ impl Motion<'_> {
                 (order.coordinate, order.target) = (kind, [position.axes.padded()[0]; 6]);
                 (order.form, order.extended) = (Form(flag), ExtendedForm(flag));
                 (order.tool, order.user) = (flag, flag);
-                MoveCartesian::new(link.model, self.kind, order).map_err(usage)
+                MoveCartesian::new(model, self.kind, order).map_err(usage)
             };
             let first = coordinates(one, PositionKind::Base, 0)?;
             let second = coordinates(other, PositionKind::User, 1)?;
@@ -234,7 +241,7 @@ impl Motion<'_> {
             link.plan_depending(&first.request(), &second.request(), reason);
         }
         if !self.target.mover.no_wait {
-            plan_looks(link, group, Coordinates::Pulse)?;
+            plan_looks(link, group, Coordinates::Pulse).await?;
         }
         Ok(unknown())
     }

@@ -60,7 +60,8 @@ impl Command for Dump {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, .. } = context;
-        let references = once(self.references().map(|reference| in_form(reference, link.model, false)));
+        let model = link.model().await?;
+        let references = once(self.references().map(|reference| in_form(reference, model, false)));
         let mut place = self.place(&robot.name, link.is_dry())?;
         let progress = screen.spinner("reading");
         let answers = read_all(link, &references, |wanted, known| {
@@ -97,7 +98,7 @@ impl Command for Dump {
             robot: robot.name.clone(),
             target: robot.target.value.url().to_owned(),
             simulated: robot.target.value.is_simulated(),
-            model: link.model.name(),
+            model: model.name(),
             encoding: link.encoding.label(),
             taken_at,
             variables,

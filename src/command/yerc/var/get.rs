@@ -5,8 +5,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::entry::Entry;
-use super::in_form;
 use super::read::{once, read_all};
+use super::{in_form, model_of};
 use crate::command::frame::items;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yerc::complete;
@@ -50,8 +50,9 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Variables, Failure> {
         let link = context.link;
-        let named = self.variables.iter().flat_map(|named| &named.0);
-        let references = once(named.map(|reference| in_form(*reference, link.model, self.s16)));
+        let named = || self.variables.iter().flat_map(|named| &named.0);
+        let model = model_of(link, named(), self.s16).await?;
+        let references = once(named().map(|reference| in_form(*reference, model, self.s16)));
         let answers = read_all(link, &references, |_, _| {}).await?;
         let entries = references.iter().filter_map(|reference| {
             let answer = answers.get(reference)?;

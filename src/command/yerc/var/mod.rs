@@ -12,13 +12,17 @@ mod restore;
 mod set;
 mod sheet;
 
+use std::convert::Infallible;
+
 pub use self::entry::is_undefined;
 pub use self::part::unlike;
 pub use self::position::{PositionData, held};
+use super::link::Link;
 use crate::command::commands;
 use crate::command::frame::watch::Watch;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::variables::{Reference, VariableKind};
+use crate::failure::Failure;
 
 commands! {
     /// What can be done with variables.
@@ -39,6 +43,16 @@ commands! {
 /// The same variable, with strings in the form that the model and `--s16` want.
 fn in_form(reference: Reference, model: Model, short: bool) -> Reference {
     Reference::new(reference.kind.string_form(model, short), reference.number)
+}
+
+/// The model that variables are told for; the controller is asked only if there are strings among them.
+async fn model_of(
+    link: &mut Link,
+    references: impl Iterator<Item = &Reference> + Clone,
+    short: bool,
+) -> Result<Model, Failure> {
+    let form = |model| references.clone().map(|reference| in_form(*reference, model, short)).collect::<Vec<_>>();
+    link.model_for(|model| Ok::<_, Infallible>(form(model))).await
 }
 
 /// A kind by its letters, for `--kinds` and `--only`; strings read as the 32-byte form.

@@ -61,13 +61,14 @@ impl Command for Restore {
         let wrong = |error: String| {
             Failure::usage(format!("{shown}: {error}")).hint("nothing was sent; correct the file, or take a new dump")
         };
+        let model = link.model().await?;
         let dump = if is_sheet(&self.file) {
-            let reading = Reading { model: link.model, encoding: link.encoding };
+            let reading = Reading { model, encoding: link.encoding };
             let variables = sheet::read(&text_files::read(&self.file)?, reading);
             let variables = variables.map_err(|errors| text_files::faulty(&shown, &errors))?;
-            Dump { model: link.model, encoding: link.encoding, variables }
+            Dump { model, encoding: link.encoding, variables }
         } else {
-            Dump::parse(&self.read()?, link.model).map_err(wrong)?
+            Dump::parse(&self.read()?, model).map_err(wrong)?
         };
         let kept: Vec<(Reference, Option<Kept>)> =
             dump.variables.into_iter().filter(|(reference, _)| self.wants(*reference)).collect();
@@ -79,8 +80,8 @@ impl Command for Restore {
             return Err(Failure::usage(format!("{shown} holds no values of the kinds wanted"))
                 .hint("--only chooses the kinds; what is null in the file is left alone"));
         }
-        if dump.model != link.model {
-            screen.note(&format!("the dump was taken from a {}, this is a {}", dump.model, link.model));
+        if dump.model != model {
+            screen.note(&format!("the dump was taken from a {}, this is a {model}", dump.model));
         }
         if dump.encoding != link.encoding {
             screen.note(&format!("strings are written in {}, as the dump says", dump.encoding));

@@ -11,7 +11,7 @@ use super::super::orders::usage;
 use super::super::writes::{WriteOrder, before, write_all};
 use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
-use super::{in_form, listed};
+use super::{in_form, listed, model_of};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders;
 use crate::command::frame::orders::Old;
@@ -157,8 +157,10 @@ impl Command for Set {
         let mut fields = Vec::new();
         let mut words = Words::new();
         let mut named: Vec<(Reference, u8)> = Vec::new();
+        let references = self.assignments.iter().map(|assignment| &assignment.reference);
+        let model = model_of(link, references, self.s16).await?;
         for assignment in &self.assignments {
-            let reference = in_form(assignment.reference, link.model, self.s16);
+            let reference = in_form(assignment.reference, model, self.s16);
             let part = match &assignment.input {
                 Input::Field(field) => {
                     fields.push(Change::Field(reference, field.clone()));
@@ -278,7 +280,7 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
             };
             let json = printed(path)?;
             let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
-            let reading = Reading { model: link.model, encoding: link.encoding };
+            let reading = Reading { model: link.model_to_show(), encoding: link.encoding };
             reading.value(reference.kind, position).map_err(|error| {
                 let error = error.trim_start_matches([':', '.', ' ']);
                 wrong(error.to_owned()).hint(format!("it must be a position of {}", reference.kind.letters()))

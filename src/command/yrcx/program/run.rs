@@ -8,6 +8,7 @@ use serde::Serialize;
 use tokio::time::{Instant, timeout};
 
 use super::WhichOrAll;
+use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yrcx::link::{Link, Yrcx};
@@ -32,6 +33,8 @@ pub struct Run {
     #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
     #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
     wait: Option<Option<Duration>>,
+    #[command(flatten)]
+    repeat: Repeat,
 }
 
 /// How long a program may take to show that it runs; what was not seen by then was over before.
@@ -47,27 +50,61 @@ impl Command for Run {
     }
 
     fn intent(&self) -> String {
-        format!("run {}", self.which.describe())
+        format!("run {}{}", self.which.describe(), self.repeat.in_words())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
         let Context { link, screen, .. } = context;
         let order = self.which.put(link.draft(table::Command::ProgramRun)?).build()?;
-        link.ask(&order).await?;
-        let began = Instant::now();
         let what = self.which.describe();
         let done = New::of("program_state", "running", format!("started {what}"));
         let done = self.which.named(done).replaces(Old::UNREAD);
-        let Some(limit) = self.wait else { return Ok(Ran { done, ended: None, elapsed_ms: None }) };
-        if link.is_dry() {
-            link.then("what the controller shows is looked at until SO(13) tells that no program runs");
-            return Err(unknown());
+        let limit = self.wait.or(self.repeat.repeat.map(|_| None));
+        let mut times_ms = Vec::new();
+        let mut last = None;
+        for run in 1..=self.repeat.count() {
+            let early = |failure| ended_early(failure, self.repeat, &times_ms);
+            link.ask(&order).await.map_err(early)?;
+            let began = Instant::now();
+            let Some(limit) = limit else {
+                return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: None, with_stats: false });
+            };
+            if link.is_dry() {
+                return Err(self.plan(link));
+            }
+            let run = self.repeat.repeat.map_or("runs".to_owned(), |count| format!("runs, {run} of {count}"));
+            let _progress = screen.spinner(&format!("{what} {run}"));
+            let seen = wait(link, &what, began, limit).await.map_err(early)?;
+            let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
+            last = seen.then_some(elapsed_ms);
+            match last {
+                Some(elapsed_ms) => times_ms.push(elapsed_ms),
+                // Nobody knows whether it ended or has not begun: it is not started on top of that.
+                None if self.repeat.repeat.is_some() => return Err(early(not_seen(&what))),
+                None => {}
+            }
         }
-        let _progress = screen.spinner(&format!("{what} runs"));
-        let seen = wait(link, &what, began, limit).await?;
-        let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-        Ok(Ran { done, ended: Some(true), elapsed_ms: seen.then_some(elapsed_ms) })
+        let cycle = if self.repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
+        Ok(Ran { done, ended: Some(true), elapsed_ms: last, cycle, with_stats: self.repeat.stats })
     }
+}
+
+impl Run {
+    /// Says in a dry run what follows a start.
+    fn plan(&self, link: &mut Link) -> Failure {
+        link.then("what the controller shows is looked at until SO(13) tells that no program runs");
+        if let Some(count) = self.repeat.repeat {
+            link.then(&format!("after each end that was seen it is started again, {count} starts in all"));
+        }
+        unknown()
+    }
+}
+
+fn not_seen(what: &str) -> Failure {
+    let limit = duration::display(BEGIN_WITHIN);
+    let message =
+        format!("{what} was started, and was not seen running within {limit}: it may have ended at once, or not begun");
+    Failure::new(Kind::ConditionNotMet, message).hint("`yrcx info tasks` and `yrcx info line` tell how it stands")
 }
 
 /// Waits until no program runs; whether one was seen running.
@@ -117,8 +154,13 @@ pub struct Ran {
     done: Done,
     /// Whether it has ended; null if nobody waited.
     ended: Option<bool>,
-    /// From the acceptance to the end; null if nobody waited, or if it was over before it was seen.
+    /// From the acceptance to the end, of the last run if there were several; null if nobody waited, or if it was over
+    /// before it was seen.
     elapsed_ms: Option<u64>,
+    /// What the runs took; null unless there were several.
+    cycle: Option<CycleTimes>,
+    #[serde(skip)]
+    with_stats: bool,
 }
 
 impl Report for Ran {
@@ -127,11 +169,12 @@ impl Report for Ran {
             return self.done.view();
         }
         let state = Cell::from("ended").tone(Tone::Good);
-        let fields = vec![
+        let mut fields = vec![
             ("program", self.done.words().into()),
             ("state", state),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ];
+        fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
         View { sections: vec![Section::Fields(fields)] }
     }
 }

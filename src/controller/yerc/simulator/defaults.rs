@@ -7,11 +7,14 @@ use super::world::World;
 use crate::yerc::Model;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
-/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26).
+/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26; the letters of the
+/// software are those that [`Model::from_software`] knows a controller by).
 pub(super) const fn versions(model: Model) -> [&'static str; 4] {
     match model {
         Model::Fs100 => ["FS1.14.00A(JP/US)-00", "MPP0003-A0*", "GENERAL", "12.34"],
-        Model::Dx200 => ["DS2.07.00A(JP/US)-00", "ES0165D-A0*", "ARC WELDING", "12.34"],
+        Model::Dx100 => ["DS3.93.00A(JP/US)-14", "ES0165D-A0*", "ARC WELDING", "12.34"],
+        Model::Dx200 => ["DN2.07.00A(JP/US)-00", "ES0165D-A0*", "ARC WELDING", "12.34"],
+        Model::Yrc1000 => ["YAS2.80.00A(JP/US)-00", "ES0165D-A0*", "ARC WELDING", "12.34"],
     }
 }
 

@@ -1,4 +1,4 @@
-//! A simulated FS100 or DX200: a controller with a life, without sockets and without a clock.
+//! A simulated FS100, DX100, DX200 or YRC1000: a controller with a life, without sockets and without a clock.
 //!
 //! A server hands it datagrams and the time, and sends what it answers. It shares the table of commands and the payload
 //! types with the client, but checks everything by itself and more strictly than a real controller is known to.

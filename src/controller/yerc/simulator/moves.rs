@@ -25,7 +25,7 @@ impl World {
         // Only the FS100 manual prints 25 words, and FS100s are known to take 26.
         let layouts = match self.model {
             Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
-            Model::Dx200 => &[MoveLayout::Words26],
+            Model::Dx100 | Model::Dx200 | Model::Yrc1000 => &[MoveLayout::Words26],
         };
         if !layouts.iter().any(|layout| layout.size() == data.len()) {
             return Err(Refusal::Added(code::REQUEST_SIZE));

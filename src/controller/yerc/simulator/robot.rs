@@ -39,9 +39,8 @@ pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
 /// Whether this controller has something that not every one has.
 pub(super) fn has(world: &World, availability: Availability) -> bool {
     match (availability, world.model) {
-        (Availability::Both, _) | (_, Model::Dx200) => true,
         (Availability::Fs114, Model::Fs100) => software(&world.software) >= FS_FULL_SOFTWARE,
-        (Availability::Dx200, Model::Fs100) => false,
+        (availability, model) => availability.on(model),
     }
 }
 

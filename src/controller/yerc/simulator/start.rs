@@ -36,7 +36,7 @@ pub struct Start {
 }
 
 /// A start state that names the keys there are; each can be left out.
-pub const EXAMPLE: &str = r#"model = "dx200"                 # or "fs100"
+pub const EXAMPLE: &str = r#"model = "dx200"                 # or "fs100", "dx100", "yrc1000"
 mode = "play"                   # or "teach"
 remote = true                   # command remote (#82015)
 servo = true
@@ -45,7 +45,7 @@ play_write = true               # S2C541 = 0: variables can be written in play m
 clock = "2026/03/14 08:00"
 installed = "2025/10/10 15:49"  # when running times began to count
 hours = { control = 2345, servo = 1890, playback = 1234, motion = 987 }
-software = "DS2.07.00A(JP/US)-00"
+software = "DN2.07.00A(JP/US)-00"
 robot_model = "ES0165D-A0*"
 application = "ARC WELDING"
 parameter_version = "12.34"
@@ -434,11 +434,11 @@ fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
     let axes = source.read(&entries.robot_axes, |axes| {
         Some(*axes).filter(|axes| (6..=7).contains(axes)).ok_or_else(|| "a robot has 6 or 7 axes".to_owned())
     })?;
-    let most = |family| match (family, entries.model) {
-        (Family::Station, Model::Fs100) => 3,
-        (Family::Station, Model::Dx200) => 24,
-        (Family::Robot | Family::Base, Model::Fs100) => 2,
-        (Family::Robot | Family::Base, Model::Dx200) => 8,
+    let (robots, bases, stations) = crate::yerc::group::Group::counts(entries.model);
+    let most = |family| match family {
+        Family::Robot => u16::from(robots),
+        Family::Base => bases.into(),
+        Family::Station => stations.into(),
     };
     let mut groups = Vec::<Group>::new();
     source.each(&entries.groups, |name| {

@@ -139,8 +139,8 @@ impl World {
         let names = self.files.list(filter).ok_or(Refusal::Added(code::PATH))?;
         match (names.is_empty(), self.model) {
             (false, _) => Ok(FileContent::Content(names.into())),
-            (true, Model::Dx200) => Ok(FileContent::Nothing(code::NO_MATCH)),
             (true, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
+            (true, _) => Ok(FileContent::Nothing(code::NO_MATCH)),
         }
     }
 
@@ -149,9 +149,9 @@ impl World {
         check_stored_name(name)?;
         match (self.files.get(name), self.model) {
             (Some(content), _) if content.size() > 0 => Ok(FileContent::Content(content.clone())),
-            (_, Model::Dx200) => Ok(FileContent::Nothing(code::NO_DATA)),
             (None, Model::Fs100) if name.ends_with(JOB) => Err(Refusal::Added(code::NO_SUCH_JOB)),
             (_, Model::Fs100) => Err(Refusal::Added(code::NO_SUCH_FILE)),
+            _ => Ok(FileContent::Nothing(code::NO_DATA)),
         }
     }
 
@@ -185,8 +185,8 @@ impl World {
         }
         if OWN.iter().any(|extension| name.ends_with(extension)) {
             let code = match self.model {
-                Model::Dx200 => code::NO_OVERWRITE,
                 Model::Fs100 => code::NOT_LOADED,
+                _ => code::NO_OVERWRITE,
             };
             return Err(Refusal::Added(code));
         }
@@ -220,8 +220,8 @@ impl World {
     pub(super) fn may_back_up(&self) -> Result<(), Refusal> {
         if !self.switches.remote {
             return Err(Refusal::Added(match self.model {
-                Model::Dx200 => code::BACKUP_MODE,
                 Model::Fs100 => code::MODE,
+                _ => code::BACKUP_MODE,
             }));
         }
         if self.is_running() {

@@ -161,8 +161,8 @@ impl FileServer {
         if let Some(transfer) = self.transfer.as_mut().filter(|transfer| transfer.is_open()) {
             if transfer.peer != peer && transfer.is_busy() {
                 let busy = match world.model {
-                    Model::Dx200 => code::FILE_BUSY,
                     Model::Fs100 => code::FILE_IN_USE,
+                    _ => code::FILE_BUSY,
                 };
                 return Some(refusal(world, request, Refusal::Added(busy)));
             }

@@ -93,12 +93,12 @@ impl Refusal {
     pub(super) fn status(self, model: Model) -> Status {
         let plain = |code| Status { code, ..Status::OK };
         match (self, model) {
-            (Self::Command, Model::Dx200) => plain(0x08),
-            (Self::Attribute, Model::Dx200) => plain(0x09),
-            (Self::Instance, Model::Dx200) => plain(0x28),
             (Self::Command, Model::Fs100) => Status::refused(code::UNDEFINED_COMMAND),
             (Self::Attribute, Model::Fs100) => Status::refused(code::ATTRIBUTE),
             (Self::Instance, Model::Fs100) => Status::refused(code::INSTANCE),
+            (Self::Command, _) => plain(0x08),
+            (Self::Attribute, _) => plain(0x09),
+            (Self::Instance, _) => plain(0x28),
             (Self::Added(added), _) => Status::refused(added),
         }
     }

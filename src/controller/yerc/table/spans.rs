@@ -46,7 +46,9 @@ impl Span {
 pub struct Instances {
     /// On an FS100; empty where the command does not exist.
     pub fs100: &'static [Span],
-    /// On a DX200.
+    /// On a DX100.
+    pub dx100: &'static [Span],
+    /// On a DX200, and a YRC1000.
     pub dx200: &'static [Span],
 }
 
@@ -55,7 +57,8 @@ impl Instances {
     pub const fn for_model(&self, model: Model) -> &'static [Span] {
         match model {
             Model::Fs100 => self.fs100,
-            Model::Dx200 => self.dx200,
+            Model::Dx100 => self.dx100,
+            Model::Dx200 | Model::Yrc1000 => self.dx200,
         }
     }
 
@@ -109,11 +112,12 @@ const fn no(first: u16, last: u16, meaning: &'static str, prefix: &'static str, 
 }
 
 const fn both(spans: &'static [Span]) -> Instances {
-    Instances { fs100: spans, dx200: spans }
+    Instances { fs100: spans, dx100: spans, dx200: spans }
 }
 
+/// Of a DX100 as of a DX200.
 const fn each(fs100: &'static [Span], dx200: &'static [Span]) -> Instances {
-    Instances { fs100, dx200 }
+    Instances { fs100, dx100: dx200, dx200 }
 }
 
 pub(super) const ALARMS: Instances =
@@ -164,9 +168,11 @@ pub(super) const GROUPS: Instances = each(
     &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
     &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
 );
-/// The numbers of an FS100 class follow from 128 groups each; the manual prints two of them differently.
-pub(super) const IO: Instances = each(
-    &[
+/// The numbers of an FS100 class follow from 128 groups each; the manual prints two of them differently. A DX100 has its
+/// network signals where an FS100 has them (`WriteSingleIO.srv` of `motoman_msgs`: inputs from 25010 on); so many may be
+/// written as an FS100 has, and whatever may be there can be read.
+pub(super) const IO: Instances = Instances {
+    fs100: &[
         ro(1, 128, "robot user input"),
         ro(1001, 1128, "robot user output"),
         ro(2001, 2128, "external input"),
@@ -180,7 +186,21 @@ pub(super) const IO: Instances = each(
         ro(8001, 8064, "robot control status"),
         ro(8201, 8220, "pseudo input"),
     ],
-    &[
+    dx100: &[
+        ro(1, 512, "robot user input"),
+        ro(1001, 1512, "robot user output"),
+        ro(2001, 2500, "external input"),
+        rw(2501, 2628, "network input"),
+        ro(3001, 3500, "external output"),
+        ro(3501, 3628, "network output"),
+        ro(4001, 4160, "robot system input"),
+        ro(5001, 5300, "robot system output"),
+        ro(6001, 6064, "interface panel input"),
+        ro(7001, 7999, "auxiliary relay"),
+        ro(8001, 8128, "robot control status"),
+        ro(8201, 8220, "pseudo input"),
+    ],
+    dx200: &[
         ro(1, 512, "robot user input"),
         ro(1001, 1512, "robot user output"),
         ro(2001, 2512, "external input"),
@@ -194,7 +214,7 @@ pub(super) const IO: Instances = each(
         ro(8001, 8128, "robot control status"),
         ro(8201, 8220, "pseudo input"),
     ],
-);
+};
 pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);
 
 const fn variables(last: u16) -> [Span; 2] {
@@ -204,7 +224,7 @@ const fn variables(last: u16) -> [Span; 2] {
 
 pub(super) const VARIABLES: Instances = both(&variables(99));
 pub(super) const POSITION_VARIABLES: Instances = both(&variables(127));
-pub(super) const LONG_STRINGS: Instances = each(&[], &variables(99));
+pub(super) const LONG_STRINGS: Instances = Instances { fs100: &[], dx100: &[], dx200: &variables(99) };
 pub(super) const RESETS: Instances = both(&[rw(1, 1, "reset alarm"), rw(2, 2, "cancel error")]);
 pub(super) const SWITCHES: Instances = both(&[rw(1, 1, "hold"), rw(2, 2, "servo power"), rw(3, 3, "hlock")]);
 pub(super) const CYCLE: Instances = both(&[rw(2, 2, "cycle")]);

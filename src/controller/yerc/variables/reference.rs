@@ -92,9 +92,9 @@ impl VariableKind {
     /// The string form to use: 32 bytes where the model has them and `short` does not ask for 16.
     #[must_use]
     pub const fn string_form(self, model: Model, short: bool) -> Self {
-        match (self, model) {
-            (Self::S16 | Self::S32, Model::Dx200) if !short => Self::S32,
-            (Self::S16 | Self::S32, _) => Self::S16,
+        match self {
+            Self::S16 | Self::S32 if model.has_long_strings() && !short => Self::S32,
+            Self::S16 | Self::S32 => Self::S16,
             _ => self,
         }
     }

@@ -102,7 +102,7 @@ fn every_readable_command_answers_its_size() {
     }
     let mut bench = Bench::default();
     let info = bench.read(0x89, 11);
-    assert_eq!(&info[..24], b"DS2.07.00A(JP/US)-00\0\0\0\0");
+    assert_eq!(&info[..24], b"DN2.07.00A(JP/US)-00\0\0\0\0");
     assert_eq!(&info[24..], b"ES0165D-A0*\0\0\0\0\x0012.34\0\0\0");
     assert_eq!(bench.read(0x89, 12)[24..], [0; 24], "a robot that does not exist has no name");
 }

@@ -1,0 +1,320 @@
+//! Which model a controller is: named, remembered, or asked when a request depends on it.
+//!
+//! Most requests are the same bytes to every model; they are sent without knowing. For the others the system information
+//! (0x89) is read first, once on a connection: the version of the software begins with letters that tell the controller.
+
+use armctl_controller::Risk;
+use armctl_controller::yerc::Model;
+use armctl_controller::yerc::group::Group;
+use armctl_controller::yerc::payload::Text;
+use armctl_controller::yerc::query::{Query as _, ReadSystemInfo, SystemPart};
+use armctl_controller::yerc::request::Request;
+use armctl_controller::yerc::session::Reply;
+use armctl_controller::yerc::table::{Availability, service};
+use armctl_controller::yerc::wire::Status;
+
+use super::{Asked, Client, Error, Refusal};
+use crate::Reason;
+
+/// Bytes of a version.
+const VERSION: usize = 24;
+/// The command that tells it.
+const SYSTEM_INFO: u16 = 0x89;
+/// What requests are made for where every model takes the same.
+const USUAL: Model = Model::Dx200;
+
+/// What a controller says it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Identity {
+    /// The model that its software is of, if it is that of a known one.
+    pub model: Option<Model>,
+    /// Version of the system software.
+    pub software: Text<VERSION>,
+}
+
+/// What is known of the model, and by whom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Known {
+    /// Nothing yet.
+    Nothing,
+    /// It was named, and is not asked.
+    Named(Model),
+    /// It was this one another time.
+    Remembered(Model),
+    /// The controller told it on this connection.
+    Told(Model),
+    /// A dry run has nobody to ask.
+    Assumed,
+}
+
+impl Known {
+    pub(super) fn from_named(model: Option<Model>) -> Self {
+        model.map_or(Self::Nothing, Self::Named)
+    }
+
+    const fn model(self) -> Option<Model> {
+        match self {
+            Self::Nothing | Self::Assumed => None,
+            Self::Named(model) | Self::Remembered(model) | Self::Told(model) => Some(model),
+        }
+    }
+}
+
+impl Client {
+    /// The model, as far as it is known without asking.
+    pub fn known_model(&self) -> Option<Model> {
+        self.known.model()
+    }
+
+    /// The model for what is only shown: the known one, or the usual one.
+    pub fn model_to_show(&self) -> Model {
+        self.known_model().unwrap_or(USUAL)
+    }
+
+    /// Takes the model for the one that it was another time, until the controller says otherwise. Nothing where it was
+    /// named, or told.
+    pub fn remember(&mut self, model: Model) {
+        if self.known == Known::Nothing {
+            self.known = Known::Remembered(model);
+        }
+    }
+
+    /// What the controller said on this connection that it is, whether it was asked for that or for its information.
+    pub fn identity(&self) -> Option<&Identity> {
+        self.identity.as_ref()
+    }
+
+    /// The model; asks the controller if nobody knows it. A dry run notes the question, and goes on as for a DX200.
+    ///
+    /// # Errors
+    /// [`Error::ModelRefused`], [`Error::UnknownSoftware`]; what can go wrong on the way.
+    pub async fn model(&mut self) -> Result<Model, Error> {
+        match self.known {
+            Known::Nothing => self.ask_model().await,
+            Known::Assumed => {
+                self.shown_for = Some(USUAL);
+                Ok(USUAL)
+            }
+            Known::Named(model) | Known::Remembered(model) | Known::Told(model) => Ok(model),
+        }
+    }
+
+    /// A model to make something for: the known one; any where all make the same, or none can; else the controller is
+    /// asked first. One that is remembered and cannot, where another can, is asked again.
+    pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Error> {
+        let can = || Model::ALL.iter().any(|model| make(*model).is_ok());
+        match self.known {
+            Known::Named(model) | Known::Told(model) => Ok(model),
+            Known::Remembered(model) if self.is_dry() || make(model).is_ok() || !can() => Ok(model),
+            Known::Remembered(_) => self.ask_model().await,
+            Known::Nothing | Known::Assumed => {
+                let first = make(USUAL);
+                let mut all = Model::ALL.into_iter().map(&make);
+                let is_open = match &first {
+                    Ok(first) => !all.all(|made| made.is_ok_and(|made| made == *first)),
+                    Err(_) => can(),
+                };
+                self.shown_for = None;
+                if !is_open {
+                    return Ok(USUAL);
+                }
+                let told = self.model().await?;
+                if self.is_dry() && first.is_err() {
+                    // Nobody can be asked: it is shown for one that can.
+                    self.shown_for = Model::ALL.into_iter().find(|model| make(*model).is_ok());
+                }
+                Ok(self.shown_for.unwrap_or(told))
+            }
+        }
+    }
+
+    /// Reads what the controller is.
+    async fn ask_model(&mut self) -> Result<Model, Error> {
+        let question = ReadSystemInfo::new(USUAL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
+        let request = question.request();
+        if self.is_dry() {
+            let purpose = self.purpose.take();
+            self.plan_if(&request, Reason::about("which model the controller is"));
+            self.purpose = purpose;
+            (self.known, self.shown_for) = (Known::Assumed, Some(USUAL));
+            return Ok(USUAL);
+        }
+        let reply = self.raw(&request).await?;
+        if !reply.status.is_ok() {
+            return Err(Error::ModelRefused(Refusal { status: reply.status, to: Asked::from(&request) }));
+        }
+        question.decode(&reply.data)?;
+        match self.identity() {
+            Some(Identity { model: Some(model), .. }) => Ok(*model),
+            Some(Identity { software, .. }) => {
+                Err(Error::UnknownSoftware { version: software.as_bytes().escape_ascii().to_string() })
+            }
+            None => Err(Error::UnknownSoftware { version: String::new() }),
+        }
+    }
+
+    /// Notes what any answer says of the software.
+    pub(super) fn hear(&mut self, request: &Request, reply: &Reply) {
+        let tells_all = request.service == service::GET_ALL;
+        let tells_version = tells_all || request.service == service::GET_SINGLE && request.attribute == 1;
+        if request.command != SYSTEM_INFO || !tells_version || !reply.status.is_ok() || reply.data.len() < VERSION {
+            return;
+        }
+        let software = Text::cut(&reply.data[..VERSION]);
+        let model = Model::from_software(software.as_bytes());
+        if let (Some(model), false) = (model, matches!(self.known, Known::Named(_))) {
+            self.known = Known::Told(model);
+        }
+        self.identity = Some(Identity { model, software });
+    }
+
+    /// After a "no": whether the controller is still what it is remembered as, where the refusal may come of that.
+    ///
+    /// # Errors
+    /// [`Error::AnotherModel`] if it is not.
+    pub(super) async fn doubt(&mut self, request: &Request, status: Status) -> Result<(), Error> {
+        let Known::Remembered(model) = self.known else { return Ok(()) };
+        // An FS100 with older software refuses these as well.
+        if request.row().is_some_and(|row| row.availability == Availability::Fs114) {
+            return Ok(());
+        }
+        let changes = request.risk() > Risk::Read;
+        if !(is_of_another_model(status) || changes && is_of_another_range(status)) {
+            return Ok(());
+        }
+        // Whatever comes of the question, the refusal is what is told.
+        let found = self.ask_model().await.unwrap_or(model);
+        if self.known == Known::Remembered(model) {
+            self.known = Known::Told(model);
+        }
+        if found == model { Ok(()) } else { Err(Error::AnotherModel { remembered: model, found }) }
+    }
+}
+
+/// Command or service that the controller does not know (DX 4 and 5).
+const fn is_of_another_model(status: Status) -> bool {
+    status.code == 0x08 || status.added == 0xA000
+}
+
+/// An instance or a size that it does not know (DX 4 and 5).
+const fn is_of_another_range(status: Status) -> bool {
+    status.code == 0x28 || matches!(status.added, 0xA001 | 0xB002 | 0xB003 | 0xB004)
+}
+
+#[cfg(test)]
+mod tests {
+    use armctl_controller::yerc::query::{Coordinates, QueryError, ReadPosition, ReadVariable};
+    use armctl_controller::yerc::simulator::Start;
+    use armctl_controller::yerc::variables::VariableKind;
+
+    use super::*;
+    use crate::yerc::{Endpoint, Options};
+
+    /// To a simulator that nobody knows the model of.
+    async fn unknown(start: &str) -> Client {
+        let start = Start::parse(start, |_| Err("there are no files".to_owned())).unwrap();
+        let endpoint = Endpoint::Simulator { start: Box::new(start), faults: None };
+        let mut client = Client::connect(endpoint, Options::auto()).await.unwrap();
+        client.known = Known::Nothing;
+        client
+    }
+
+    #[expect(clippy::unnecessary_wraps, reason = "what is made for a model may fail")]
+    fn strings(model: Model) -> Result<VariableKind, QueryError> {
+        Ok(VariableKind::S32.string_form(model, false))
+    }
+
+    fn third(model: Model) -> Result<ReadPosition, QueryError> {
+        ReadPosition::new(model, Group::Robot(3), Coordinates::Pulse)
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_is_the_same_to_every_model_is_sent_without_knowing_it() {
+        let mut client = unknown("").await;
+        let first = |model| ReadPosition::new(model, Group::R1, Coordinates::Base);
+        let model = client.model_for(first).await.unwrap();
+        client.ask(&first(model).unwrap()).await.unwrap();
+        assert_eq!((client.known_model(), client.totals.exchanges), (None, 1));
+        let nobody = |_| Err::<(), _>("no model has it");
+        assert!(client.model_for(nobody).await.is_ok(), "what no model has is no question");
+        assert_eq!(client.totals.exchanges, 1);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_differs_is_asked_for_once() {
+        for model in Model::ALL {
+            let mut client = unknown(&format!("model = \"{model}\"")).await;
+            assert_eq!(client.model_for(strings).await.unwrap(), model);
+            assert_eq!(client.model_for(third).await.unwrap(), model);
+            assert_eq!(client.model().await.unwrap(), model);
+            assert_eq!((client.known_model(), client.totals.exchanges), (Some(model), 1), "{model}");
+            assert_eq!(client.identity().unwrap().model, Some(model));
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_controller_that_tells_nothing_known_is_not_guessed_at() {
+        let mut client = unknown("software = \"XS1.00 \\u001b\"").await;
+        let error = client.model().await.unwrap_err();
+        assert!(matches!(&error, Error::UnknownSoftware { version } if version == "XS1.00 \\x1b"), "{error}");
+        assert_eq!((client.known_model(), client.identity().unwrap().model), (None, None));
+        assert!(client.model_for(strings).await.is_err());
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_is_remembered_counts_until_the_controller_says_otherwise() {
+        let mut client = unknown("model = \"fs100\"").await;
+        client.remember(Model::Dx200);
+        assert_eq!(client.model_for(strings).await.unwrap(), Model::Dx200);
+        assert_eq!(client.totals.exchanges, 0);
+        // No FS100 has it; a refusal of that kind has the controller asked what it is.
+        let error = client.try_ask(&ReadVariable::new(VariableKind::S32, 0)).await.unwrap_err();
+        let (remembered, found) = (Model::Dx200, Model::Fs100);
+        assert!(matches!(error, Error::AnotherModel { .. }), "{error}");
+        assert_eq!(error.to_string(), Error::AnotherModel { remembered, found }.to_string());
+        assert_eq!(client.known_model(), Some(Model::Fs100));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_refusal_of_another_kind_asks_nothing() {
+        let mut client = unknown("").await;
+        client.remember(Model::Dx200);
+        for _ in 0..2 {
+            assert!(client.try_ask(&third(Model::Dx200).unwrap()).await.unwrap().is_err(), "there is one robot");
+        }
+        assert_eq!((client.totals.exchanges, client.identity()), (2, None));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_the_remembered_model_cannot_is_asked_again() {
+        let mut client = unknown("").await;
+        client.remember(Model::Fs100);
+        assert_eq!(client.model_for(third).await.unwrap(), Model::Dx200);
+        assert_eq!(client.totals.exchanges, 1);
+        client.remember(Model::Fs100);
+        assert_eq!(client.known_model(), Some(Model::Dx200), "what was told is not forgotten");
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn what_is_read_anyway_tells_the_model_too() {
+        let mut client = unknown("model = \"yrc1000\"").await;
+        client.ask(&ReadSystemInfo::new(USUAL, SystemPart::Application(1)).unwrap()).await.unwrap();
+        assert_eq!((client.known_model(), client.totals.exchanges), (Some(Model::Yrc1000), 1));
+    }
+
+    #[tokio::test]
+    async fn a_dry_run_notes_the_question_and_what_depends_on_it() {
+        let mut client = Client::dry_run(Options::auto());
+        let same = ReadVariable::new(VariableKind::B, 0);
+        assert!(client.model_for(|_| Ok::<_, QueryError>(())).await.is_ok());
+        client.plan_all(&[same]).unwrap_err();
+        let model = client.model_for(strings).await.unwrap();
+        client.plan_all(&[ReadVariable::new(strings(model).unwrap(), 0)]).unwrap_err();
+        let frames = client.take_plan().frames;
+        assert_eq!(frames.len(), 3, "{frames:?}");
+        assert!(frames[0]["depends_on"].is_null());
+        assert_eq!(frames[1]["about"], "which model the controller is");
+        assert!(frames[1]["depends_on"].is_null(), "{}", frames[1]);
+        assert_eq!(frames[2]["depends_on"], "which model it is; shown as for a dx200");
+    }
+}

@@ -1,0 +1,231 @@
+//! The model of a controller, as settings say it, and what controllers told of theirs.
+//!
+//! Where nobody names a model, the controller is asked for its software once, and what it told is kept in the state folder of
+//! the user, by address. No file of the user is changed for it, and what is kept is only an aid: without it the controller is
+//! asked again.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use etcetera::BaseStrategy as _;
+use serde::{Deserialize, Serialize};
+
+use super::target::Address;
+use crate::controller::yerc::Model;
+use crate::files;
+
+/// What a setting says of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ModelSetting {
+    /// The controller is asked.
+    #[default]
+    Auto,
+    /// This one.
+    Is(Model),
+}
+
+impl ModelSetting {
+    /// How the setting says that the controller is asked.
+    pub const AUTO: &str = "auto";
+
+    /// The model, if it is named.
+    pub const fn named(self) -> Option<Model> {
+        match self {
+            Self::Auto => None,
+            Self::Is(model) => Some(model),
+        }
+    }
+}
+
+impl fmt::Display for ModelSetting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.named().map_or(Self::AUTO, Model::name))
+    }
+}
+
+impl FromStr for ModelSetting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.eq_ignore_ascii_case(Self::AUTO) {
+            return Ok(Self::Auto);
+        }
+        text.parse().map(Self::Is).map_err(|error: String| error.replace("there are ", "there are auto, "))
+    }
+}
+
+/// What a controller told of itself, and when.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ToldModel {
+    #[serde(with = "by_name")]
+    model: Model,
+    software: String,
+    /// Seconds since 1970.
+    at: u64,
+}
+
+/// So long what was told is taken for granted; then it is asked once more.
+const FRESH: Duration = Duration::from_secs(24 * 3600);
+/// What is older is left out of the file.
+const KEPT: Duration = Duration::from_secs(90 * 24 * 3600);
+/// A file that is larger is none that was written here.
+const MOST: u64 = 1 << 20;
+
+impl ToldModel {
+    /// Told just now.
+    pub fn now(model: Model, software: String) -> Self {
+        Self { model, software, at: now() }
+    }
+
+    /// The model.
+    pub const fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Version of the system software.
+    pub fn software(&self) -> &str {
+        &self.software
+    }
+
+    /// Whether another time the same was told.
+    pub fn says(&self, other: &Self) -> bool {
+        (self.model, &self.software) == (other.model, &other.software)
+    }
+
+    /// How long ago it was told.
+    pub fn age(&self) -> Duration {
+        Duration::from_secs(now().saturating_sub(self.at))
+    }
+
+    /// Whether it is taken for granted. A clock that went back makes nothing fresh.
+    pub fn is_fresh(&self) -> bool {
+        self.at <= now() && self.age() < FRESH
+    }
+}
+
+/// What the controllers at each address told.
+#[derive(Debug, Clone)]
+pub struct ToldModels {
+    path: PathBuf,
+}
+
+impl ToldModels {
+    /// Those of this user, if he has a home.
+    pub fn of_user() -> Option<Self> {
+        state_folder().map(|folder| Self { path: folder.join("models.json") })
+    }
+
+    /// What the controller at an address told last.
+    pub fn find(&self, address: &Address) -> Option<ToldModel> {
+        self.read().remove(&address.key()?)
+    }
+
+    /// Keeps what it told.
+    pub fn keep(&self, address: &Address, told: ToldModel) -> io::Result<()> {
+        let Some(key) = address.key() else { return Ok(()) };
+        std::fs::create_dir_all(files::folder_of(&self.path))?;
+        let _turn = files::turn(&self.path)?;
+        let mut all = self.read();
+        all.retain(|_, told| told.age() < KEPT);
+        all.insert(key, told);
+        self.write(&all)
+    }
+
+    /// Forgets what it told.
+    pub fn forget(&self, address: &Address) -> io::Result<()> {
+        let Some(key) = address.key() else { return Ok(()) };
+        let _turn = files::turn(&self.path)?;
+        let mut all = self.read();
+        if all.remove(&key).is_some() { self.write(&all) } else { Ok(()) }
+    }
+
+    fn write(&self, all: &BTreeMap<String, ToldModel>) -> io::Result<()> {
+        files::replace(&self.path, serde_json::to_string_pretty(all)?.as_bytes())
+    }
+
+    /// All of them; none where there is no such file, or something else in it.
+    fn read(&self) -> BTreeMap<String, ToldModel> {
+        let text = files::text(&self.path, MOST).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    }
+}
+
+/// The folder for what this program remembers of its user between two runs, if he has a home.
+pub fn state_folder() -> Option<PathBuf> {
+    let folders = etcetera::choose_base_strategy().ok()?;
+    Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
+}
+
+fn now() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
+}
+
+/// A model by its name.
+mod by_name {
+    use serde::{Deserialize as _, Deserializer, Serializer, de};
+
+    use super::Model;
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands references")]
+    pub fn serialize<S: Serializer>(model: &Model, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(model.name())
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Model, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::target::Target;
+
+    fn address(url: &str) -> Address {
+        url.parse::<Target>().unwrap().address()
+    }
+
+    #[test]
+    fn what_was_told_is_kept_by_address() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = ToldModels { path: folder.path().join("new").join("models.json") };
+        let [one, other] = ["udp://192.0.2.1", "udp://192.0.2.2"].map(address);
+        assert_eq!(store.find(&one), None);
+        let told = ToldModel::now(Model::Yrc1000, "YAS2.02".to_owned());
+        store.keep(&one, told.clone()).unwrap();
+        assert_eq!(store.find(&address("udp://192.0.2.1:10040?model=auto")), Some(told.clone()));
+        assert!(told.is_fresh());
+        assert_eq!(store.find(&other), None);
+        store.keep(&other, ToldModel { at: 1, ..told.clone() }).unwrap();
+        assert!(!store.find(&other).unwrap().is_fresh());
+        store.keep(&one, ToldModel { at: u64::MAX, ..told.clone() }).unwrap();
+        assert!(!store.find(&one).unwrap().is_fresh(), "a clock that went back");
+        assert_eq!(store.find(&other), None, "too old to be kept any longer");
+    }
+
+    #[test]
+    fn a_damaged_file_is_as_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = ToldModels { path: folder.path().join("models.json") };
+        let one = address("udp://192.0.2.1");
+        for text in ["", "{", "[]", "{\"udp 192.0.2.1 10040\": {\"model\": \"x\", \"software\": \"\", \"at\": 1}}"] {
+            std::fs::write(&store.path, text).unwrap();
+            assert_eq!(store.find(&one), None, "{text}");
+        }
+        store.keep(&one, ToldModel::now(Model::Dx100, String::new())).unwrap();
+        assert_eq!(store.find(&one).map(|told| told.model()), Some(Model::Dx100));
+    }
+
+    #[test]
+    fn settings_name_a_model_or_have_it_asked() {
+        assert_eq!("auto".parse(), Ok(ModelSetting::Auto));
+        assert_eq!("YRC1000".parse(), Ok(ModelSetting::Is(Model::Yrc1000)));
+        let error = "xrc".parse::<ModelSetting>().unwrap_err();
+        assert_eq!(error, "unknown model 'xrc'; there are auto, fs100, dx100, dx200 and yrc1000");
+        assert_eq!(ModelSetting::Is(Model::Fs100).to_string(), "fs100");
+    }
+}
