@@ -8,7 +8,6 @@ use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Component, Path, PathBuf};
 
 use anyhow::Context as _;
-use etcetera::BaseStrategy as _;
 use tempfile::NamedTempFile;
 
 use crate::controller::text::{EncodeError, Encoding, unhex};
@@ -16,6 +15,7 @@ use crate::failure::Failure;
 use crate::files;
 pub use crate::files::folder_of;
 use crate::output::escape;
+pub use crate::settings::state_folder;
 
 /// Longest name that the usual file systems take.
 const MAX_LOCAL_NAME: usize = 255;
@@ -136,12 +136,6 @@ impl Target {
         let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
         Ok(Draft { file: BufWriter::with_capacity(BUFFER, file), target: self.clone() })
     }
-}
-
-/// The folder for what this program remembers of its user between two runs, if he has a home.
-pub fn state_folder() -> Option<PathBuf> {
-    let folders = etcetera::choose_base_strategy().ok()?;
-    Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 /// A file that is being written beside its place; dropped, it is removed.

@@ -23,6 +23,9 @@ const PAUSE: Duration = Duration::from_millis(100);
 /// More things than these are told at the beginning only if they have a name of their own, or are on.
 const MANY: usize = 24;
 
+/// The field for what people call a thing.
+const LABEL: &str = "label";
+
 /// What is watched in the data of a read: a list, and of each thing in it which fields are what.
 #[derive(Debug, Clone, Copy)]
 pub struct Watched {
@@ -118,7 +121,8 @@ impl Watched {
 
     fn things_of(self, item: &Value) -> Vec<Thing> {
         let name = format!("{}{}", self.prefix, plain(&item[self.name]));
-        let label = item[self.label].as_str().map(ToOwned::to_owned);
+        // What people call it says more than what it is.
+        let label = item[LABEL].as_str().or_else(|| item[self.label].as_str()).map(ToOwned::to_owned);
         let thing = |name: String, value: &Value| Thing {
             name,
             label: label.clone(),

@@ -6,6 +6,7 @@
 pub mod describe;
 pub mod files;
 pub mod group;
+pub mod names;
 pub mod passing;
 pub mod payload;
 pub mod query;
