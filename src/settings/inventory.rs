@@ -197,9 +197,9 @@ impl Inventory {
                     );
                 }
             }
-            let names = raw.names.iter().map(|(name, address)| named_address(family, name, address, &at));
+            let own_names = raw.names.iter().map(|(name, address)| named_address(family, name, address, &at));
             robots.push(Entry {
-                names: names.collect::<Result<_, Failure>>()?,
+                names: own_names.collect::<Result<_, Failure>>()?,
                 name: robot.clone(),
                 target,
                 family,

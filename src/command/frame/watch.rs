@@ -25,6 +25,8 @@ const MANY: usize = 24;
 
 /// The field for what people call a thing.
 const LABEL: &str = "label";
+/// The same for the bits of one.
+const LABELS: &str = "labels";
 
 /// What is watched in the data of a read: a list, and of each thing in it which fields are what.
 #[derive(Debug, Clone, Copy)]
@@ -136,7 +138,12 @@ impl Watched {
         match self.value.map(|field| &item[field]) {
             None => vec![thing(name, &Value::Bool(true))],
             Some(Value::Array(bits)) => {
-                (1..).zip(bits).map(|(number, bit)| thing(format!("{name}.{number}"), bit)).collect()
+                let named = |at: usize| item[LABELS].get(at)?.as_str().map(ToOwned::to_owned);
+                let things = bits.iter().enumerate().map(|(at, bit)| {
+                    let bit = thing(format!("{name}.{}", at + 1), bit);
+                    Thing { label: named(at).or_else(|| bit.label.clone()), ..bit }
+                });
+                things.collect()
             }
             Some(value) => vec![thing(name, value)],
         }

@@ -13,7 +13,7 @@ use crate::command::{Command, Context, Report, commands};
 use crate::controller::yerc::names::{FILES, FileNames, read};
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Table, View};
-use crate::settings::names::{Kept, KeptFile};
+use crate::settings::names::{Kept, KeptFile, Place};
 
 commands! {
     /// What can be done with names.
@@ -178,7 +178,7 @@ impl Command for Forget {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten, Failure> {
         let place = context.robot.names.place().filter(|_| !context.link.is_dry());
-        Ok(Forgotten { forgotten: place.map_or(Ok(false), |place| place.forget())? })
+        Ok(Forgotten { forgotten: place.map_or(Ok(false), Place::forget)? })
     }
 }
 

@@ -49,14 +49,22 @@ pub struct Entry {
     missing: Option<ItemError>,
 }
 
-/// The name of a variable, where the entry is not of a file.
+/// What people call a variable.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[serde(transparent)]
-struct Label(Option<Option<String>>);
+#[serde(untagged)]
+enum Label {
+    /// Files do not say it.
+    #[default]
+    OfFile,
+    /// It has no name.
+    Unnamed,
+    /// This.
+    Named(String),
+}
 
 impl Label {
     const fn is_of_file(&self) -> bool {
-        self.0.is_none()
+        matches!(self, Self::OfFile)
     }
 }
 
@@ -94,7 +102,7 @@ impl Entry {
         let (name, kind, number) = (reference.to_string(), reference.kind.letters(), reference.number);
         let known = Self {
             name,
-            label: Label(Some(None)),
+            label: Label::Unnamed,
             kind,
             number,
             ok: Some(true),
@@ -130,12 +138,15 @@ impl Entry {
     #[must_use]
     pub fn labelled(self, names: &Names) -> Self {
         let label = names::label(names, Kind::Variable, &self.name);
-        Self { label: Label(Some(label)), ..self }
+        Self { label: label.map_or(Label::Unnamed, Label::Named), ..self }
     }
 
     /// What people call it.
     pub fn label(&self) -> Option<&str> {
-        self.label.0.as_ref()?.as_deref()
+        match &self.label {
+            Label::Named(name) => Some(name),
+            Label::Unnamed | Label::OfFile => None,
+        }
     }
 
     /// Its name.

@@ -54,8 +54,8 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Variables, Failure> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of(robot, screen);
-        let named = self.variables.iter().flat_map(|named| &named.0);
-        let references = once(named.map(|reference| in_form(*reference, link.model, self.s16)));
+        let given = self.variables.iter().flat_map(|given| &given.0);
+        let references = once(given.map(|reference| in_form(*reference, link.model, self.s16)));
         let answers = read_all(link, &references, |_, _| {}).await?;
         let entries = references.iter().filter_map(|reference| {
             let answer = answers.get(reference)?;

@@ -182,7 +182,7 @@ impl Command for Set {
         let mut values = Vec::new();
         let mut fields = Vec::new();
         let mut words = Words::new();
-        let mut named: Vec<(Reference, u8)> = Vec::new();
+        let mut given: Vec<(Reference, u8)> = Vec::new();
         for assignment in &self.assignments {
             let reference = in_form(assignment.reference, link.model, self.s16);
             let part = match &assignment.input {
@@ -199,10 +199,10 @@ impl Command for Set {
                     0
                 }
             };
-            if named.contains(&(reference, part)) {
+            if given.contains(&(reference, part)) {
                 return Err(Failure::usage(format!("{reference} is given twice")).hint("give each variable one value"));
             }
-            named.push((reference, part));
+            given.push((reference, part));
         }
         let mut whole_words = Vec::new();
         for (reference, value) in &mut values {
