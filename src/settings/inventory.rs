@@ -282,23 +282,32 @@ fn named_address(
     address: &Spanned<toml::Value>,
     at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
 ) -> Result<Name, Failure> {
+    let text = match address.as_ref() {
+        toml::Value::String(text) => text.clone(),
+        toml::Value::Integer(number) => number.to_string(),
+        other => other.to_string(),
+    };
+    named(family, name, &text).map_err(|failure| {
+        let hint = failure.hint.clone().unwrap_or_default();
+        at(address.span(), &failure.message).hint(hint)
+    })
+}
+
+/// A name for something of a robot, as it is written.
+pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
     let examples = match family {
         Family::Yerc => "such as clamp = 27010, parts = \"B5\" or speed = \"M10\"",
         Family::Yrcx => "such as clamp = \"SI(20)\", parts = \"SGI5\" or lamp = \"DO2.1\"",
         Family::Toyo => "such as clamp = \"OUT1.3\", part = \"IN2.1\" or parts = \"CN05\"",
     };
     if let Some(why) = unusable(grammar(family), name) {
-        return Err(at(address.span(), &format!("'{name}' cannot be a name: {why}")).hint(examples));
+        return Err(Failure::usage(format!("'{name}' cannot be a name: {why}")).hint(examples));
     }
-    let text = match address.as_ref() {
-        toml::Value::String(text) => text.clone(),
-        toml::Value::Integer(number) => number.to_string(),
-        other => other.to_string(),
-    };
-    match (grammar(family).address)(&text) {
+    match (grammar(family).address)(address) {
         Some((kind, address)) => Ok(Name { kind, address, name: name.to_owned(), source: Source::Inventory }),
-        None => Err(at(address.span(), &format!("'{text}' is nothing that a {family} robot has a name for"))
-            .hint(examples)),
+        None => {
+            Err(Failure::usage(format!("'{address}' is nothing that a {family} robot has a name for")).hint(examples))
+        }
     }
 }
 
