@@ -43,6 +43,7 @@ transcripts! {
     jobs
     mistakes
     moves
+    names
     orders
     positions
     raw

@@ -109,6 +109,9 @@ pub fn read_marked<T>(
             }
             Ok(None) => match known.near(kinds, text) {
                 Some(near) => Err(format!("{wrong}; did you mean '{near}'?")),
+                None if known.has_unread() => {
+                    Err(format!("{wrong}; names that the controller has are read by `yerc names get`"))
+                }
                 None => Err(wrong),
             },
             Err(why) => Err(why),
@@ -141,9 +144,16 @@ impl Known {
     }
 
     fn near(&self, kinds: &[Kind], text: &str) -> Option<String> {
+        let grammar = grammar(self.family);
         let names = self.robots.iter().flat_map(|(_, names)| names.all().names.iter());
         let names = names.filter(|name| kinds.contains(&name.kind)).map(|name| name.name.as_str());
-        nearest(text, names).map(ToOwned::to_owned)
+        // What could do something to the terminal can be typed by nobody.
+        nearest(text, names.filter(|name| unusable(grammar, name).is_none())).map(ToOwned::to_owned)
+    }
+
+    /// Whether a controller may have names of which none is kept.
+    fn has_unread(&self) -> bool {
+        self.robots.iter().any(|(_, names)| names.place().is_some() && names.all().kept.is_none())
     }
 }
 
