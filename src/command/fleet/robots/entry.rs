@@ -218,7 +218,8 @@ impl Set {
 }
 
 /// What a name stands for: a number where it is one, as people write it into the file.
-fn address(text: &str, _: Family) -> Result<Value, Failure> {
+fn address(text: &str, family: Family) -> Result<Value, Failure> {
+    named(family, "any", text)?;
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
 }
 
