@@ -69,7 +69,7 @@ pub struct Names {
     /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
-    /// Only names, addresses and files that have this in them
+    /// Only those with this in name, kind, address or origin
     filter: Option<String>,
 }
 

@@ -212,7 +212,7 @@ pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
     let filter = filter.map(str::to_lowercase);
     let is_wanted = |name: &&Name| {
         let fits = |text: &str| filter.as_ref().is_none_or(|filter| text.to_lowercase().contains(filter));
-        fits(&name.name) || fits(&name.address) || fits(&name.source.to_string())
+        fits(&name.name) || fits(&name.address) || fits(name.kind.word()) || fits(&name.source.to_string())
     };
     let listed = |name: &Name| Listed {
         name: name.name.clone(),

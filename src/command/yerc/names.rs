@@ -40,7 +40,7 @@ pub struct Get {}
 /// Lists the names of signals, variables and registers.
 #[derive(Debug, Args)]
 pub struct List {
-    /// Only names, addresses and files that have this in them
+    /// Only those with this in name, kind, address or origin
     filter: Option<String>,
 }
 
