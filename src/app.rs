@@ -7,6 +7,7 @@ mod flags;
 #[cfg(test)]
 mod gate_tests;
 mod misplaced;
+mod named;
 mod parser;
 mod prepared;
 mod repl;
@@ -49,7 +50,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         return exit(screen.data(&version).map_err(|failure| tell(&screen, failure.into())));
     }
     let mut parser = Parser::default();
-    let parsed = parser.parse(&args);
+    let parsed = named::parse(&mut parser, &args, None, false);
     parser.abandon();
     let mut cli = match parsed {
         Ok(cli) => cli,

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::parser::Parser;
 use super::prepared::{Invocation, PreparedCommand};
-use super::{screen, words};
+use super::{named, screen, words};
 use crate::cli::{Globals, Words};
 use crate::command::fleet::session::host;
 use crate::command::frame::batch::Batch;
@@ -124,7 +124,8 @@ impl Plan<'_> {
             return Ok(None);
         }
         let args: Vec<OsString> = std::iter::once("armctl".to_owned()).chain(words).map(OsString::from).collect();
-        let Words { globals, command } = parser.parse(&args).map_err(|refusal| refusal.failure())?;
+        let parsed = named::parse(parser, &args, Some(self.globals), true);
+        let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
         let says_format = globals.format.is_some() || globals.json || globals.jq.is_some();
         if says_format && self.screen.is_json() {
             return Err(Failure::usage("the format is that of the whole batch").hint("leave it away in the line"));

@@ -29,7 +29,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
         ErrorKind::UnknownArgument => {
             place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
         }
-        ErrorKind::MissingRequiredArgument => missing(&error, &typed, whole),
+        ErrorKind::MissingRequiredArgument => every_file(args, &typed).or_else(|| missing(&error, &typed, whole)),
         ErrorKind::InvalidValue => folder(&error, &typed, whole),
         ErrorKind::ValueValidation => {
             std::error::Error::source(&error).and_then(|why| number(&why.to_string())).or_else(|| cut_off(&error, args))
@@ -148,6 +148,12 @@ fn number(why: &str) -> Option<String> {
     }
     let is_std = ["invalid digit found", "number too large", "number too small"].iter().any(|it| why.starts_with(it));
     decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
+}
+
+/// All files are a pattern; `--all` is for robots.
+fn every_file(args: &[OsString], typed: &Typed<'_>) -> Option<String> {
+    let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
+    is_meant.then(|| "'*' gets all files, '*.JBI' all jobs; --all asks all robots of the inventory".to_owned())
 }
 
 /// What can stand where a value is missing.

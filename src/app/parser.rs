@@ -46,6 +46,8 @@ pub enum Refusal {
     Unknown(Failure),
     /// It is wrong.
     Mistake(clap::Error),
+    /// It names something that cannot be looked up.
+    Failed(Failure),
 }
 
 impl Refusal {
@@ -80,7 +82,7 @@ impl Refusal {
         match self {
             Self::Text(_) => Failure::usage("this prints a text to read").hint("type it at a terminal"),
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
-            Self::Unknown(failure) => failure.clone(),
+            Self::Unknown(failure) | Self::Failed(failure) => failure.clone(),
             Self::Mistake(error) => {
                 let text = error.render().to_string();
                 let message: Vec<&str> = text.lines().take_while(|line| !line.is_empty()).map(str::trim).collect();

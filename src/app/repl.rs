@@ -24,7 +24,7 @@ use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::{Parser, Refusal};
 use super::prepared::{Invocation, Need, PreparedCommand, sources};
-use super::{refuse, screen, tell, words};
+use super::{named, refuse, screen, tell, words};
 use crate::cli::{Globals, Words};
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
@@ -213,7 +213,8 @@ impl Repl {
             _ => {}
         }
         let args = self.meaning.args(&words);
-        let Words { globals, command } = match self.meaning.parser.parse(&args) {
+        let Words { globals, command } = match named::parse(&mut self.meaning.parser, &args, Some(&self.globals), true)
+        {
             Ok(words) => words,
             // A script wants something done.
             Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),

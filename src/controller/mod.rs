@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 pub mod findings;
+pub mod names;
 pub mod nearest;
 pub mod sheet;
 pub mod simulator;

@@ -106,6 +106,20 @@ impl Table {
 }
 
 impl Table {
+    /// The same without a column that says nothing in any row.
+    #[must_use]
+    pub fn without_blank(mut self, column: &str) -> Self {
+        let Some(at) = self.columns.iter().position(|name| *name == column) else { return self };
+        let is_blank = |row: &Vec<Cell>| row.get(at).is_none_or(|cell| matches!(cell.text.as_str(), "" | "-"));
+        if self.rows.iter().all(is_blank) {
+            self.columns.remove(at);
+            self.rows.iter_mut().filter(|row| row.len() > at).for_each(|row| drop(row.remove(at)));
+        }
+        self
+    }
+}
+
+impl Table {
     /// Tables of the same columns as one, with what each is of in a first column; `None` if they differ.
     pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {
         let (_, first) = tables.first()?;

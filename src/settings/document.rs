@@ -83,6 +83,9 @@ impl Document {
     /// Writes a setting of an entry, or removes it; what was there comes back.
     pub fn set(&mut self, name: &str, key: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
         let entry = self.entry(name)?;
+        if let Some(name) = key.strip_prefix("names.") {
+            return set_name(entry, name, new);
+        }
         Ok(match new {
             Some(new) => put(entry, key, new),
             None => entry.remove(key).and_then(|item| item.into_value().ok()),
@@ -140,6 +143,30 @@ impl std::fmt::Display for Document {
 
 fn is_called(entry: &Table, name: &str) -> bool {
     entry.get("name").and_then(Item::as_str) == Some(name)
+}
+
+/// Writes a name of an entry, or removes it, and the table of its names with the last one.
+fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
+    const NO_TABLE: Wrong = "`names` is no table";
+
+    let Some(new) = new else {
+        let Some(names) = entry.get_mut("names") else { return Ok(None) };
+        let names = names.as_table_like_mut().ok_or(NO_TABLE)?;
+        let old = names.remove(name).and_then(|item| item.into_value().ok());
+        if names.is_empty() {
+            entry.remove("names");
+        }
+        return Ok(old);
+    };
+    let names = entry.entry("names").or_insert_with(|| Item::Table(Table::new()));
+    let names = names.as_table_like_mut().ok_or(NO_TABLE)?;
+    if let Some(Item::Value(old)) = names.get_mut(name) {
+        let mut new = new;
+        *new.decor_mut() = old.decor().clone();
+        return Ok(Some(std::mem::replace(old, new)));
+    }
+    names.insert(name, value(new));
+    Ok(None)
 }
 
 /// Writes a value where it stands, with the comment behind it, or at the end of the table; what was there comes back.
@@ -211,6 +238,28 @@ name = \"b\"
         assert_eq!(difference(&defaulted).1, ["default = \"b\" # for now"]);
         let unset = changed(|document| assert!(document.set("a", "read_only", None).unwrap().is_some()));
         assert_eq!(difference(&unset), (vec!["read_only = true # until May"], vec![]));
+    }
+
+    #[test]
+    fn names_stand_below_their_entry() {
+        let set =
+            |document: &mut Document, name: &str, key: &str, new: Option<Value>| document.set(name, key, new).unwrap();
+        let named = changed(|document| {
+            assert!(set(document, "a", "names.clamp", Some(27010.into())).is_none());
+            assert!(set(document, "a", "names.FILTER CLEAN", Some("#10011".into())).is_none());
+            assert!(set(document, "b", "names.parts", Some("B5".into())).is_none());
+        });
+        let expected =
+            ["[robot.names]", "clamp = 27010", "\"FILTER CLEAN\" = \"#10011\"", "[robot.names]", "parts = \"B5\""];
+        assert_eq!(difference(&named), (vec![], expected.to_vec()));
+        assert!(named.find("clamp") < named.find("name = \"b\"") && named.find("parts") > named.find("name = \"b\""));
+        let mut document = Document::parse(&named).unwrap();
+        assert_eq!(set(&mut document, "a", "names.clamp", Some(27011.into())).unwrap().as_integer(), Some(27010));
+        assert!(set(&mut document, "b", "names.parts", None).is_some());
+        assert!(set(&mut document, "b", "names.parts", None).is_none());
+        let text = document.to_string();
+        assert!(text.contains("clamp = 27011") && text.matches("[robot.names]").count() == 1, "{text}");
+        assert!(text.contains("# the end"), "{text}");
     }
 
     #[test]

@@ -11,11 +11,17 @@
 //! target = "udp://192.168.1.31?model=dx200"
 //! tags = ["line1", "welding"]
 //! read_only = true
+//!
+//! [robot.names]
+//! clamp = 27010
+//! parts = "B5"
 //! ```
 //!
 //! A mistake in it is an error with line, column and a suggestion; nothing is ever guessed.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use etcetera::BaseStrategy as _;
@@ -24,7 +30,9 @@ use toml::Spanned;
 
 use super::duration;
 use super::model::ModelSetting;
+use super::names::grammar;
 use super::target::{Family, Given, Target};
+use crate::controller::names::{Name, Source, unusable};
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::payload::MAX_AXES;
@@ -66,6 +74,8 @@ pub struct Entry {
     pub pulses_per_degree: Vec<f64>,
     /// Free words to choose by.
     pub tags: Vec<String>,
+    /// Names of its signals, variables and the like.
+    pub names: Arc<[Name]>,
 }
 
 /// The whole file.
@@ -187,7 +197,9 @@ impl Inventory {
                     );
                 }
             }
+            let own_names = raw.names.iter().map(|(name, address)| named_address(family, name, address, &at));
             robots.push(Entry {
+                names: own_names.collect::<Result<_, Failure>>()?,
                 name: robot.clone(),
                 target,
                 family,
@@ -263,6 +275,42 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     raw.map(|word| word.as_ref().parse::<T>().map_err(|why| at(word.span(), &why.to_string()))).transpose()
 }
 
+/// A name of a robot, and what it stands for.
+fn named_address(
+    family: Family,
+    name: &str,
+    address: &Spanned<toml::Value>,
+    at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
+) -> Result<Name, Failure> {
+    let text = match address.as_ref() {
+        toml::Value::String(text) => text.clone(),
+        toml::Value::Integer(number) => number.to_string(),
+        other => other.to_string(),
+    };
+    named(family, name, &text).map_err(|failure| {
+        let hint = failure.hint.clone().unwrap_or_default();
+        at(address.span(), &failure.message).hint(hint)
+    })
+}
+
+/// A name for something of a robot, as it is written.
+pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
+    let examples = match family {
+        Family::Yerc => "such as clamp = 27010, parts = \"B5\" or speed = \"M10\"",
+        Family::Yrcx => "such as clamp = \"SI(20)\", parts = \"SGI5\" or lamp = \"DO2.1\"",
+        Family::Toyo => "such as clamp = \"OUT1.3\", part = \"IN2.1\" or parts = \"CN05\"",
+    };
+    if let Some(why) = unusable(grammar(family), name) {
+        return Err(Failure::usage(format!("'{name}' cannot be a name: {why}")).hint(examples));
+    }
+    match (grammar(family).address)(address) {
+        Some((kind, address)) => Ok(Name { kind, address, name: name.to_owned(), source: Source::Inventory }),
+        None => {
+            Err(Failure::usage(format!("'{address}' is nothing that a {family} robot has a name for")).hint(examples))
+        }
+    }
+}
+
 /// Line and column, both from 1, of a byte offset.
 pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
@@ -315,6 +363,8 @@ struct RawRobot {
     retries: Option<u32>,
     #[serde(default)]
     tags: Vec<String>,
+    #[serde(default)]
+    names: BTreeMap<String, Spanned<toml::Value>>,
 }
 
 #[cfg(test)]
@@ -359,6 +409,28 @@ mod tests {
             let failure = Inventory::parse(text, "robots.toml").unwrap_err();
             assert!(failure.message.contains(place), "{place}: {}", failure.message);
             assert!(failure.hint.as_ref().unwrap().contains(hint), "{hint}: {failure:?}");
+        }
+    }
+
+    #[test]
+    fn names_stand_below_their_robot() {
+        let parse = |names: &str| {
+            let text = format!("[[robot]]\nname = \"a\"\ntarget = \"udp://h\"\n\n[robot.names]\n{names}\n");
+            Inventory::parse(&text, "robots.toml")
+        };
+        let inventory = parse("clamp = 27010\n\"FILTER CLEAN\" = \"#10011\"\nparts = \"b5\"\nspeed = \"M10\"").unwrap();
+        let names = inventory.robots[0].names.iter().map(|name| format!("{}={}", name.name, name.address));
+        assert_eq!(names.collect::<Vec<_>>(), ["FILTER CLEAN=#10011", "clamp=#27010", "parts=B5", "speed=M10"]);
+        for (names, place, why) in [
+            ("clamp = 27018", ":6:9:", "'27018' is nothing that a yerc robot has a name for"),
+            ("clamp = \"SO(20)\"", ":6:9:", "yerc"),
+            ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it looks like an address"),
+            ("clamp = true", ":6:9:", "'true'"),
+            ("\"a,b\" = 27010", ":6:9:", "comma"),
+        ] {
+            let failure = parse(names).unwrap_err();
+            assert!(failure.message.contains(place) && failure.message.contains(why), "{names}: {}", failure.message);
+            assert!(failure.hint.unwrap().contains("clamp = 27010"));
         }
     }
 

@@ -7,11 +7,17 @@ pub mod document;
 pub mod duration;
 pub mod inventory;
 pub mod model;
+pub mod names;
 pub mod target;
 
 use std::fmt;
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
+use etcetera::BaseStrategy as _;
+
+use crate::controller::names::Name;
 use crate::controller::nearest::nearest;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
@@ -19,6 +25,7 @@ use crate::failure::Failure;
 use alarms::Alarms;
 use inventory::{Entry, Inventory, Options};
 use model::{ModelSetting, ToldModels};
+use names::RobotNames;
 use target::{Address, Family, Given, Target};
 
 /// Where a setting came from.
@@ -93,6 +100,14 @@ pub struct Robot {
     pub sessions: Sessions,
     /// What alarms mean at its site.
     pub alarms: Alarms,
+    /// Names of its signals, variables and registers.
+    pub names: RobotNames,
+}
+
+/// The folder for what this program remembers of its user between two runs, if he has a home.
+pub fn state_folder() -> Option<PathBuf> {
+    let folders = etcetera::choose_base_strategy().ok()?;
+    Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 impl Robot {
@@ -276,7 +291,8 @@ impl Sources {
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
-        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), ..robot })
+        let names = RobotNames::new(Arc::clone(&entry.names), entry.family, &entry.target.address());
+        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), names, ..robot })
     }
 
     /// The robot at an address, with every setting in force.
@@ -375,6 +391,13 @@ impl Sources {
         }
     }
 
+    /// The names of the entry with this address: they are of the controller, whatever leads to it.
+    fn names_at(&self, family: Family, address: &Address) -> Arc<[Name]> {
+        let mut named = self.inventory.robots.iter().filter(|entry| entry.family == family && !entry.names.is_empty());
+        let entry = named.find(|entry| entry.target.address().meets(address));
+        entry.map(|entry| Arc::clone(&entry.names)).unwrap_or_default()
+    }
+
     fn robot(&self, name: String, family: Family, target: Setting<Target>, own: &Options, tags: Vec<String>) -> Robot {
         let file = &self.inventory.defaults;
         let (flags, environment) = (&self.flags, &self.environment);
@@ -392,7 +415,9 @@ impl Sources {
                 )
             };
         }
+        let address = target.value.address();
         let mut robot = Robot {
+            names: RobotNames::new(self.names_at(family, &address), family, &address),
             read_only: setting!(read_only, false),
             bound_by: None,
             aliases: Vec::new(),

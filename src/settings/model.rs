@@ -11,9 +11,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use etcetera::BaseStrategy as _;
 use serde::{Deserialize, Serialize};
 
+use super::state_folder;
 use super::target::Address;
 use crate::controller::yerc::Model;
 use crate::files;
@@ -152,12 +152,6 @@ impl ToldModels {
         let text = files::text(&self.path, MOST).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()
     }
-}
-
-/// The folder for what this program remembers of its user between two runs, if he has a home.
-pub fn state_folder() -> Option<PathBuf> {
-    let folders = etcetera::choose_base_strategy().ok()?;
-    Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 fn now() -> u64 {

@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 48] = [
+const YERC: [&str; 51] = [
     "status",
     "backup",
     "restore",
@@ -41,6 +41,9 @@ const YERC: [&str; 48] = [
     "io set",
     "register get",
     "register set",
+    "names get",
+    "names list",
+    "names forget",
     "servo",
     "hold",
     "hlock",

@@ -44,6 +44,7 @@ transcripts! {
     mistakes
     models
     moves
+    names
     orders
     positions
     raw

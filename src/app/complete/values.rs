@@ -12,6 +12,8 @@ use crate::app::prepared::{Need, sources};
 use crate::cli::Globals;
 use crate::command::about::{help, schema};
 use crate::command::families::{self, FAMILIES};
+use crate::command::frame::kind::Named;
+use crate::command::frame::names;
 use crate::command::{Candidate, ValueKind};
 use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
@@ -93,6 +95,11 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
         }
         ValueKind::Session => sessions(),
         ValueKind::Listed(candidates) => candidates(),
+        ValueKind::Named(family, Named { kinds, endings, listed }) => {
+            let robots = context.sources().and_then(|sources| sources.robots(Some(family)).ok()).unwrap_or_default();
+            let named = endings.iter().flat_map(|ending| names::candidates(&robots, kinds, ending));
+            named.chain(listed()).collect()
+        }
         ValueKind::Asked(family, ask) => {
             context.sources().map_or_else(Vec::new, |sources| live::values(family, ask, &sources, context.patience))
         }

@@ -71,6 +71,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::entry::Renamed>("robots.rename"),
         SchemaEntry::of::<robots::entry::WasSet>("robots.set"),
         SchemaEntry::of::<robots::Shown>("robots.show"),
+        SchemaEntry::of::<crate::command::frame::names::Listing>("robots.names"),
         SchemaEntry::of::<session::Closed>("session.close"),
         SchemaEntry::of::<session::Sessions>("session.list"),
         SchemaEntry::of::<Opened>("session.open"),

@@ -3,6 +3,7 @@
 use futures_util::future::LocalBoxFuture;
 use serde_json::Value;
 
+use crate::controller::names::Kind;
 use crate::settings::target::Family;
 
 /// A kind of value that has candidates.
@@ -30,6 +31,19 @@ pub enum ValueKind {
     Listed(fn() -> Vec<Candidate>),
     /// A value that only a robot of the family knows.
     Asked(Family, Question),
+    /// A name of something, or what the tables of a family list.
+    Named(Family, Named),
+}
+
+/// Names of which things, and what may stand in their place.
+#[derive(Debug, Clone, Copy)]
+pub struct Named {
+    /// Of these.
+    pub kinds: &'static [Kind],
+    /// What follows a name: nothing, or `=on`.
+    pub endings: &'static [&'static str],
+    /// What is listed beside names.
+    pub listed: fn() -> Vec<Candidate>,
 }
 
 /// Tells all candidates of a kind.

@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::files;
 pub use crate::files::folder_of;
 use crate::output::escape;
-pub use crate::settings::model::state_folder;
+pub use crate::settings::state_folder;
 
 /// Longest name that the usual file systems take.
 const MAX_LOCAL_NAME: usize = 255;

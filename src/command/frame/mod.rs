@@ -18,6 +18,7 @@ pub mod interrupt;
 pub mod items;
 pub mod kind;
 pub mod local;
+pub mod names;
 pub mod orders;
 pub mod plot;
 pub mod repl;

@@ -23,6 +23,11 @@ const PAUSE: Duration = Duration::from_millis(100);
 /// More things than these are told at the beginning only if they have a name of their own, or are on.
 const MANY: usize = 24;
 
+/// The field for what people call a thing.
+const LABEL: &str = "label";
+/// The same for the bits of one.
+const LABELS: &str = "labels";
+
 /// What is watched in the data of a read: a list, and of each thing in it which fields are what.
 #[derive(Debug, Clone, Copy)]
 pub struct Watched {
@@ -118,7 +123,8 @@ impl Watched {
 
     fn things_of(self, item: &Value) -> Vec<Thing> {
         let name = format!("{}{}", self.prefix, plain(&item[self.name]));
-        let label = item[self.label].as_str().map(ToOwned::to_owned);
+        // What people call it says more than what it is.
+        let label = item[LABEL].as_str().or_else(|| item[self.label].as_str()).map(ToOwned::to_owned);
         let thing = |name: String, value: &Value| Thing {
             name,
             label: label.clone(),
@@ -132,7 +138,12 @@ impl Watched {
         match self.value.map(|field| &item[field]) {
             None => vec![thing(name, &Value::Bool(true))],
             Some(Value::Array(bits)) => {
-                (1..).zip(bits).map(|(number, bit)| thing(format!("{name}.{number}"), bit)).collect()
+                let named = |at: usize| item[LABELS].get(at)?.as_str().map(ToOwned::to_owned);
+                let things = bits.iter().enumerate().map(|(at, bit)| {
+                    let bit = thing(format!("{name}.{}", at + 1), bit);
+                    Thing { label: named(at).or_else(|| bit.label.clone()), ..bit }
+                });
+                things.collect()
             }
             Some(value) => vec![thing(name, value)],
         }

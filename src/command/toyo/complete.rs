@@ -1,9 +1,21 @@
 //! Candidates for arguments.
 
+use crate::command::frame::kind::Named;
 use crate::command::{Candidate, ValueKind};
+use crate::controller::names::Kind;
 use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::settings::target::Family;
+
+/// A bit of an output port by its name, with the state to set.
+pub const OUTPUT_STATE: ValueKind = named(&[Kind::Output], &["=on", "=off"]);
+/// A counter by its name.
+pub const COUNTER: ValueKind = named(&[Kind::Counter], &[""]);
+
+const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
+    ValueKind::Named(Family::Toyo, Named { kinds, endings, listed: Vec::new })
+}
 
 /// A parameter, by name or id.
 pub const PARAMETER: ValueKind =

@@ -4,19 +4,23 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::items::{self, Item, read_each};
 use super::link::Toyo;
 use super::numbers::{Numbers, not_held, number, read_back, small};
+use crate::command::frame::names;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
+use crate::controller::names::Kind;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
-use crate::output::view::{Table, View};
+use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// What can be done with counters.
@@ -33,20 +37,36 @@ commands! {
 /// Reads counters; without a number, all 99.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Such as 5 or 1-10
-    #[arg(value_name = "N", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(&fields()[0], text))]
+    /// Such as 5, CN05 or 1-10, or a name
+    #[arg(value_name = "N", value_delimiter = ',', value_parser = numbers, add = complete::COUNTER)]
     counters: Vec<Numbers>,
 }
 
 /// Sets a counter, also while a program runs.
 #[derive(Debug, Args)]
 pub struct Set {
-    /// 1 to 99
-    #[arg(value_name = "N", value_parser = |text: &str| number(&fields()[0], text))]
+    /// 1 to 99, or a name
+    #[arg(value_name = "N", value_parser = one, add = complete::COUNTER)]
     counter: i32,
     /// 0 to 9999
     #[arg(value_name = "VALUE", value_parser = |text: &str| number(&fields()[1], text))]
     value: i32,
+}
+
+/// Stands for a name that is not known yet.
+const ANY: &str = "CN01";
+
+fn numbers(text: &str) -> Result<Numbers, String> {
+    names::read(&[Kind::Counter], ANY, text, |text| Numbers::parse(&fields()[0], bare(text)))
+}
+
+fn one(text: &str) -> Result<i32, String> {
+    names::read(&[Kind::Counter], ANY, text, |text| number(&fields()[0], bare(text)))
+}
+
+/// The number of `CN05`.
+fn bare(text: &str) -> &str {
+    text.strip_prefix("CN").or_else(|| text.strip_prefix("cn")).unwrap_or(text)
 }
 
 /// Number and count, as in MCST CN01=0000.
@@ -64,8 +84,12 @@ impl Command for Get {
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
         let answers = read_each(context.link, context.screen, "reading counters", &requests).await?;
-        let count =
-            |answer: &Record| Count { counter: small(answer, "counter"), count: answer.number("count").unwrap_or(0) };
+        let names = names::of(context.robot, context.screen);
+        let count = |answer: &Record| {
+            let counter = small(answer, "counter");
+            let label = names::label(names, Kind::Counter, &names_of::counter(counter));
+            Count { counter, label, count: answer.number("count").unwrap_or(0) }
+        };
         let counters = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("counter", *number, answer, count));
         Ok(Counters { counters: counters.collect() })
     }
@@ -116,16 +140,20 @@ pub struct Counters {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Count {
     counter: u8,
+    /// What people call it; null where it has no name.
+    label: Option<String>,
     count: i32,
 }
 
 impl Report for Counters {
     fn view(&self) -> View {
-        let mut table = Table::new(&["counter", "count"], "no counters");
+        let mut table = Table::new(&["counter", "count", "label"], "no counters");
         for counter in &self.counters {
-            counter.show(&mut table, |Count { counter, count }| vec![(*counter).into(), (*count).into()]);
+            counter.show(&mut table, |Count { counter, label, count }| {
+                vec![(*counter).into(), (*count).into(), Cell::maybe(label.as_deref())]
+            });
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -1,7 +1,9 @@
 //! The commands of `yerc`, as its help lists them.
 
 use super::link::Yerc;
-use super::{alarm, axes, file, hours, info, io, job, moves, orders, position, raw, register, status, teach, var};
+use super::{
+    alarm, axes, file, hours, info, io, job, moves, names, orders, position, raw, register, status, teach, var,
+};
 use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::{Subcommands, commands};
 
@@ -60,6 +62,8 @@ commands! {
         Io(Subcommands<io::Io>),
         /// Registers
         Register(Subcommands<register::Register>),
+        /// Names of signals, variables and registers: get, list, forget
+        Names(Subcommands<names::Names>),
         "Link":
         /// Send any request and decode the answer
         Raw(raw::Raw),

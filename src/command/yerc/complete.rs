@@ -2,17 +2,45 @@
 
 use futures_util::FutureExt as _;
 
-use crate::command::frame::kind::{Ask, rows, text};
+use crate::command::frame::kind::{Ask, Named, rows, text};
 use crate::command::{Candidate, ValueKind};
+use crate::controller::names::Kind;
 use crate::settings::target::Family;
 
 /// A job of the controller.
 pub const JOB: ValueKind = ValueKind::Asked(Family::Yerc, |robot| jobs(robot).boxed_local());
 /// A file of the controller.
 pub const FILE: ValueKind = ValueKind::Asked(Family::Yerc, |robot| files(robot).boxed_local());
-/// The beginning of a reference to variables: `B`.
-pub const VARIABLE: ValueKind =
-    ValueKind::Listed(|| VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into());
+/// A variable by its name, or the beginning of a reference to variables: `B`.
+pub const VARIABLE: ValueKind = ValueKind::Named(
+    Family::Yerc,
+    Named {
+        kinds: &[Kind::Variable],
+        endings: &[""],
+        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
+    },
+);
+/// The same with what begins its value.
+pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
+    Family::Yerc,
+    Named {
+        kinds: &[Kind::Variable],
+        endings: &["="],
+        listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).begun()).into(),
+    },
+);
+/// A signal by its name.
+pub const SIGNAL: ValueKind = named(&[Kind::Signal], &[""]);
+/// The same with the state to set.
+pub const SIGNAL_STATE: ValueKind = named(&[Kind::Signal], &["=on", "=off"]);
+/// A register by its name.
+pub const REGISTER: ValueKind = named(&[Kind::Register], &[""]);
+/// The same with what begins its value.
+pub const REGISTER_VALUE: ValueKind = named(&[Kind::Register], &["="]);
+
+const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
+    ValueKind::Named(Family::Yerc, Named { kinds, endings, listed: Vec::new })
+}
 
 /// What references to variables begin with.
 const VARIABLES: [(&str, &str); 8] = [

@@ -22,6 +22,7 @@ mod job;
 pub mod link;
 mod motion;
 mod moves;
+mod names;
 mod numbers;
 mod orders;
 mod overview;

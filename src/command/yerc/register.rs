@@ -7,16 +7,20 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::link::Yerc;
 use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
 use super::writes::{WriteOrder, before, write_all};
 use crate::command::frame::items;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::names;
 use crate::command::frame::orders::{Old, Written};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
+use crate::controller::names::{Kind, Names};
 use crate::controller::typed;
+use crate::controller::yerc::names::{register, register_address};
 use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
@@ -34,8 +38,8 @@ commands! {
 /// Registers to read.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Such as 5 or 0..20
-    #[arg(required = true, value_name = "N", value_delimiter = ',', value_parser = Numbers::parse)]
+    /// Such as 5, M5 or 0..20, or a name
+    #[arg(required = true, value_name = "N", value_delimiter = ',', value_parser = Numbers::parse, add = complete::REGISTER)]
     registers: Vec<Numbers>,
 }
 
@@ -44,8 +48,16 @@ struct Numbers(Vec<u16>);
 
 impl Numbers {
     fn parse(text: &str) -> Result<Self, String> {
-        parse_numbers(text).map(Self).map_err(|error| error.to_string())
+        numbers(text).map(Self)
     }
+}
+
+/// Numbers of registers as typed: `5`, `M5`, `0..20`, or a name.
+fn numbers(text: &str) -> Result<Vec<u16>, String> {
+    names::read(&[Kind::Register], "0", text, |text| match register(text) {
+        Some(number) => Ok(vec![number]),
+        None => parse_numbers(text).map_err(|error| error.to_string()),
+    })
 }
 
 /// Registers to write.
@@ -55,8 +67,8 @@ impl Numbers {
                         back where that matters."
 )]
 pub struct Set {
-    /// Such as 5=1000 or 5=0x03E8
-    #[arg(required = true, value_name = "N=VALUE")]
+    /// Such as 5=1000 or 5=0x03E8, or NAME=1000
+    #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }
 
@@ -71,7 +83,7 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
-        let numbers = parse_numbers(number).map_err(|error| error.to_string())?;
+        let numbers = numbers(number)?;
         let [number] = numbers[..] else { return Err(format!("'{number}' are several; give each its value")) };
         let value = typed::unsigned(value)
             .ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
@@ -86,13 +98,14 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
         let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
-        let link = context.link;
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
         let model = link.model_for(|model| plan_register_reads(model, &numbers)).await?;
         let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
         let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
         let words = numbers.into_iter().filter_map(|number| {
             let outcome = outcomes.remove(&number)?;
-            Some(Word::new(number, outcome.map_err(Failure::from)))
+            Some(Word::new(number, names, outcome.map_err(Failure::from)))
         });
         let report = Registers { registers: words.collect() };
         items::nothing(report.registers.len(), report.errors())?;
@@ -107,7 +120,8 @@ impl Command for Set {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenRegisters, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
         let mut seen = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen.insert(assignment.number)) {
             return Err(Failure::usage(format!("register {} is given twice", twice.number)).hint("give it one value"));
@@ -119,7 +133,7 @@ impl Command for Set {
         let old = before(link, &reads).await?;
         write_all(link, screen, &steps).await?;
         let written = values.into_iter().map(|(number, value)| {
-            Written::new(Word::new(number, Ok(value)), Old::read(old.get(&number).copied()), value)
+            Written::new(Word::new(number, names, Ok(value)), Old::read(old.get(&number).copied()), value)
         });
         Ok(WrittenRegisters { written: written.collect() })
     }
@@ -141,6 +155,8 @@ impl WriteOrder for WriteRegisterStep {
 #[derive(Debug, PartialEq, Serialize, JsonSchema)]
 struct Word {
     number: u16,
+    /// What people call it; null where it has no name.
+    label: Option<String>,
     #[serde(flatten)]
     outcome: ItemOutcome<WordValue>,
 }
@@ -153,9 +169,10 @@ struct WordValue {
 }
 
 impl Word {
-    fn new(number: u16, value: Result<u16, Failure>) -> Self {
+    fn new(number: u16, names: &Names, value: Result<u16, Failure>) -> Self {
         let value = value.map(|value| WordValue { value, value_hex: format!("{value:#06x}") });
-        Self { number, outcome: ItemOutcome::new(format!("register {number}"), value) }
+        let label = names::label(names, Kind::Register, &register_address(number));
+        Self { number, label, outcome: ItemOutcome::new(format!("register {number}"), value) }
     }
 }
 
@@ -178,15 +195,15 @@ pub struct WrittenRegisters {
 }
 
 fn table<'a>(first: &'static str, words: impl Iterator<Item = &'a Word>) -> View {
-    let mut table = Table::new(&[first, "value", "hex"], "no registers");
+    let mut table = Table::new(&[first, "label", "value", "hex"], "no registers");
     for word in words {
         let [value, hex] = match (word.outcome.data(), word.outcome.error()) {
             (Some(word), _) => [word.value.into(), Cell::from(word.value_hex.as_str())],
             (None, error) => ["-".into(), error.map_or_else(|| "-".into(), ItemError::cell)],
         };
-        table.row([word.number.into(), value, hex]);
+        table.row([word.number.into(), Cell::maybe(word.label.as_deref()), value, hex]);
     }
-    View::table(table)
+    View::table(table.without_blank("label"))
 }
 
 impl Report for Registers {

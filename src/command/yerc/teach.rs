@@ -7,12 +7,14 @@ use super::link::{Link, Yerc};
 use super::moves::{compared, moved_meanwhile, stands};
 use super::orders::usage;
 use super::position::{self, PositionReport};
-use super::var::{PositionData, held, is_undefined, unlike};
+use super::var::{PositionData, called, held, is_undefined, unlike};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::names;
 use crate::command::frame::teach::{Taught, mismatch, not_read_back};
 use crate::command::yerc::each::Denied;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
+use crate::controller::names::Kind;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ExtendedForm, Form, Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
@@ -28,7 +30,7 @@ use crate::gate::{Change, Confirmation};
     defined gets pulses. `yerc position teach P5` and `yerc var set P5=here` are the same."
 )]
 pub struct Teach {
-    /// The variable: P5, BP1, EX1
+    /// The variable: P5, BP1, EX1, or its name
     #[arg(value_name = "REF", value_parser = variable, add = complete::VARIABLE)]
     variable: Reference,
     /// Control group whose position it is [default: R1 for P, B1 for BP, S1 for EX]
@@ -58,6 +60,10 @@ impl From<StoredAs> for Coordinates {
 }
 
 fn variable(text: &str) -> Result<Reference, String> {
+    names::read(&[Kind::Variable], "P0", text, position_variable)
+}
+
+fn position_variable(text: &str) -> Result<Reference, String> {
     let reference: Reference = text.parse().map_err(|error| format!("{error}"))?;
     if reference.kind.is_position() {
         Ok(reference)
@@ -78,7 +84,8 @@ impl Command for Teach {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
-        let Context { link, authority, .. } = context;
+        let Context { link, authority, robot, screen, .. } = context;
+        let called = called(names::of(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
         let Some(old) = self.read(link.is_for("what the variable holds")).await.known()? else {
             return Err(self.plan(link, group).await?);
@@ -88,7 +95,7 @@ impl Command for Teach {
         let new = held(group, here);
         let is_unchanged = old.as_ref().map(Value::emit) == Some(new.emit());
         let is_asked = authority.asks();
-        authority.confirm(&self.change(link, group, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
+        authority.confirm(&self.change(link, group, &called, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
         if is_asked {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !stands(&here, &now) {
@@ -156,10 +163,10 @@ impl Teach {
     }
 
     /// What the question says.
-    fn change(&self, link: &Link, group: Group, old: Option<&Value>, here: &Position) -> Change {
+    fn change(&self, link: &Link, group: Group, called: &str, old: Option<&Value>, here: &Position) -> Change {
         let Some(old) = old.map(as_position) else { return Change::nothing() };
         let per_degree = link.pulses_per_degree(group);
-        let change = Change::new(format!("overwrite {} with the position of {group}", self.variable));
+        let change = Change::new(format!("overwrite {called} with the position of {group}"));
         if old.kind != here.kind {
             let shown = |position| PositionData::of(&held(group, position)).map(|data| data.text().to_owned());
             return change.replaces(

@@ -4,28 +4,29 @@ use std::ops::RangeInclusive;
 
 use futures_util::FutureExt as _;
 
-use crate::command::frame::kind::{Ask, rows, text};
+use crate::command::frame::kind::{Ask, Named, rows, text};
 use crate::command::{Candidate, ValueKind};
+use crate::controller::names::Kind;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::controller::yrcx::table::parameter::PARAMETERS;
 use crate::settings::target::Family;
 
-/// A dedicated signal that the controller is shown.
-pub const INPUT: ValueKind = ValueKind::Listed(|| signals(Side::Input, ""));
+/// A signal that the controller is shown, by a name of it.
+pub const INPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Input, ""));
 /// The same with the state to set.
 pub const INPUT_STATE: ValueKind =
-    ValueKind::Listed(|| [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat());
-/// A dedicated signal that the controller shows.
-pub const OUTPUT: ValueKind = ValueKind::Listed(|| signals(Side::Output, ""));
+    named(&[Kind::Signal], &["=on", "=off"], || [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat());
+/// A signal that the controller shows, by a name of it.
+pub const OUTPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Output, ""));
 /// A port.
-pub const PORT: ValueKind = ValueKind::Listed(|| inputs().chain(outputs(0)).collect());
+pub const PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || inputs().chain(outputs(0)).collect());
 /// A port that can be switched.
-pub const OUTPUT_PORT: ValueKind = ValueKind::Listed(|| outputs(2).collect());
+pub const OUTPUT_PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || outputs(2).collect());
 /// A parameter.
 pub const PARAMETER: ValueKind =
     ValueKind::Listed(|| PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect());
-/// A static variable: `SGI0` to `SGR31`.
-pub const VARIABLE: ValueKind = ValueKind::Listed(|| {
+/// A static variable: `SGI0` to `SGR31`, or its name.
+pub const VARIABLE: ValueKind = named(&[Kind::Variable], &[""], || {
     let whole = numbered("SGI", 0..=31, "whole number");
     whole.chain(numbered("SGR", 0..=31, "real number")).collect()
 });
@@ -46,6 +47,10 @@ pub const PROGRAM: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
 pub const PROGRAM_NAME: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(name, format!("program {number}: {about}"))).boxed_local()
 });
+
+const fn named(kinds: &'static [Kind], endings: &'static [&'static str], listed: fn() -> Vec<Candidate>) -> ValueKind {
+    ValueKind::Named(Family::Yrcx, Named { kinds, endings, listed })
+}
 
 fn signals(side: Side, ending: &str) -> Vec<Candidate> {
     let dedicated = Signal::of_side(side);

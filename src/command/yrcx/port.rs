@@ -8,10 +8,13 @@ use super::link::Yrcx;
 use super::numbers::{Series, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::one_row;
+use crate::command::frame::names;
 use crate::command::frame::orders::{Done, New};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
+use crate::controller::names::{Kind, Names};
+use crate::controller::yrcx::names::signal_of_port;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
@@ -67,7 +70,19 @@ fn place(text: &str) -> Result<PortSignal, String> {
     place.order(table::Command::PortGet.order()).map(|_| place)
 }
 
+/// Ports as typed, a range of them, or the name of one.
+fn places(text: &str) -> Result<Series<PortSignal>, String> {
+    names::read(KINDS, "DO2", text, Series::reader(place))
+}
+
+/// SI and SO are signals; a port has eight of them.
+const KINDS: &[Kind] = &[Kind::Port, Kind::Signal];
+
 fn signal_or_port(text: &str) -> Result<PortSignal, String> {
+    names::read(KINDS, "DO2.1", text, settable)
+}
+
+fn settable(text: &str) -> Result<PortSignal, String> {
     let place = place(text)?;
     let draft = table::Command::PortSet.order().with(Key::Value, 0);
     place.order(draft).map(|_| place)
@@ -107,7 +122,7 @@ impl PortSignal {
 #[command(after_help = NAMES)]
 pub struct Get {
     /// Ports, or signals of them; DO2..DO5 is a range
-    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = Series::reader(place), add = complete::PORT)]
+    #[arg(required = true, value_name = "PORT", value_delimiter = ',', value_parser = places, add = complete::PORT)]
     places: Vec<Series<PortSignal>>,
 }
 
@@ -123,7 +138,8 @@ impl Command for Get {
     const ID: &'static str = "yrcx.port.get";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ports, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, robot, screen, .. } = context;
+        let called = names::of(robot, screen);
         let places: Vec<PortSignal> = Series::all(&self.places).copied().collect();
         let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
@@ -134,7 +150,7 @@ impl Command for Get {
             State::of(bit, values.int(Key::Value).unwrap_or_default())
         };
         let states = Several::of(names(), answers, of)?;
-        Ok(Ports { ports: states.rows(names().map(|port| Which { port })) })
+        Ok(Ports { ports: states.rows(names().map(|port| Which { label: label(called, &port), port })) })
     }
 }
 
@@ -149,6 +165,13 @@ pub struct Ports {
 struct Which {
     /// `DO12`, or `DO2.1` for a signal.
     port: String,
+    /// What people call it; null where they gave it no name.
+    label: Option<String>,
+}
+
+fn label(names: &Names, port: &str) -> Option<String> {
+    let of_signal = || names::label(names, Kind::Signal, &signal_of_port(port)?);
+    names::label(names, Kind::Port, port).or_else(of_signal)
 }
 
 /// The state of a port, or of a signal.
@@ -171,9 +194,10 @@ impl State {
 
 impl Report for Ports {
     fn view(&self) -> View {
-        let name = |which: &Which| [which.port.as_str().into()];
+        let name = |which: &Which| [which.port.as_str().into(), Cell::maybe(which.label.as_deref())];
         let cells = |state: &State| [state.value.into(), Cell::maybe(state.bits.as_deref())];
-        View::table(self.ports.table(["port"], ["value", "bits 7 - 0"], "no ports", name, cells))
+        let table = self.ports.table(["port", "label"], ["value", "bits 7 - 0"], "no ports", name, cells);
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -245,11 +269,14 @@ mod tests {
             assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
-        assert_eq!(read["ports"], json!([{"port": "DO12", "ok": true, "value": 7, "bits": "00000111"}]));
+        assert_eq!(read["ports"], json!([{"port": "DO12", "label": null, "ok": true, "value": 7, "bits": "00000111"}]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "DI2"]);
-        assert_eq!(read["ports"], json!([{"port": "DI2", "ok": true, "value": 127, "bits": "01111111"}]));
+        assert_eq!(
+            read["ports"],
+            json!([{"port": "DI2", "label": null, "ok": true, "value": 127, "bits": "01111111"}])
+        );
         let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
-        assert_eq!(read["ports"], json!([{"port": "DI2.7", "ok": true, "value": 0, "bits": null}]));
+        assert_eq!(read["ports"], json!([{"port": "DI2.7", "label": null, "ok": true, "value": 0, "bits": null}]));
     }
 
     #[test]

@@ -10,10 +10,12 @@ use super::link::Yrcx;
 use super::numbers::{Numbers, named, single};
 use super::several::{Rows, Several, ask_each};
 use super::single::Single;
+use crate::command::frame::names;
 use crate::command::frame::orders::{self, Done, New};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::{Command, Context, Report, commands};
+use crate::controller::names::Kind;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Value};
@@ -45,9 +47,17 @@ commands! {
 pub struct Get {
     /// Variables: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range
     #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
-        value_parser = |text: &str| Numbers::parse(table::Command::VarGet, Key::Variable, text), add = complete::VARIABLE)]
+        value_parser = variables, add = complete::VARIABLE)]
     variables: Vec<Numbers>,
 }
+
+/// Variables as typed, a range of them, or the name of one.
+fn variables(text: &str) -> Result<Numbers, String> {
+    names::read(&[Kind::Variable], ANY, text, |text| Numbers::parse(table::Command::VarGet, Key::Variable, text))
+}
+
+/// Stands for a name that is not known yet.
+const ANY: &str = "SGI0";
 
 impl Watchable for Get {
     const WATCH: &'static str = "yrcx.var.watch";
@@ -67,14 +77,19 @@ impl Command for Get {
     const ID: &'static str = "yrcx.var.get";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Variables, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, robot, screen, .. } = context;
+        let called = names::of(robot, screen);
         let numbers = Numbers::of(&self.variables);
         let order = |number: &i32| Ok(link.draft(table::Command::VarGet)?.with(Key::Variable, *number).build()?);
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading variables", &orders).await?;
         let names = || numbers.iter().map(|number| name(*number));
         let held = Several::of(names(), answers, |_, values| Held::of(values.value(Key::Value)))?;
-        Ok(Variables { variables: held.rows(names().map(|variable| Which { variable })) })
+        Ok(Variables {
+            variables: held.rows(
+                names().map(|variable| Which { label: names::label(called, Kind::Variable, &variable), variable }),
+            ),
+        })
     }
 }
 
@@ -89,6 +104,8 @@ pub struct Variables {
 struct Which {
     /// `SGI1`, `SGR1`.
     variable: String,
+    /// What people call it; null where they gave it no name.
+    label: Option<String>,
 }
 
 /// What a variable holds.
@@ -127,9 +144,10 @@ fn real(number: f32) -> Option<Number> {
 
 impl Report for Variables {
     fn view(&self) -> View {
-        let (name, value) =
-            (|which: &Which| [which.variable.as_str().into()], |held: &Held| [Cell::number(held.text.as_str())]);
-        View::table(self.variables.table(["variable"], ["value"], "no variables", name, value))
+        let name = |which: &Which| [which.variable.as_str().into(), Cell::maybe(which.label.as_deref())];
+        let value = |held: &Held| [Cell::number(held.text.as_str())];
+        let table = self.variables.table(["variable", "label"], ["value"], "no variables", name, value);
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -147,11 +165,15 @@ enum Operand {
 }
 
 fn variable(text: &str) -> Result<i32, String> {
+    names::read(&[Kind::Variable], ANY, text, variable_by_address)
+}
+
+fn variable_by_address(text: &str) -> Result<i32, String> {
     single(table::Command::VarGet, Key::Variable, text)
 }
 
 fn operand(text: &str) -> Result<Operand, String> {
-    if text.starts_with(|first: char| first.is_ascii_alphabetic()) {
+    if text.starts_with(char::is_alphabetic) {
         return variable(text).map(Operand::Variable);
     }
     Ok(Operand::Number(text.to_owned()))
@@ -270,7 +292,7 @@ mod tests {
             assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.4.1-reference", &["var", "get", "SGI5"]);
-        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "ok": true, "value": 50}]}));
+        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "label": null, "ok": true, "value": 50}]}));
     }
 
     #[test]

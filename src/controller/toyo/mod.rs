@@ -7,6 +7,7 @@ pub mod describe;
 pub mod errors;
 pub mod field;
 pub mod layout;
+pub mod names;
 pub mod passing;
 pub mod program;
 pub mod request;

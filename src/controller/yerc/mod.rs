@@ -7,6 +7,7 @@ pub mod describe;
 pub mod files;
 pub mod group;
 mod model;
+pub mod names;
 pub mod passing;
 pub mod payload;
 pub mod query;

@@ -12,6 +12,7 @@ pub mod changes;
 pub mod codec;
 pub mod describe;
 pub mod image;
+pub mod names;
 pub mod order;
 pub mod passing;
 pub mod procedure;

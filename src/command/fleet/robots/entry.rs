@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::output::jq::after_a_change;
 use crate::output::view::{self, Cell, View};
 use crate::settings::duration;
-use crate::settings::inventory::{Entry, Inventory, is_name};
+use crate::settings::inventory::{Entry, Inventory, is_name, named};
 use crate::settings::model::ModelSetting;
 use crate::settings::target::{Family, Given, Target};
 
@@ -124,7 +124,7 @@ impl Remove {
 /// Changes settings of a robot; `KEY=` with nothing behind it removes one.
 #[derive(Debug, Args)]
 #[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
-    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B.")]
+    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B; names.NAME=ADDRESS, such as names.clamp=27010.")]
 pub struct Set {
     /// Its name
     #[arg(add = ValueKind::Robot)]
@@ -203,6 +203,9 @@ impl Set {
         let family = family.unwrap_or(entry.family);
         let values = settings.iter().map(|(key, text, parse)| {
             let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| about(key, why))?) };
+            if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
+                named(family, name, text).map_err(|why| about(key, why))?;
+            }
             Ok((*key, new))
         });
         let values = values.collect::<Result<Vec<_>, Failure>>()?;
@@ -211,7 +214,7 @@ impl Set {
             for (key, new) in values {
                 let told = new.as_ref().map(json);
                 let old = document.set(&self.name, key, new)?;
-                changes.push(SettingChange { setting: key, old: old.as_ref().map(json), new: told });
+                changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: told });
             }
             Ok(())
         })?;
@@ -219,11 +222,20 @@ impl Set {
     }
 }
 
+/// What a name stands for: a number where it is one, as people write it into the file.
+fn address(text: &str, family: Family) -> Result<Value, Failure> {
+    named(family, "any", text)?;
+    Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
+}
+
 /// A setting as typed: its key, the text of its value, and how that is read.
-fn assigned(setting: &str) -> Result<(&'static str, &str, Parse), Failure> {
+fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
         return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("as in read_only=off or timeout=5s"));
     };
+    if key.strip_prefix("names.").is_some_and(|name| !name.is_empty()) {
+        return Ok((key, text.trim(), address));
+    }
     if let Some((key, _, parse)) = SETTINGS.iter().find(|(known, ..)| *known == key) {
         return Ok((key, text.trim(), *parse));
     }
@@ -262,7 +274,7 @@ pub struct WasSet {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct SettingChange {
-    setting: &'static str,
+    setting: String,
     /// What the entry had; null if nothing.
     old: Option<serde_json::Value>,
     /// What it has; null if nothing.
@@ -282,7 +294,7 @@ impl Report for WasSet {
                     other => other.to_string(),
                 }))
             };
-            table.row([(*setting).into(), shown(old), shown(new)]);
+            table.row([setting.as_str().into(), shown(old), shown(new)]);
         }
         View::table(table)
     }

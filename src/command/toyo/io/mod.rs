@@ -12,8 +12,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::commands;
+use crate::command::frame::names;
 use crate::command::frame::watch::Watch;
+use crate::controller::names::{Kind, Names};
 use crate::controller::toyo::field::Mask;
+use crate::controller::toyo::names as names_of;
 
 commands! {
     /// What can be done with ports.
@@ -46,6 +49,8 @@ pub(super) struct Port {
     bits: [bool; 8],
     /// Numbers of the bits that are on.
     on: Vec<u8>,
+    /// What people call the bits, bit 1 first; null where one has no name.
+    labels: [Option<String>; 8],
 }
 
 impl Port {
@@ -57,8 +62,39 @@ impl Port {
     fn new(port: Option<u8>, byte: u8) -> Self {
         let name = port.map_or_else(|| "SY01".to_owned(), name);
         let bits = [0, 1, 2, 3, 4, 5, 6, 7].map(|bit| byte >> bit & 1 == 1);
-        Self { name, port, raw: Mask::all(byte).to_string(), bits, on: numbers(byte) }
+        Self { name, port, raw: Mask::all(byte).to_string(), bits, on: numbers(byte), labels: Default::default() }
     }
+
+    /// With the names of its bits, where it is a port of the controller itself.
+    fn labelled(mut self, names: &Names, bits: Bits, station: u8) -> Self {
+        if let Some(port) = self.port.filter(|_| station == 0) {
+            self.labels =
+                [1, 2, 3, 4, 5, 6, 7, 8].map(|bit| names::label(names, bits.kind, &(bits.address)(port, bit)));
+        }
+        self
+    }
+
+    /// The names of its bits in a line: `1 clamp, 3 lamp`.
+    fn label(&self) -> Option<String> {
+        label_of(&self.labels)
+    }
+}
+
+/// Which names the bits of a port have.
+#[derive(Debug, Clone, Copy)]
+struct Bits {
+    kind: Kind,
+    address: fn(u8, u8) -> String,
+}
+
+const INPUT_BITS: Bits = Bits { kind: Kind::Input, address: names_of::input };
+const OUTPUT_BITS: Bits = Bits { kind: Kind::Output, address: names_of::output };
+
+/// The names of bits, bit 1 first, in a line.
+fn label_of(labels: &[Option<String>; 8]) -> Option<String> {
+    let told = (1..).zip(labels).filter_map(|(bit, label)| Some(format!("{bit} {}", label.as_ref()?)));
+    let told = told.collect::<Vec<String>>().join(", ");
+    (!told.is_empty()).then_some(told)
 }
 
 /// `PN01`.

@@ -5,9 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::items;
-use super::super::link::Link;
 use super::super::numbers::small;
-use super::{Port, listed, name};
+use super::{Bits, INPUT_BITS, OUTPUT_BITS, Port, listed, name};
+use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
@@ -16,7 +16,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Section, Table, View};
+use crate::output::view::{Cell, Section, Table, View};
 
 /// Which ports.
 #[derive(Debug, Args)]
@@ -69,12 +69,16 @@ pub(in super::super) struct Bank {
     own: u8,
     /// The last port of a slave station.
     slave: u8,
+    /// Which names its bits can have.
+    bits: Option<Bits>,
 }
 
 /// The numbers are those of TO 2-8. Screen 7 of the inputs, which it allows, would be beyond the last port (C8).
-pub(in super::super) const INPUTS: Bank = Bank { command: table::Command::Minp, word: "input", own: 23, slave: 3 };
-pub(in super::super) const OUTPUTS: Bank = Bank { command: table::Command::Mout, word: "output", own: 18, slave: 2 };
-const INTERNAL: Bank = Bank { command: table::Command::Mnin, word: "internal", own: 4, slave: 0 };
+pub(in super::super) const INPUTS: Bank =
+    Bank { command: table::Command::Minp, word: "input", own: 23, slave: 3, bits: Some(INPUT_BITS) };
+pub(in super::super) const OUTPUTS: Bank =
+    Bank { command: table::Command::Mout, word: "output", own: 18, slave: 2, bits: Some(OUTPUT_BITS) };
+const INTERNAL: Bank = Bank { command: table::Command::Mnin, word: "internal", own: 4, slave: 0, bits: None };
 
 impl Bank {
     /// The last port of a station.
@@ -102,7 +106,9 @@ impl Bank {
         Request::of(self.command, [Value::Number(station.into()), Value::Number(screen.into())])
     }
 
-    async fn read(self, link: &mut Link, station: u8, port: Option<u8>) -> Result<Ports, Failure> {
+    async fn read(self, context: Context<'_, Toyo>, station: u8, port: Option<u8>) -> Result<Ports, Failure> {
+        let names = names::of(context.robot, context.screen);
+        let link = context.link;
         let last = self.last(station);
         let screens = match port {
             Some(port) if port > last => {
@@ -135,6 +141,9 @@ impl Bank {
             }
         }
         ports.retain(|found| port.is_none() || found.port == port);
+        if let Some(bits) = self.bits {
+            ports = ports.into_iter().map(|port| port.labelled(names, bits, station)).collect();
+        }
         Ok(Ports { station, ports, refused, failed })
     }
 }
@@ -161,7 +170,7 @@ impl Command for In {
     const ID: &'static str = "toyo.io.in";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
-        INPUTS.read(context.link, self.which.station, self.which.port).await
+        INPUTS.read(context, self.which.station, self.which.port).await
     }
 }
 
@@ -171,7 +180,7 @@ impl Command for Out {
     const ID: &'static str = "toyo.io.out";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
-        OUTPUTS.read(context.link, self.which.station, self.which.port).await
+        OUTPUTS.read(context, self.which.station, self.which.port).await
     }
 }
 
@@ -181,7 +190,7 @@ impl Command for Internal {
     const ID: &'static str = "toyo.io.internal";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Ports, Failure> {
-        INTERNAL.read(context.link, 0, self.port).await
+        INTERNAL.read(context, 0, self.port).await
     }
 }
 
@@ -204,13 +213,14 @@ impl Command for Both {
     const ID: &'static str = "toyo.io.both";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Named, Failure> {
-        let link = context.link;
+        let Context { robot, link, screen, several, authority } = context;
         let (mut ports, mut not_known) = (Vec::new(), None);
         for (bank, is_wanted) in [(INPUTS, !self.out), (OUTPUTS, !self.r#in)] {
             if !is_wanted {
                 continue;
             }
-            match bank.read(link, self.which.station, self.which.port).await {
+            let context = Context { robot, link: &mut *link, screen, several, authority: authority.clone() };
+            match bank.read(context, self.which.station, self.which.port).await {
                 Ok(read) => {
                     let watched = |port: &Port| format!("{} {}", bank.word, port.name);
                     let named = |port: Port| NamedPort { bank: bank.word, watched: watched(&port), port };
@@ -250,11 +260,11 @@ struct NamedPort {
 
 impl Report for Named {
     fn view(&self) -> View {
-        let mut table = Table::new(&["port", "8 to 1"], "no ports");
+        let mut table = Table::new(&["port", "8 to 1", "label"], "no ports");
         for NamedPort { watched, port, .. } in &self.ports {
-            table.row([watched.as_str().into(), port.raw.as_str().into()]);
+            table.row([watched.as_str().into(), port.raw.as_str().into(), Cell::maybe(port.label())]);
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 }
 
@@ -281,11 +291,12 @@ struct Unread {
 
 impl Report for Ports {
     fn view(&self) -> View {
-        let mut table = Table::new(&["port", "8 to 1", "on"], "no ports");
+        let mut table = Table::new(&["port", "8 to 1", "on", "label"], "no ports");
         for port in &self.ports {
-            table.row([port.name.as_str().into(), port.raw.as_str().into(), listed(&port.on).into()]);
+            let label = Cell::maybe(port.label());
+            table.row([port.name.as_str().into(), port.raw.as_str().into(), listed(&port.on).into(), label]);
         }
-        let view = View::table(table);
+        let view = View::table(table.without_blank("label"));
         if self.refused.is_empty() {
             return view;
         }

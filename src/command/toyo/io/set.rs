@@ -9,11 +9,14 @@ use serde::Serialize;
 use super::super::link::{Link, wrong};
 use super::super::numbers::{not_held, number, read_back};
 use super::super::{items, refusal};
-use super::{OUTPUTS, Port, listed, name, numbers, ports_of};
+use super::{OUTPUTS, Port, label_of, listed, name, names_of, numbers, ports_of};
+use crate::command::frame::names;
 use crate::command::frame::orders::{Done, New, Old};
+use crate::command::toyo::complete;
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::names::{Kind as NameKind, Names};
 use crate::controller::toyo::field::{Field, Mask, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -30,8 +33,8 @@ use crate::output::view::{Cell, Table, Tone, View};
                         that `io out` shows can be. A running program may set the same outputs."
 )]
 pub struct Set {
-    /// Such as 1.3=on (port 1, bit 3) or 1=.......1 (port 1, bits 8 to 1)
-    #[arg(required = true, value_name = "PORT[.BIT]=VALUE")]
+    /// Such as 1.3=on (port 1, bit 3), 1=.......1 (port 1, bits 8 to 1), or NAME=on
+    #[arg(required = true, value_name = "PORT[.BIT]=VALUE", add = complete::OUTPUT_STATE)]
     assignments: Vec<Assignment>,
     /// I/O station: 0 the controller itself, 1 to 4 its slaves
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u8).range(0..=4))]
@@ -55,6 +58,25 @@ pub struct Direct {
 struct Assignment {
     port: u8,
     mask: Mask,
+    /// Whether a name was typed: names are those of station 0.
+    is_named: bool,
+}
+
+/// A port, or a bit of it, as typed.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    port: u8,
+    bit: Option<u8>,
+}
+
+/// `1`, `PN01`, `1.3`, `OUT1.3`.
+fn spot(text: &str) -> Result<Spot, String> {
+    let (port, bit) = text.split_once('.').map_or((text, None), |(port, bit)| (port, Some(bit)));
+    let prefix = ["PN", "pn", "OUT", "out"].into_iter().find_map(|prefix| port.strip_prefix(prefix));
+    let port = u8::try_from(number(&fields()[1], prefix.unwrap_or(port))?).map_err(|error| error.to_string())?;
+    let wrong = |bit: &str| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8");
+    let number = |bit: &str| bit.parse().ok().filter(|number| (1..=8).contains(number)).ok_or_else(|| wrong(bit));
+    Ok(Spot { port, bit: bit.map(number).transpose()? })
 }
 
 /// The fields of DOUT STN=0 PN01=........
@@ -67,9 +89,7 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (place, value) = typed::setting(text, "a port", "a value", "1.3=on")?;
-        let (port, bit) = place.split_once('.').map_or((place, None), |(port, bit)| (port, Some(bit)));
-        let digits = port.strip_prefix("PN").or_else(|| port.strip_prefix("pn")).unwrap_or(port);
-        let port = u8::try_from(number(&fields()[1], digits)?).map_err(|error| error.to_string())?;
+        let Spot { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, spot)?;
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
             None => match fields()[2].read(value) {
@@ -82,13 +102,11 @@ impl FromStr for Assignment {
                 }
             },
         };
-        Ok(Self { port, mask })
+        Ok(Self { port, mask, is_named: spot(place).is_err() })
     }
 }
 
-fn one_bit(bit: &str, value: &str) -> Result<Mask, String> {
-    let number = bit.parse().ok().filter(|number| (1..=8).contains(number));
-    let number: u8 = number.ok_or_else(|| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8"))?;
+fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
     let care = 1 << (number - 1);
     Ok(Mask { care, bits: if typed::state(value)? { care } else { 0 } })
 }
@@ -122,10 +140,16 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Outputs, Failure> {
         let station = self.station;
+        if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
+            return Err(Failure::usage("names are those of the controller's own ports, of station 0")
+                .hint("type port and bit, as in 1.3=on"));
+        }
         let orders = self.orders()?;
+        let names = names::of(context.robot, context.screen);
         let mut outputs = Vec::with_capacity(orders.len());
         for (done, order) in orders.iter().enumerate() {
             let output = order.set(context.link, station).await;
+            let output = output.map(|output| output.labelled(names, station));
             outputs.push(output.map_err(|failure| account(failure, &orders, done))?);
         }
         Ok(Outputs { station, outputs })
@@ -233,13 +257,15 @@ struct Output {
     on: Vec<u8>,
     /// Bits that were switched off.
     off: Vec<u8>,
+    /// What people call the bits, bit 1 first; null where one has no name.
+    labels: [Option<String>; 8],
     /// What is not as it was set.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Failure>,
 }
 
 impl Output {
-    fn new(Assignment { port, mask }: &Assignment, old: Option<&Port>, found: Option<&Port>) -> Self {
+    fn new(Assignment { port, mask, .. }: &Assignment, old: Option<&Port>, found: Option<&Port>) -> Self {
         let read = found.map(|found| found.raw.clone());
         Self {
             ok: true,
@@ -251,14 +277,25 @@ impl Output {
             read,
             on: numbers(mask.bits),
             off: numbers(mask.care & !mask.bits),
+            labels: Default::default(),
             error: None,
         }
+    }
+
+    /// With the names of the bits that were set.
+    fn labelled(mut self, names: &Names, station: u8) -> Self {
+        for bit in self.on.iter().chain(&self.off).copied().filter(|_| station == 0) {
+            if let Some(label) = self.labels.get_mut(usize::from(bit) - 1) {
+                *label = names::label(names, NameKind::Output, &names_of::output(self.port, bit));
+            }
+        }
+        self
     }
 }
 
 impl Report for Outputs {
     fn view(&self) -> View {
-        let mut table = Table::new(&["port", "8 to 1", "on", "off", "read back"], "no ports");
+        let mut table = Table::new(&["port", "8 to 1", "on", "off", "label", "read back"], "no ports");
         for output in &self.outputs {
             let tone = if output.ok { Tone::Plain } else { Tone::Bad };
             table.row([
@@ -266,10 +303,11 @@ impl Report for Outputs {
                 output.requested.as_str().into(),
                 listed(&output.on).into(),
                 listed(&output.off).into(),
+                Cell::maybe(label_of(&output.labels)),
                 Cell::maybe(output.read.as_deref()).tone(tone),
             ]);
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {

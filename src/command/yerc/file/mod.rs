@@ -15,6 +15,7 @@ mod manifest;
 mod name;
 mod pattern;
 mod put;
+mod read;
 mod restore;
 mod results;
 mod transfer;
@@ -22,6 +23,7 @@ mod transfer;
 pub use backup::back_up;
 pub use edit::Edit;
 pub(super) use name::{Shown, exact};
+pub(super) use read::{FileReading, read_files};
 pub use restore::Restore;
 pub(super) use transfer::{LISTS, fetch, list, plan_all, taken as download_failed};
 

@@ -12,7 +12,9 @@ use super::signal::{self, Signals};
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::items;
 use crate::command::frame::items::ItemError;
+use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::signal::Signal;
@@ -24,11 +26,12 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight of group \
-                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them."
+                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them. Names are those of `yerc names list`."
 )]
 pub struct Get {
-    /// Such as 20010, #20010 or 20010..20027
-    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = Signals::parse)]
+    /// Such as 20010, #20010 or 20010..20027, or a name
+    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = Signals::parse,
+        add = complete::SIGNAL)]
     signals: Vec<Signals>,
     /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
     #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
@@ -50,7 +53,8 @@ impl Command for Get {
     const ID: &'static str = "yerc.io.get";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<States, Failure> {
-        let link = context.link;
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
         let groups: Vec<u16> = once(self.groups.iter().flat_map(|groups| groups.0.iter().copied()));
         let wanted: Vec<u16> = signals.iter().map(|signal| signal.group()).chain(groups.iter().copied()).collect();
@@ -61,7 +65,7 @@ impl Command for Get {
         let byte = |group| Some(bytes.get(&group)?.clone().map_err(Failure::from));
         let signals = signals.into_iter().filter_map(|signal| {
             let on = byte(signal.group())?.map(|byte| signal.is_on(byte));
-            Some(SignalState::new(model, signal, on))
+            Some(SignalState::new(model, signal, names, on))
         });
         let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, byte(group)?)));
         let signals = signals.collect::<Result<_, _>>()?;

@@ -11,7 +11,9 @@ use serde::Serialize;
 
 use crate::command::commands;
 use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::frame::names;
 use crate::command::frame::watch::Watch;
+use crate::controller::names::{Kind, Names};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::signal::Signal;
 use crate::failure::Failure;
@@ -35,6 +37,8 @@ struct SignalState {
     signal: u32,
     /// `#20010`.
     name: String,
+    /// What people call it; null where it has no name.
+    label: Option<String>,
     /// `external input`.
     class: &'static str,
     /// The group of eight that holds it.
@@ -50,11 +54,12 @@ struct On {
 }
 
 impl SignalState {
-    fn new(model: Model, signal: Signal, on: Result<bool, Failure>) -> Result<Self, Failure> {
+    fn new(model: Model, signal: Signal, names: &Names, on: Result<bool, Failure>) -> Result<Self, Failure> {
         let class = signal::class(model, signal.group())?.meaning;
         let (number, group, bit, name) = (signal.number(), signal.group(), signal.bit(), signal.to_string());
         let outcome = ItemOutcome::new(name.as_str(), on.map(|on| On { on }));
-        Ok(Self { signal: number, name, class, group, bit, outcome })
+        let label = names::label(names, Kind::Signal, &name);
+        Ok(Self { signal: number, name, label, class, group, bit, outcome })
     }
 }
 
@@ -94,15 +99,15 @@ impl GroupState {
 }
 
 fn signal_table<'a>(signals: impl Iterator<Item = &'a SignalState>) -> Option<Section> {
-    let mut table = Table::new(&["signal", "class", "state"], "no signals");
+    let mut table = Table::new(&["signal", "label", "class", "state"], "no signals");
     for state in signals {
         let on = match (state.outcome.data(), state.outcome.error()) {
             (Some(On { on }), _) => Cell::switch(*on),
             (None, error) => error.map_or_else(|| "-".into(), ItemError::cell),
         };
-        table.row([state.name.as_str().into(), state.class.into(), on]);
+        table.row([state.name.as_str().into(), Cell::maybe(state.label.as_deref()), state.class.into(), on]);
     }
-    (!table.rows.is_empty()).then_some(Section::Table(table))
+    (!table.rows.is_empty()).then_some(Section::Table(table.without_blank("label")))
 }
 
 fn group_table<'a>(groups: impl Iterator<Item = &'a GroupState>) -> Option<Section> {

@@ -13,7 +13,9 @@ use super::super::writes::{WriteOrder, before, write_all};
 use super::signal;
 use super::{GroupState, SignalState, group_table, signal_table};
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::frame::names;
 use crate::command::frame::orders::{Old, Written};
+use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
@@ -21,7 +23,7 @@ use crate::controller::Risk;
 use crate::controller::typed;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::query::Query as _;
-use crate::controller::yerc::signal::{Signal, SignalError};
+use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
 use crate::output::view::View;
@@ -35,8 +37,8 @@ use crate::output::view::View;
                         one of them in between, that change is undone. --group writes all eight, whatever they were."
 )]
 pub struct Set {
-    /// Such as 27010=on or #27011=off
-    #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off")]
+    /// Such as 27010=on, #27011=off, or clamp=on by a name
+    #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
     /// All eight signals of a group, such as 2701=0xA5, the first one lowest (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
@@ -55,7 +57,7 @@ impl FromStr for Switch {
     fn from_str(text: &str) -> Result<Self, String> {
         let (signal, state) = typed::setting(text, "a signal", "a state", "27010=on")?;
         let on = typed::state(state)?;
-        Ok(Self { signal: signal.parse().map_err(|error: SignalError| error.to_string())?, on })
+        Ok(Self { signal: signal::single(signal)?, on })
     }
 }
 
@@ -98,7 +100,8 @@ impl Command for Set {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Switched, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, robot, .. } = context;
+        let names = names::of(robot, screen);
         let changes = self.changes()?;
         let groups: Vec<u16> = changes.keys().copied().collect();
         let model = link.model_for(|model| signal::reads(model, &groups, true)).await?;
@@ -126,7 +129,7 @@ impl Command for Set {
         let old = |group: u16| found.get(&group).copied();
         let signals = self.signals.iter().map(|Switch { signal, on }| {
             let old = old(signal.group()).map(|byte| byte >> signal.bit() & 1 == 1);
-            Ok(Written::new(SignalState::new(model, *signal, Ok(*on))?, Old::read(old), *on))
+            Ok(Written::new(SignalState::new(model, *signal, names, Ok(*on))?, Old::read(old), *on))
         });
         let groups = values.into_iter().map(|(group, value)| {
             Ok(Written::new(GroupState::new(model, group, Ok(value))?, Old::read(old(group)), value))

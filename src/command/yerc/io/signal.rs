@@ -1,20 +1,34 @@
 //! Signals and groups as the operator names them.
 
 use super::super::orders::usage;
+use crate::command::frame::names;
+use crate::controller::names::Kind;
 use crate::controller::typed;
 use crate::controller::yerc::Model;
-use crate::controller::yerc::signal::{Signal, io_class};
+use crate::controller::yerc::signal::{Signal, SignalError, io_class};
 use crate::controller::yerc::table::{Row, Span};
 use crate::controller::yerc::variables::{IoStep, plan_io_reads};
 use crate::failure::Failure;
+
+/// Stands for a name that is not known yet: a signal that every model has.
+const ANY: &str = "10010";
+
+/// A single signal: `20010`, `#20010`, or its name.
+pub fn single(text: &str) -> Result<Signal, String> {
+    names::read(&[Kind::Signal], ANY, text, |text| text.parse().map_err(|error: SignalError| error.to_string()))
+}
 
 /// A signal or a range of them, as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signals(pub Vec<Signal>);
 
 impl Signals {
-    /// `20010`, `#20010`, `20010..20027`; both ends belong to the range.
+    /// `20010`, `#20010`, `20010..20027` with both its ends, or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
+        names::read(&[Kind::Signal], ANY, text, Self::addresses)
+    }
+
+    fn addresses(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.parse::<Signal>().map(Signal::number).map_err(|error| error.to_string());
         Ok(Self(typed::range(text, number)?.filter_map(|number| Signal::new(number).ok()).collect()))
     }

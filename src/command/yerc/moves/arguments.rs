@@ -4,8 +4,11 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
+use crate::command::frame::names;
+use crate::command::yerc::complete;
 use crate::command::yerc::numbers::within;
 use crate::command::yerc::position::{extended_words, form_words, in_a_line};
+use crate::controller::names::Kind;
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
@@ -44,8 +47,8 @@ fn mover(text: &str) -> Result<Group, String> {
 /// A whole target in coordinates.
 #[derive(Debug, Args)]
 pub(super) struct To {
-    /// The target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2
-    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = typed,
+    /// The target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2 or its name
+    #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = typed, add = complete::VARIABLE,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
     to: Option<Typed>,
     /// The target in degrees of the axes, by pulses_per_degree of its entry in robots.toml
@@ -104,6 +107,10 @@ impl fmt::Display for Destination {
 }
 
 fn typed(text: &str) -> Result<Typed, String> {
+    names::read(&[Kind::Variable], "P0", text, coordinates_or_variable)
+}
+
+fn coordinates_or_variable(text: &str) -> Result<Typed, String> {
     if !text.starts_with(|first: char| first.is_ascii_alphabetic()) {
         return coordinates(text).map(Typed::Coordinates);
     }

@@ -6,11 +6,12 @@ use super::question::Question;
 use super::{Target, plain, unnamed_base};
 use crate::command::Context;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::names;
 use crate::command::yerc::each::Denied;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position;
-use crate::command::yerc::var::{PositionData, is_undefined, unlike};
+use crate::command::yerc::var::{PositionData, called, is_undefined, unlike};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{
@@ -56,17 +57,22 @@ impl Motion<'_> {
             }
         };
         let data = PositionData::of(&value);
+        let called = name.map(|variable| called(names::of(context.robot, context.screen), variable));
         let mut report = match value {
             Value::Position(position) if position.kind.is_cartesian() => {
-                self.cartesian(context.link, position, name).await?.run(context, &self.question(name, &value)).await?
+                let question = self.question(called.as_deref(), &value);
+                self.cartesian(context.link, position, name).await?.run(context, &question).await?
             }
-            _ => self.pulses(context.link, &value, name).await?.run(context, &self.question(name, &value)).await?,
+            _ => {
+                let question = self.question(called.as_deref(), &value);
+                self.pulses(context.link, &value, name).await?.run(context, &question).await?
+            }
         };
         report.leads_to(name.map(|name| name.to_string()), data);
         Ok(report)
     }
 
-    fn question(&self, name: Option<Reference>, value: &Value) -> Question<'static> {
+    fn question(&self, name: Option<&str>, value: &Value) -> Question<'static> {
         let (kind, how, robot, station) = match value {
             Value::Position(position) => {
                 let Position { kind, tool, user, form, extended, .. } = *position;

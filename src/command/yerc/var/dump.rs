@@ -35,7 +35,8 @@ pub const VERSION: u64 = 1;
                         that it is undefined, the dump fails and names it. Undefined positions stand in the file as \
                         null. `var restore` writes a dump back.\n\nA name that ends in .csv makes a table for a \
                         spreadsheet. With --update, one that is there keeps its comments (columns whose names begin with \
-                        comment), its order and the variables that are not read."
+                        comment), its order and the variables that are not read. A string without characters is \"\", as an empty cell \
+                        says nothing."
 )]
 pub struct Dump {
     /// A new file, NAME.json or NAME.csv; - for stdout

@@ -7,7 +7,9 @@ use serde_json::{Map, Value as Json};
 use super::in_form;
 use super::position::{self, PositionData};
 use crate::command::frame::items::ItemError;
+use crate::command::frame::names;
 use crate::command::yerc::each::{Denied, Outcome};
+use crate::controller::names::{Kind, Names};
 use crate::controller::text::Encoding;
 use crate::controller::text::hex;
 use crate::controller::yerc::Model;
@@ -19,6 +21,10 @@ use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 pub struct Entry {
     /// `B0`.
     name: String,
+    /// What people call it; null where it has no name, and not in files.
+    #[serde(skip_serializing_if = "Label::is_of_file")]
+    #[schemars(with = "Option<String>")]
+    label: Label,
     /// `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
     kind: &'static str,
     number: u16,
@@ -41,6 +47,25 @@ pub struct Entry {
     /// Why there is no value, in a failure.
     #[serde(skip)]
     missing: Option<ItemError>,
+}
+
+/// What people call a variable.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(untagged)]
+enum Label {
+    /// Files do not say it.
+    #[default]
+    OfFile,
+    /// It has no name.
+    Unnamed,
+    /// This.
+    Named(String),
+}
+
+impl Label {
+    const fn is_of_file(&self) -> bool {
+        matches!(self, Self::OfFile)
+    }
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
@@ -77,6 +102,7 @@ impl Entry {
         let (name, kind, number) = (reference.to_string(), reference.kind.letters(), reference.number);
         let known = Self {
             name,
+            label: Label::Unnamed,
             kind,
             number,
             ok: Some(true),
@@ -105,7 +131,22 @@ impl Entry {
     /// The same without what the controller said, for a file in which null says enough.
     #[must_use]
     pub fn bare(self) -> Self {
-        Self { ok: None, undefined: false, error: None, missing: None, ..self }
+        Self { label: Label::default(), ok: None, undefined: false, error: None, missing: None, ..self }
+    }
+
+    /// The same with the name that people gave it.
+    #[must_use]
+    pub fn labelled(self, names: &Names) -> Self {
+        let label = names::label(names, Kind::Variable, &self.name);
+        Self { label: label.map_or(Label::Unnamed, Label::Named), ..self }
+    }
+
+    /// What people call it.
+    pub fn label(&self) -> Option<&str> {
+        match &self.label {
+            Label::Named(name) => Some(name),
+            Label::Unnamed | Label::OfFile => None,
+        }
     }
 
     /// Its name.

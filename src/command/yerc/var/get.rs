@@ -7,11 +7,12 @@ use serde::Serialize;
 use super::entry::Entry;
 use super::read::{once, read_all};
 use super::{in_form, model_of};
-use crate::command::frame::items;
 use crate::command::frame::watch::{Watchable, Watched};
+use crate::command::frame::{items, names};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
+use crate::controller::names::Kind;
 use crate::controller::yerc::variables::{Reference, parse_references};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Table, View};
@@ -24,7 +25,7 @@ use crate::output::view::{Cell, Table, View};
                         numbers beyond the standard 0-99 (positions 0-127) exist where the controller's parameters \
                         say so.")]
 pub struct Get {
-    /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1
+    /// Such as B0, I1..I20, D5, R3, S2, P10, BP1, EX1, or names
     #[arg(required = true, value_name = "REF", value_delimiter = ',', value_parser = Named::parse, add = complete::VARIABLE)]
     variables: Vec<Named>,
     /// Read strings by the 16-byte commands, also from a DX200
@@ -37,9 +38,11 @@ pub struct Get {
 pub struct Named(pub Vec<Reference>);
 
 impl Named {
-    /// `B0`, `B0..B99`, `B0..99`.
+    /// `B0`, `B0..B99`, `B0..99`, or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
-        parse_references(text).map(Self).map_err(|error| error.to_string())
+        names::read(&[Kind::Variable], "B0", text, |text| {
+            parse_references(text).map(Self).map_err(|error| error.to_string())
+        })
     }
 }
 
@@ -49,14 +52,15 @@ impl Command for Get {
     const ID: &'static str = "yerc.var.get";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Variables, Failure> {
-        let link = context.link;
-        let named = || self.variables.iter().flat_map(|named| &named.0);
-        let model = model_of(link, named(), self.s16).await?;
-        let references = once(named().map(|reference| in_form(*reference, model, self.s16)));
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
+        let given = || self.variables.iter().flat_map(|given| &given.0);
+        let model = model_of(link, given(), self.s16).await?;
+        let references = once(given().map(|reference| in_form(*reference, model, self.s16)));
         let answers = read_all(link, &references, |_, _| {}).await?;
         let entries = references.iter().filter_map(|reference| {
             let answer = answers.get(reference)?;
-            Some(Entry::new(*reference, answer, link.encoding))
+            Some(Entry::new(*reference, answer, link.encoding).labelled(names))
         });
         let report = Variables { variables: entries.collect() };
         items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
@@ -78,13 +82,13 @@ pub struct Variables {
 
 impl Report for Variables {
     fn view(&self) -> View {
-        let mut table = Table::new(&["name", "value"], "no variables");
+        let mut table = Table::new(&["name", "label", "value"], "no variables");
         let numbers = self.variables.iter().all(Entry::is_number);
         for entry in &self.variables {
             let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
-            table.row([entry.name().into(), value]);
+            table.row([entry.name().into(), Cell::maybe(entry.label()), value]);
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -20,6 +20,7 @@ pub use self::position::{PositionData, held};
 use super::link::Link;
 use crate::command::commands;
 use crate::command::frame::watch::Watch;
+use crate::controller::names::{Kind, Names};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::variables::{Reference, VariableKind};
 use crate::failure::Failure;
@@ -37,6 +38,15 @@ commands! {
         Dump(dump::Dump),
         /// Write variables from a dump
         Restore(restore::Restore),
+    }
+}
+
+/// A variable as a question names it: `P5`, or `P5 (HOME)` where it has a name.
+pub fn called(names: &Names, variable: Reference) -> String {
+    let address = variable.to_string();
+    match names.label(Kind::Variable, &address) {
+        Some(label) => format!("{address} ({label})"),
+        None => address,
     }
 }
 

@@ -13,14 +13,15 @@ use super::entry::{Entry, Reading, position_in};
 use super::part::{self, Word, Words};
 use super::{in_form, listed, model_of};
 use crate::command::frame::dry_run::unknown;
-use crate::command::frame::orders;
 use crate::command::frame::orders::Old;
 use crate::command::frame::teach::printed;
+use crate::command::frame::{names, orders};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::names::Kind;
 use crate::controller::typed::{self, integer};
 use crate::controller::yerc::payload::{PayloadError, Position};
 use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
@@ -43,8 +44,8 @@ use crate::output::view::{Cell, Table, View};
                         (pulses, or 0.001 mm and 0.0001 degree)."
 )]
 pub struct Set {
-    /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE
-    #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE)]
+    /// Such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
+    #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE_VALUE)]
     assignments: Vec<Assignment>,
     /// Write strings by the 16-byte commands, also on a DX200
     #[arg(long)]
@@ -76,11 +77,14 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
-        if let Some((name, field)) = name.split_once('.') {
-            let reference: Reference = name.parse().map_err(message)?;
+        let (reference, field) = reference_of(name)?;
+        let Some(reference) = reference else {
+            // What a name stands for decides what the value must be.
+            return Ok(Self { reference: ANY, input: Input::Text(value.to_owned()) });
+        };
+        if let Some(field) = field {
             return Ok(Self { reference, input: field_of(reference, field, value)? });
         }
-        let reference: Reference = name.parse().map_err(message)?;
         let kind = reference.kind;
         let input = match value.strip_prefix('@') {
             Some(path) if kind.is_position() => Input::File(path.into()),
@@ -95,6 +99,27 @@ impl FromStr for Assignment {
         };
         Ok(Self { reference, input })
     }
+}
+
+/// Stands for a name that is not known yet.
+const ANY: Reference = Reference::new(VariableKind::B, 0);
+
+/// A variable as typed, or its name, and the part of it that is named; no variable yet where its name is to be looked up.
+fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String> {
+    let parts = text.rsplit_once('.').map(|(name, field)| (name, Some(field)));
+    let address = |name: &str| name.parse::<Reference>().map_err(message);
+    // A name may have a point in it; a part stands behind the last one.
+    let (name, field) = match parts {
+        Some((name, field)) if is_part(field.unwrap_or_default()) || address(name).is_ok() => (name, field),
+        _ => (text, None),
+    };
+    let (reference, is_open) = names::read_marked(&[Kind::Variable], "B0", name, address)?;
+    Ok(((!is_open).then_some(reference), field))
+}
+
+/// Whether a word is that of a part of a position.
+fn is_part(field: &str) -> bool {
+    matches!(field, "tool" | "user") || field.strip_prefix("axis").is_some_and(|number| number.parse::<u8>().is_ok())
 }
 
 /// Tools are 0 to 63 (3.3.16).
@@ -152,11 +177,12 @@ impl Command for Set {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Written, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, robot, .. } = context;
+        let names = names::of(robot, screen);
         let mut values = Vec::new();
         let mut fields = Vec::new();
         let mut words = Words::new();
-        let mut named: Vec<(Reference, u8)> = Vec::new();
+        let mut given: Vec<(Reference, u8)> = Vec::new();
         let references = self.assignments.iter().map(|assignment| &assignment.reference);
         let model = model_of(link, references, self.s16).await?;
         for assignment in &self.assignments {
@@ -175,10 +201,10 @@ impl Command for Set {
                     0
                 }
             };
-            if named.contains(&(reference, part)) {
+            if given.contains(&(reference, part)) {
                 return Err(Failure::usage(format!("{reference} is given twice")).hint("give each variable one value"));
             }
-            named.push((reference, part));
+            given.push((reference, part));
         }
         let mut whole_words = Vec::new();
         for (reference, value) in &mut values {
@@ -219,7 +245,7 @@ impl Command for Set {
             changes.push(Change::Position(reference, write));
         }
         write_all(link, screen, &changes).await?;
-        let entry = |reference, value| Entry::new(reference, &Ok(value), link.encoding);
+        let entry = |reference, value| Entry::new(reference, &Ok(value), link.encoding).labelled(names);
         let written = values.into_iter().map(|(reference, value)| {
             let old = old.get(&reference).map(|old| entry(reference, old.clone()).data());
             let item = entry(reference, value);
@@ -365,17 +391,17 @@ impl Part {
 
 impl Report for Written {
     fn view(&self) -> View {
-        let mut table = Table::new(&["written", "value"], "nothing to write");
+        let mut table = Table::new(&["written", "label", "value"], "nothing to write");
         let entries = || self.written.iter().map(|written| &written.item);
         let numbers = entries().all(Entry::is_number);
         for entry in entries() {
             let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
-            table.row([entry.name().into(), value]);
+            table.row([entry.name().into(), Cell::maybe(entry.label()), value]);
         }
         for part in &self.parts {
-            table.row([format!("{}.{}", part.name, part.part).into(), part.value.into()]);
+            table.row([format!("{}.{}", part.name, part.part).into(), Cell::maybe(None::<&str>), part.value.into()]);
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 }
 

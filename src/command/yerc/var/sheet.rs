@@ -11,6 +11,7 @@ use super::in_form;
 use super::position::{self, PositionData};
 use crate::controller::findings::{Finding, Findings};
 use crate::controller::sheet::{Column, Row, Sheet};
+use crate::controller::text::hex;
 use crate::controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES, Position, PositionKind};
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 
@@ -29,6 +30,9 @@ const VALUE: &str = "value";
 const TEXT: &str = "text";
 const TEXT_HEX: &str = "value_hex";
 const TYPE: &str = "type";
+/// The text that is empty: an empty cell says nothing of its variable. A text of these two characters has its bytes beside
+/// it.
+const EMPTY: &str = "\"\"";
 const ARM: [&str; 4] = ["tool", "user", "form_code", "extended_form_code"];
 const EXPECTED: &str = "the columns are name, value (numbers), text (strings), and of positions type, x_mm and the like, \
                         as `var dump FILE.csv` writes them";
@@ -63,12 +67,15 @@ fn cells(entry: &Entry) -> Vec<(String, String)> {
             let fields = position.iter().filter(|(name, _)| is_field(name));
             cells.extend(fields.map(|(name, value)| (name.clone(), plain(value))));
         }
+        Some(Json::String(text)) if text.is_empty() => cells.push((TEXT.to_owned(), EMPTY.to_owned())),
         Some(Json::String(text)) => cells.push((TEXT.to_owned(), text.clone())),
         Some(Json::Null) | None => {}
         Some(number) => cells.push((VALUE.to_owned(), number.to_string())),
     }
     if let Some(digits) = json.get("value_hex") {
         cells.push((TEXT_HEX.to_owned(), plain(digits)));
+    } else if json.get("value") == Some(&json!(EMPTY)) {
+        cells.push((TEXT_HEX.to_owned(), hex(EMPTY.as_bytes())));
     }
     cells
 }
@@ -136,6 +143,7 @@ fn variable<'k>(
         match column {
             NAME => name = (at, text),
             VALUE => drop(whole.insert("value".to_owned(), number()?)),
+            TEXT if row.string(at) == EMPTY => drop(whole.insert("value".to_owned(), json!(""))),
             TEXT => drop(whole.insert("value".to_owned(), json!(row.string(at)))),
             TEXT_HEX => drop(whole.insert("value_hex".to_owned(), json!(text))),
             TYPE => drop(fields.insert(column.to_owned(), json!(text))),
@@ -250,6 +258,8 @@ mod tests {
             value("B7", "255"),
             value("R3", "-1.5"),
             value("S2", "1.5;x"),
+            value("S3", ""),
+            value("S4", "\"\""),
             value("P2", "base:x=1000,y=0.5,z=1200,rx=180,ry=0,rz=-0.0001,tool=2,user=1,form=lower"),
             value("P3", "pulse:s=1,l=-2,u=3,r=4,b=5,t=6"),
             value("EX1", "pulse:1=77"),

@@ -22,6 +22,8 @@ use crate::output::Screen;
 pub struct Job {
     /// Which.
     pub part: Part,
+    /// What progress and dry runs call it.
+    pub called: String,
     /// Value by value.
     pub stores: Vec<Store>,
 }
@@ -41,7 +43,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &Restoring) -> Resul
             continue;
         }
         copy.check(folder)?;
-        jobs.push(Job { part, stores: content::load(part, folder)? });
+        jobs.push(Job { part, called: part.to_string(), stores: content::load(part, folder)? });
     }
     if jobs.is_empty() {
         return Err(Failure::usage("there is nothing to write in these parts")
@@ -137,10 +139,10 @@ impl Comparison {
         &mut self,
         link: &mut Link,
         screen: &Screen,
-        Job { part, stores }: &Job,
+        Job { part, called, stores }: &Job,
         item: &mut Item,
     ) -> Result<(), Failure> {
-        let mut progress = screen.items_progress(&format!("comparing {part}"), stores.len() as u64);
+        let mut progress = screen.items_progress(&format!("comparing {called}"), stores.len() as u64);
         let mut differ = Vec::new();
         for (at, store) in stores.iter().enumerate() {
             let there = content::ask(link, &store.read).await.map_err(|failure| named(store, failure))?;
@@ -209,11 +211,11 @@ async fn write_all(
 async fn write(
     link: &mut Link,
     screen: &Screen,
-    Job { part, stores }: &Job,
+    Job { called, stores, .. }: &Job,
     differ: &[usize],
     item: &mut Item,
 ) -> Result<(), Failure> {
-    let mut progress = screen.items_progress(&format!("writing {part}"), differ.len() as u64);
+    let mut progress = screen.items_progress(&format!("writing {called}"), differ.len() as u64);
     let mut refusal = None;
     for store in differ.iter().filter_map(|at| stores.get(*at)) {
         match content::ask(link, &store.write).await.map_err(|failure| named(store, failure))? {
@@ -241,14 +243,14 @@ fn count(counter: &mut Option<usize>) {
 
 fn dry_run(link: &mut Link, jobs: &[Job]) -> Result<Restored, Failure> {
     Controller::plan(link)?;
-    for Job { part, stores } in jobs {
+    for Job { called, stores, .. } in jobs {
         for store in stores {
-            link.plan(&store.read, &format!("{part} {}, to compare", store.key));
+            link.plan(&store.read, &format!("{called} {}, to compare", store.key));
         }
     }
-    for Job { part, stores } in jobs {
+    for Job { called, stores, .. } in jobs {
         for store in stores {
-            let about = format!("{part} {}", store.key);
+            let about = format!("{called} {}", store.key);
             link.plan_depending(&store.write, &store.write, Reason::about(&about).depending_on(IF_IT_DIFFERS));
         }
     }

@@ -267,7 +267,11 @@ impl Command for Restore {
         if link.is_dry() {
             return dry_run(link, &points, wrong);
         }
-        let mut jobs = [Part::Points(0), Part::Comments(0)].map(|part| Job { part, stores: Vec::new() });
+        let mut jobs = [Part::Points(0), Part::Comments(0)].map(|part| Job {
+            part,
+            called: part.kind().to_owned(),
+            stores: Vec::new(),
+        });
         let mut found = Comparison { differ: vec![Vec::new(), Vec::new()], ..Comparison::default() };
         let mut items =
             ["points", "comments"].map(|kind| Item { written: Some(0), unchanged: Some(0), ..Item::pending(kind) });

@@ -4,7 +4,8 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Readable, State, WordState, readable, table, word_table};
+use super::{Readable, State, WordState, readables, table, word_table};
+use crate::command::frame::names;
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::Series;
@@ -18,8 +19,9 @@ use crate::output::view::{Section, View};
 #[command(after_help = "Words are those of remote commands and their answers, too, as long as those last.")]
 pub struct Get {
     /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for what the controller is shown; SOW2, SOD4, SIW2, SID4 for
-    /// words; SO20..SO37 is a range. All dedicated outputs, and the general-purpose ones that are on, unless given
-    #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = Series::reader(readable), add = complete::OUTPUT)]
+    /// words; SO20..SO37 is a range;
+    /// names of robots.toml. All dedicated outputs, and the general-purpose ones that are on, unless given
+    #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = readables, add = complete::OUTPUT)]
     signals: Vec<Series<Readable>>,
 }
 
@@ -30,6 +32,7 @@ impl Command for Get {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
+        let names = names::of(context.robot, context.screen);
         let given = context.link.shown().copied();
         if given.is_none()
             && let Some(signal) = Series::all(&self.signals).find(|signal| signal.side() == Side::Input)
@@ -45,12 +48,12 @@ impl Command for Get {
         let mut states = States { signals: Vec::new(), words: Vec::new() };
         if self.signals.is_empty() {
             let told = Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown));
-            states.signals = told.map(|signal| State::of(signal, &shown)).collect();
+            states.signals = told.map(|signal| State::of(signal, &shown, names)).collect();
         }
         for readable in Series::all(&self.signals) {
             match *readable {
-                Readable::Signal(signal) => states.signals.push(State::of(signal, image(signal.side()))),
-                Readable::Word(register) => states.words.push(WordState::of(register, image(register.side()))),
+                Readable::Signal(signal) => states.signals.push(State::of(signal, image(signal.side()), names)),
+                Readable::Word(register) => states.words.push(WordState::of(register, image(register.side()), names)),
             }
         }
         Ok(states)

@@ -8,8 +8,11 @@ mod watch;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::command::frame::names;
 use crate::command::frame::watch::Watch;
+use crate::command::yrcx::numbers::Series;
 use crate::command::{Offline, commands};
+use crate::controller::names::{Kind, Names};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
@@ -56,6 +59,11 @@ impl std::fmt::Display for Readable {
     }
 }
 
+/// Signals and words as typed, a range of them, or the name of one.
+fn readables(text: &str) -> Result<Series<Readable>, String> {
+    names::read(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
+}
+
 fn readable(text: &str) -> Result<Readable, String> {
     match Register::parse(text) {
         Some(register) => register.map(Readable::Word),
@@ -71,6 +79,20 @@ fn signal(text: &str) -> Result<Signal, String> {
     Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
 }
 
+/// An input of the controller as typed, or by its name; with the name, if it was that.
+fn named_input(text: &str) -> Result<(Signal, Option<String>), String> {
+    let signal = names::read(&[Kind::Signal], ANY_INPUT, text, input)?;
+    Ok((signal, input(text).is_err().then(|| text.to_owned())))
+}
+
+/// Stands for a name that is not known yet.
+const ANY_INPUT: &str = "SI(20)";
+
+/// A signal in words: its name, and which it is.
+fn called(signal: Signal, name: Option<&String>) -> String {
+    name.map_or_else(|| signal.named(), |name| format!("{name} ({signal})"))
+}
+
 /// An input of the controller as typed.
 fn input(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Input, text).map_err(|error| error.to_string())
@@ -83,16 +105,20 @@ struct State {
     signal: String,
     /// Its name; null for general-purpose signals.
     name: Option<&'static str>,
+    /// What people call it; null where they gave it no name.
+    label: Option<String>,
     on: bool,
     /// What it says or does; null for general-purpose signals.
     meaning: Option<&'static str>,
 }
 
 impl State {
-    fn of(signal: Signal, image: &Image) -> Self {
+    fn of(signal: Signal, image: &Image, names: &Names) -> Self {
         let dedicated = signal.dedicated();
+        let address = signal.to_string();
         Self {
-            signal: signal.to_string(),
+            label: names::label(names, Kind::Signal, &address),
+            signal: address,
             name: dedicated.map(|dedicated| dedicated.name),
             on: signal.is_on(image),
             meaning: dedicated.map(|dedicated| dedicated.text),
@@ -105,6 +131,8 @@ impl State {
 struct WordState {
     /// `SOW(2)`, `SID(4)`.
     word: String,
+    /// What people call it; null where they gave it no name.
+    label: Option<String>,
     /// Without a sign.
     value: u32,
     /// The same, as in `0x0005`.
@@ -114,28 +142,32 @@ struct WordState {
 }
 
 impl WordState {
-    fn of(register: Register, image: &Image) -> Self {
+    fn of(register: Register, image: &Image, names: &Names) -> Self {
         let words = image.command();
         let value = register.read(&words);
-        Self { word: register.to_string(), value, hex: register.hex(value), in_command: words[0] != 0 }
+        let word = register.to_string();
+        let label = names::label(names, Kind::Signal, &word);
+        Self { word, label, value, hex: register.hex(value), in_command: words[0] != 0 }
     }
 }
 
 fn word_table(words: &[WordState]) -> Table {
-    let mut table = Table::new(&["word", "value", "hex", "of a remote command"], "no words");
-    for WordState { word, value, hex, in_command } in words {
+    let mut table = Table::new(&["word", "label", "value", "hex", "of a remote command"], "no words");
+    for WordState { word, label, value, hex, in_command } in words {
         let in_command = if *in_command { "yes" } else { "no" };
-        table.row([word.as_str().into(), (*value).into(), hex.as_str().into(), in_command.into()]);
+        let label = Cell::maybe(label.as_deref());
+        table.row([word.as_str().into(), label, (*value).into(), hex.as_str().into(), in_command.into()]);
     }
-    table
+    table.without_blank("label")
 }
 
 fn table(states: &[State], empty: &'static str) -> Table {
-    let mut table = Table::new(&["signal", "name", "state", "meaning"], empty);
-    for State { signal, name, on, meaning } in states {
-        table.row([signal.as_str().into(), Cell::maybe(*name), Cell::switch(*on), Cell::maybe(*meaning)]);
+    let mut table = Table::new(&["signal", "name", "label", "state", "meaning"], empty);
+    for State { signal, name, label, on, meaning } in states {
+        let label = Cell::maybe(label.as_deref());
+        table.row([signal.as_str().into(), Cell::maybe(*name), label, Cell::switch(*on), Cell::maybe(*meaning)]);
     }
-    table
+    table.without_blank("label")
 }
 
 #[cfg(test)]

@@ -2,13 +2,15 @@
 
 use clap::Args;
 
-use super::input;
+use super::{ANY_INPUT, called, input, named_input};
+use crate::command::frame::names;
 use crate::command::frame::orders::{AllDone, Done, New, Old};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
+use crate::controller::names::Kind;
 use crate::controller::typed;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::procedure::Procedure;
@@ -30,68 +32,93 @@ pub struct Set {
 }
 
 /// An input and what to switch it to, or a word and what to set it to.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Change {
-    Signal { signal: Signal, on: bool },
-    Word { register: Register, value: u32 },
+    /// With the name that was typed, if it was one.
+    Signal {
+        signal: Signal,
+        name: Option<String>,
+        on: bool,
+    },
+    Word {
+        register: Register,
+        value: u32,
+    },
+}
+
+/// What a line sets: an input or a word.
+enum Settable {
+    Signal(Signal),
+    Word(Register),
+}
+
+fn settable(text: &str) -> Result<Settable, String> {
+    match Register::parse(text) {
+        Some(register) => register.map(Settable::Word),
+        None => input(text).map(Settable::Signal),
+    }
 }
 
 fn change(text: &str) -> Result<Change, String> {
     let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
-    if let Some(register) = Register::parse(signal) {
-        let register = register?;
-        if register.side() == Side::Output {
-            return Err(format!("{register} is the controller's to set; SIW and SID are set from here"));
+    let (found, is_open) = names::read_marked(&[Kind::Signal], ANY_INPUT, signal, settable)?;
+    let name = settable(signal).is_err().then(|| signal.to_owned());
+    match found {
+        Settable::Word(register) if register.side() == Side::Output => {
+            Err(format!("{register} is the controller's to set; SIW and SID are set from here"))
         }
-        return Ok(Change::Word { register, value: register.value(state)? });
+        Settable::Word(register) => Ok(Change::Word { register, value: register.value(state)? }),
+        // What a name stands for decides what can be set.
+        Settable::Signal(signal) if is_open => Ok(Change::Signal { signal, name, on: false }),
+        Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: typed::state(state)? }),
     }
-    let on = typed::state(state)?;
-    Ok(Change::Signal { signal: input(signal)?, on })
 }
 
 impl Change {
     /// What was done, where this was shown before.
-    fn done(self, shown: Option<&Image>) -> Done {
+    fn done(&self, shown: Option<&Image>) -> Done {
         match self {
-            Self::Signal { signal, on } => {
+            Self::Signal { signal, on, .. } => {
                 let old = shown.map(|image| signal.is_on(image));
-                New::of(signal.to_string(), on, self.describe()).replaces(Old::read(old))
+                New::of(signal.to_string(), *on, self.describe()).replaces(Old::read(old))
             }
             Self::Word { register, value } => {
                 let old = shown.map(|image| register.read(&image.command()));
-                New::of(register.to_string(), value, self.describe()).replaces(Old::read(old))
+                New::of(register.to_string(), *value, self.describe()).replaces(Old::read(old))
             }
         }
     }
 
-    fn describe(self) -> String {
+    fn describe(&self) -> String {
         match self {
-            Self::Signal { signal, on } => format!("{} {}", signal.named(), if on { "on" } else { "off" }),
+            Self::Signal { signal, name, on } => {
+                format!("{} {}", called(*signal, name.as_ref()), if *on { "on" } else { "off" })
+            }
             Self::Word { register, value } => format!("{register} = {value}"),
         }
     }
 
-    fn risk(self) -> Risk {
+    fn risk(&self) -> Risk {
         match self {
-            Self::Signal { signal, on } => signal.risk(on),
+            Self::Signal { signal, on, .. } => signal.risk(*on),
             Self::Word { .. } => Risk::Write,
         }
     }
 
     /// The word, if it is one.
-    fn word(self) -> Option<(Register, u32)> {
+    fn word(&self) -> Option<(Register, u32)> {
         match self {
             Self::Signal { .. } => None,
-            Self::Word { register, value } => Some((register, value)),
+            Self::Word { register, value } => Some((*register, *value)),
         }
     }
 
     /// Does it, or all of these words at once.
     async fn carry_out(together: &[Self], link: &mut Link) -> Result<(), Failure> {
-        if let [Self::Signal { signal, on }] = together {
+        if let [Self::Signal { signal, on, .. }] = together {
             return link.carry_out(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
         }
-        link.set_words(&together.iter().filter_map(|change| change.word()).collect::<Vec<_>>()).await
+        link.set_words(&together.iter().filter_map(Self::word).collect::<Vec<_>>()).await
     }
 }
 
@@ -101,7 +128,7 @@ impl Command for Set {
     const ID: &'static str = "yrcx.io.set";
 
     fn risk(&self) -> Risk {
-        self.changes.iter().map(|change| change.risk()).max().unwrap_or(Risk::Write)
+        self.changes.iter().map(Change::risk).max().unwrap_or(Risk::Write)
     }
 
     fn intent(&self) -> String {
@@ -128,15 +155,21 @@ impl Command for Set {
 }
 
 fn describe(changes: &[Change]) -> String {
-    changes.iter().map(|change| change.describe()).collect::<Vec<_>>().join(", ")
+    changes.iter().map(Change::describe).collect::<Vec<_>>().join(", ")
 }
 
 /// Switches an input of the controller on and off again.
 #[derive(Debug, Args)]
 pub struct Pulse {
     /// Name or number, as in alarm-reset or 20
-    #[arg(value_name = "SIGNAL", value_parser = input, add = complete::INPUT)]
-    signal: Signal,
+    #[arg(value_name = "SIGNAL", value_parser = named_input, add = complete::INPUT)]
+    signal: (Signal, Option<String>),
+}
+
+impl Pulse {
+    fn called(&self) -> String {
+        called(self.signal.0, self.signal.1.as_ref())
+    }
 }
 
 impl Command for Pulse {
@@ -145,18 +178,18 @@ impl Command for Pulse {
     const ID: &'static str = "yrcx.io.pulse";
 
     fn risk(&self) -> Risk {
-        self.signal.risk(true).max(Risk::Write)
+        self.signal.0.risk(true).max(Risk::Write)
     }
 
     fn intent(&self) -> String {
-        format!("switch {} on and off again", self.signal.named())
+        format!("switch {} on and off again", self.called())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        let old = context.link.shown().map(|image| self.signal.is_on(image));
-        context.link.carry_out(switching(Procedure::pulse(self.signal))?).await?;
-        let words = format!("switched {} on and off again", self.signal.named());
-        Ok(New::of(self.signal.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
+        let old = context.link.shown().map(|image| self.signal.0.is_on(image));
+        context.link.carry_out(switching(Procedure::pulse(self.signal.0))?).await?;
+        let words = format!("switched {} on and off again", self.called());
+        Ok(New::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
     }
 }
 

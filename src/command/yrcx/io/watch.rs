@@ -5,10 +5,12 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{State, table};
+use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, ConnectMode, Context, Report};
+use crate::controller::names::Kind;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
 use crate::output::view::View;
@@ -22,6 +24,10 @@ pub struct Outputs {
 }
 
 fn output(text: &str) -> Result<Signal, String> {
+    names::read(&[Kind::Signal], "SO(20)", text, output_by_address)
+}
+
+fn output_by_address(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Output, text).map_err(|error| error.to_string())
 }
 
@@ -32,6 +38,7 @@ impl Command for Outputs {
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
+        let names = names::of(context.robot, context.screen);
         let link = context.link;
         // What a wait has seen is told, however short it was.
         let image = match link.seen.take() {
@@ -40,7 +47,7 @@ impl Command for Outputs {
         };
         link.told = Some(image);
         let signals = if self.signals.is_empty() { Signal::all(Side::Output).collect() } else { self.signals.clone() };
-        Ok(States { signals: signals.into_iter().map(|signal| State::of(signal, &image)).collect() })
+        Ok(States { signals: signals.into_iter().map(|signal| State::of(signal, &image, names)).collect() })
     }
 }
 

@@ -5,6 +5,7 @@ use super::memory::{Kind, Memory};
 use super::storage::{Content, Storage};
 use super::world::World;
 use crate::yerc::Model;
+use crate::yerc::names::written;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
 /// System software, robot model, application and parameter version (examples of FS and DX 3.3.26; the letters of the
@@ -58,6 +59,59 @@ const FILES: [(&str, &str); 12] = [
     ("VARNAME.LST", "//VARNAME\nB000 PARTS"),
 ];
 
+/// Lines of the sections for signals: of the first 128 of each.
+const SIGNAL_LINES: usize = 32;
+/// Lines of the sections for variables and registers.
+const LINES: usize = 100;
+
+/// Names that people gave, in the files that a controller keeps them in; see [`crate::yerc::names`].
+pub(super) fn name_files() -> Vec<(&'static str, Vec<u8>)> {
+    let signals = |lines: &[(usize, &str)]| section(SIGNAL_LINES, ",,,", lines);
+    let variables = |number: usize, name: &str| section(LINES, "", &[(0, &format!("{number:04} 1,0,{name}"))]);
+    let none = || section(LINES, "", &[]);
+    let variables = [
+        ("///SHARE 100,100,100,100,100,128,128,128", Vec::new()),
+        ("///B", variables(50, "PARTS_DONE")),
+        ("///I", variables(50, "PARTS_TODO")),
+        ("///D", none()),
+        ("///R", none()),
+        ("///S", none()),
+        ("///P", variables(20, "ABOVE_TABLE")),
+        ("///BP", none()),
+        ("///EX", none()),
+    ];
+    let registers = [("//NAME", section(1000, "", &[(100, "LINE_SPEED")]))];
+    [
+        (
+            "IONAME.DAT",
+            written(
+                "/IONAME",
+                &[
+                    ("//IN", signals(&[(0, "PART_PRESENT,DOOR_CLOSED,,")])),
+                    ("//OUT", signals(&[(0, "GRIPPER,BUSY,,")])),
+                ],
+            ),
+        ),
+        (
+            "EXIONAME.DAT",
+            written(
+                "/EXIONAME",
+                &[("//EXIN", signals(&[(4, "START_REQUEST,,,")])), ("//EXOUT", signals(&[(0, "CYCLE_DONE,,,")]))],
+            ),
+        ),
+        ("VARNAME.DAT", written("//VARNAME", &variables)),
+        ("IOMNAME.DAT", written("/IOMMAME", &registers)),
+    ]
+    .map(|(file, text)| (file, sjis(&text)))
+    .into()
+}
+
+/// So many lines of nothing, but for these.
+fn section(lines: usize, nothing: &str, named: &[(usize, &str)]) -> Vec<String> {
+    let line = |at| named.iter().find(|(line, _)| *line == at).map_or(nothing, |(_, text)| text).to_owned();
+    (0..lines).map(line).collect()
+}
+
 /// Everything a fresh controller knows, so that each list and each read has something to show.
 pub(super) fn fill(world: &mut World) {
     files(&mut world.files);
@@ -71,6 +125,9 @@ fn files(files: &mut Storage) {
     }
     for (name, text) in FILES {
         files.install(name.as_bytes(), Content::from(sjis(&format!("{text}\n").replace('\n', "\r\n"))));
+    }
+    for (name, bytes) in name_files() {
+        files.install(name.as_bytes(), Content::from(bytes));
     }
 }
 

@@ -58,6 +58,11 @@ pub struct Outgoing {
     pub bytes: Vec<u8>,
 }
 
+/// The files in which it keeps names for signals, variables and registers at the start.
+pub fn name_files() -> Vec<(&'static str, Vec<u8>)> {
+    defaults::name_files()
+}
+
 /// A controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {

@@ -1,0 +1,65 @@
+//! Reads small files of the controller for a command that wants what is in them.
+
+use super::lists::{Lists, There};
+use super::transfer;
+use crate::command::backup::goes_on;
+use crate::command::yerc::link::Link;
+use crate::controller::yerc::files::FileName;
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+
+/// What came of a file.
+#[derive(Debug)]
+pub enum FileReading {
+    /// Its bytes.
+    Read(Vec<u8>),
+    /// The controller has none of this name.
+    Missing,
+    /// It was not read.
+    Failed(Failure),
+}
+
+/// Reads files of at most `most` bytes, each with its own outcome, in their order; `None` in a dry run, which notes the
+/// requests.
+pub async fn read_files(
+    link: &mut Link,
+    screen: &Screen,
+    names: &[&str],
+    most: u64,
+) -> Result<Option<Vec<FileReading>>, Failure> {
+    let files = names
+        .iter()
+        .map(|name| FileName::new(*name).map_err(|error| Failure::local(format!("internal error: {name}: {error}"))));
+    let files = files.collect::<Result<Vec<FileName>, Failure>>()?;
+    let looking = screen.spinner("looking for files");
+    let Some(lists) = Lists::ask(link, &files).await? else {
+        transfer::plan_all(link, "if the controller has it", files.iter().map(FileName::save))?;
+        return Ok(None);
+    };
+    drop(looking);
+    let mut answers = Vec::with_capacity(files.len());
+    for (file, name) in files.iter().zip(names) {
+        if lists.tell(file) == There::No {
+            answers.push(FileReading::Missing);
+            continue;
+        }
+        let mut bytes = Vec::new();
+        let mut progress = screen.bytes_progress(name, None);
+        let read = transfer::fetch_listed(link, file, |block| {
+            progress.advance(block.len() as u64);
+            bytes.extend_from_slice(block);
+            if bytes.len() as u64 > most {
+                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes"))
+                    .hint("no controller has such a file of this size; record it with --trace and report it"));
+            }
+            Ok(())
+        });
+        match read.await {
+            Ok(0) => answers.push(FileReading::Missing),
+            Ok(_) => answers.push(FileReading::Read(bytes)),
+            Err(failure) if goes_on(&failure) => answers.push(FileReading::Failed(failure)),
+            Err(failure) => return Err(transfer::about(name, failure)),
+        }
+    }
+    Ok(Some(answers))
+}

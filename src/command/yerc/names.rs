@@ -1,0 +1,197 @@
+//! `yerc names`: what people call signals, variables and registers.
+
+use clap::Args;
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::file::{FileReading, read_files};
+use super::link::Yerc;
+use crate::command::frame::items::{self, ItemError};
+use crate::command::frame::names::{Listing, list};
+use crate::command::{Command, Context, Report, commands};
+use crate::controller::yerc::names::{FILES, FileNames, read};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Cell, Table, View};
+use crate::settings::names::{Kept, KeptFile, Place};
+
+commands! {
+    /// What can be done with names.
+    pub enum Names {
+        /// Read the names on the controller and keep them
+        Get(Get),
+        /// List the names that are known, with number and origin
+        List(List),
+        /// Remove the names that were kept
+        Forget(Forget),
+    }
+}
+
+/// Reads the names that the controller keeps in its files, and keeps them on this machine for its address.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; one that the controller does not have \
+                  has no names. A name can then be typed in place of its number: `io get`, `io set`, `var get`, `var set`, \
+                  `register get`, `teach`, `move --to`. Names of the robot's entry in robots.toml come before them \
+                  (`armctl help inventory`). Names that are changed on the controller are read again by this command."
+)]
+pub struct Get {}
+
+/// Lists the names of signals, variables and registers.
+#[derive(Debug, Args)]
+pub struct List {
+    /// Only those with this in name, kind, address or origin
+    filter: Option<String>,
+}
+
+/// Removes the names that were kept for the controller; those of robots.toml stay.
+#[derive(Debug, Args)]
+pub struct Forget {}
+
+impl Command for Get {
+    type Family = Yerc;
+    type Report = Fetched;
+    const ID: &'static str = "yerc.names.get";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
+        let Context { link, robot, screen, .. } = context;
+        let Some(answers) = read_files(link, screen, &FILES, MOST).await? else {
+            return Ok(Fetched::default());
+        };
+        let (mut files, mut kept, mut names) = (Vec::new(), Vec::new(), Vec::new());
+        for (file, answer) in FILES.into_iter().zip(answers) {
+            let found = match answer {
+                FileReading::Read(bytes) => read(file, &bytes, link.encoding)
+                    .map(|found| (found, bytes))
+                    .map_err(|why| Failure::new(Kind::Malformed, format!("{file}: {why}")).hint(ANOTHER_FORM)),
+                FileReading::Missing => {
+                    files.push(OfFile { file, state: State::Missing, names: 0, passed_over: 0, error: None });
+                    continue;
+                }
+                FileReading::Failed(failure) => Err(failure),
+            };
+            files.push(match found {
+                Ok((FileNames { names: found, passed_over }, bytes)) => {
+                    kept.push(KeptFile::new(file, &bytes, found.len()));
+                    let row = OfFile { file, state: State::Read, names: found.len(), passed_over, error: None };
+                    names.extend(found);
+                    row
+                }
+                Err(failure) => {
+                    let error = Some(ItemError::new(file, failure));
+                    OfFile { file, state: State::Failed, names: 0, passed_over: 0, error }
+                }
+            });
+        }
+        items::nothing(files.len(), files.iter().filter_map(|file| file.error.as_ref()))?;
+        let mut report = Fetched { files, names: names.len(), kept: false, read_at: None };
+        // Half of them in place of all that were kept would hide what is missing.
+        if report.failure().is_none()
+            && let Some(place) = robot.names.place()
+        {
+            let kept = Kept::new(place, link.encoding, kept, &names);
+            place.write(&kept)?;
+            (report.kept, report.read_at) = (true, Some(kept.read_at));
+        }
+        if !report.kept && robot.target.value.is_simulated() {
+            screen.note("A simulator in this process keeps no names: they are always those that its files begin with.");
+        }
+        Ok(report)
+    }
+}
+
+/// A file of names has some ten thousand lines.
+const MOST: u64 = 8 << 20;
+const ANOTHER_FORM: &str =
+    "only the form that FS100, DX200 and YRC1000 write is known; names can be given in robots.toml";
+
+/// What was read.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct Fetched {
+    files: Vec<OfFile>,
+    /// In all files.
+    names: usize,
+    /// Whether they are kept for later commands.
+    kept: bool,
+    /// When they were read, if they are kept.
+    #[schemars(with = "Option<String>", extend("format" = "date-time"))]
+    read_at: Option<Timestamp>,
+}
+
+/// A file and what is in it.
+#[derive(Debug, Serialize, JsonSchema)]
+struct OfFile {
+    file: &'static str,
+    state: State,
+    names: usize,
+    /// Lines that have another form.
+    passed_over: usize,
+    /// Why it was not read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum State {
+    Read,
+    /// The controller has no such file, or an empty one.
+    Missing,
+    Failed,
+}
+
+impl Report for Fetched {
+    fn view(&self) -> View {
+        let mut table = Table::new(&["file", "names", "passed over", "result"], "no files");
+        for file in &self.files {
+            let result = match (file.state, &file.error) {
+                (State::Missing, _) => "the controller has none".into(),
+                (_, Some(error)) => error.cell(),
+                (_, None) if self.kept => "kept".into(),
+                (_, None) => "read".into(),
+            };
+            let passed_over = Cell::maybe(Some(file.passed_over).filter(|lines| *lines > 0));
+            table.row([file.file.into(), file.names.into(), passed_over, result]);
+        }
+        View::table(table.without_blank("passed over"))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        items::verdict(self.files.len(), self.files.iter().filter_map(|file| file.error.as_ref()))
+    }
+}
+
+impl Command for List {
+    type Family = Yerc;
+    type Report = Listing;
+    const ID: &'static str = "yerc.names.list";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
+        list(context.robot, self.filter.as_deref())
+    }
+}
+
+impl Command for Forget {
+    type Family = Yerc;
+    type Report = Forgotten;
+    const ID: &'static str = "yerc.names.forget";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten, Failure> {
+        let place = context.robot.names.place().filter(|_| !context.link.is_dry());
+        Ok(Forgotten { forgotten: place.map_or(Ok(false), Place::forget)? })
+    }
+}
+
+/// What became of names that were kept.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Forgotten {
+    /// Whether there were some.
+    forgotten: bool,
+}
+
+impl Report for Forgotten {
+    fn view(&self) -> View {
+        View::text(if self.forgotten { "forgotten" } else { "nothing was kept" })
+    }
+}

@@ -1,0 +1,253 @@
+//! Names that people gave to signals, variables, registers and the like: which address each stands for.
+//!
+//! A name is looked up only where a text is no address: it never hides one. Names of the inventory come before those
+//! that the controller keeps. Upper and lower case count where two names differ in nothing else.
+
+use std::collections::HashMap;
+use std::fmt;
+
+/// What a name can stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// A signal, or a word of signals.
+    Signal,
+    /// A variable.
+    Variable,
+    /// A register.
+    Register,
+    /// A port, or a bit of one.
+    Port,
+    /// A bit of an input port.
+    Input,
+    /// A bit of an output port.
+    Output,
+    /// A counter.
+    Counter,
+}
+
+impl Kind {
+    /// As messages and reports name it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Signal => "signal",
+            Self::Variable => "variable",
+            Self::Register => "register",
+            Self::Port => "port",
+            Self::Input => "input",
+            Self::Output => "output",
+            Self::Counter => "counter",
+        }
+    }
+}
+
+/// Where a name comes from.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// `robots.toml`.
+    Inventory,
+    /// A file of the controller.
+    File(String),
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Inventory => f.write_str("robots.toml"),
+            Self::File(file) => f.write_str(file),
+        }
+    }
+}
+
+/// A name and what it stands for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Name {
+    /// What that is.
+    pub kind: Kind,
+    /// Which one, as its family writes it: `#27010`, `B5`, `SO(20)`.
+    pub address: String,
+    /// The name.
+    pub name: String,
+    /// Where it comes from.
+    pub source: Source,
+}
+
+/// What the addresses of a family look like.
+#[derive(Debug, Clone, Copy)]
+pub struct Grammar {
+    /// Reads an address, and gives it as the family writes it; `None` for what is none.
+    pub address: fn(&str) -> Option<(Kind, String)>,
+    /// What addresses begin with before their number.
+    pub prefixes: &'static [&'static str],
+}
+
+impl Grammar {
+    /// Whether a text is an address, or looks like one that does not exist: no name may.
+    pub fn is_shaped(self, text: &str) -> bool {
+        let text = text.trim_start_matches('#');
+        let digits = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
+        let (letters, rest) = text.split_at(digits);
+        let is_prefix = letters.is_empty() || self.prefixes.iter().any(|prefix| prefix.eq_ignore_ascii_case(letters));
+        let is_number = rest.contains(|c: char| c.is_ascii_digit())
+            && rest.chars().all(|c| c.is_ascii_digit() || "().-:#".contains(c));
+        is_prefix && is_number || (self.address)(text).is_some()
+    }
+}
+
+/// Longest name, in bytes: four times what a pendant takes.
+pub const LONGEST: usize = 128;
+
+/// Why a text cannot be typed as a name; `None` where it can.
+pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
+    if text.trim().is_empty() || text.trim() != text {
+        Some("it is empty, or has blanks at an end")
+    } else if text.len() > LONGEST {
+        Some("it is too long")
+    } else if text.contains([',', '=']) || text.chars().any(char::is_control) {
+        Some("it has a comma, an equals sign or a control character")
+    } else if text.starts_with('-') {
+        Some("it begins with a dash, as flags do")
+    } else if grammar.is_shaped(text) {
+        Some("it looks like an address")
+    } else {
+        None
+    }
+}
+
+/// What a text stands for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Found<'a> {
+    /// This.
+    One(&'a Name),
+    /// All of these have the name.
+    Several(Vec<&'a Name>),
+    /// Nothing has it.
+    None,
+}
+
+/// All names of a robot.
+#[derive(Debug, Clone, Default)]
+pub struct Names {
+    all: Vec<Name>,
+    /// The first name of each address.
+    by_address: HashMap<(Kind, String), usize>,
+    /// By their letters, whether those are capitals or not.
+    by_name: HashMap<String, Vec<usize>>,
+}
+
+impl Names {
+    /// In their order; of two names of an address the first is shown.
+    pub fn new(all: Vec<Name>) -> Self {
+        let mut by_address = HashMap::with_capacity(all.len());
+        let mut by_name: HashMap<String, Vec<usize>> = HashMap::with_capacity(all.len());
+        for (at, name) in all.iter().enumerate() {
+            by_address.entry((name.kind, name.address.clone())).or_insert(at);
+            by_name.entry(name.name.to_lowercase()).or_default().push(at);
+        }
+        Self { all, by_address, by_name }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Name> {
+        self.all.iter()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The name of an address as its family writes it.
+    pub fn label(&self, kind: Kind, address: &str) -> Option<&str> {
+        if self.all.is_empty() {
+            return None;
+        }
+        let at = self.by_address.get(&(kind, address.to_owned()))?;
+        self.all.get(*at).map(|name| name.name.as_str())
+    }
+
+    /// What a name stands for among these kinds.
+    pub fn find(&self, kinds: &[Kind], text: &str) -> Found<'_> {
+        let alike = self.by_name.get(&text.to_lowercase()).map(Vec::as_slice).unwrap_or_default();
+        let alike = || alike.iter().filter_map(|at| self.all.get(*at)).filter(|name| kinds.contains(&name.kind));
+        let is_own = |name: &Name| name.source == Source::Inventory;
+        // Those of the inventory first, whatever their letters; of each, those that are written so.
+        let steps = [(true, true), (true, false), (false, true), (false, false)];
+        for (own, exact) in steps {
+            let mut found: Vec<&Name> = Vec::new();
+            for name in alike().filter(|name| is_own(name) == own && (!exact || name.name == text)) {
+                if !found.iter().any(|other| (other.kind, &other.address) == (name.kind, &name.address)) {
+                    found.push(name);
+                }
+            }
+            match found[..] {
+                [] => {}
+                [one] => return Found::One(one),
+                _ => return Found::Several(found),
+            }
+        }
+        Found::None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn name(kind: Kind, address: &str, name: &str, source: Source) -> Name {
+        Name { kind, address: address.to_owned(), name: name.to_owned(), source }
+    }
+
+    fn names() -> Names {
+        let file = || Source::File("IONAME.DAT".to_owned());
+        Names::new(vec![
+            name(Kind::Signal, "#27010", "clamp", Source::Inventory),
+            name(Kind::Signal, "#27011", "clamp", Source::Inventory),
+            name(Kind::Signal, "#27012", "Lamp", Source::Inventory),
+            name(Kind::Signal, "#00010", "LAMP", file()),
+            name(Kind::Signal, "#00011", "Door", file()),
+            name(Kind::Signal, "#10011", "DOOR", file()),
+            name(Kind::Signal, "#27012", "Lamp", Source::Inventory),
+            name(Kind::Variable, "B5", "DOOR", file()),
+        ])
+    }
+
+    fn found(kinds: &[Kind], text: &str) -> String {
+        match names().find(kinds, text) {
+            Found::One(name) => name.address.clone(),
+            Found::Several(names) => names.iter().map(|name| name.address.as_str()).collect::<Vec<_>>().join("+"),
+            Found::None => "-".to_owned(),
+        }
+    }
+
+    #[test]
+    fn the_inventory_comes_first_and_case_counts_where_it_must() {
+        let signal = |text| found(&[Kind::Signal], text);
+        assert_eq!(signal("clamp"), "#27010+#27011");
+        assert_eq!(signal("lamp"), "#27012");
+        assert_eq!(signal("LAMP"), "#27012", "that of the file is hidden");
+        assert_eq!(
+            (signal("Door"), signal("DOOR"), signal("door")),
+            ("#00011".into(), "#10011".into(), "#00011+#10011".into())
+        );
+        assert_eq!(signal("nothing"), "-");
+        assert_eq!(found(&[Kind::Variable], "door"), "B5");
+    }
+
+    #[test]
+    fn an_address_shows_its_first_name() {
+        assert_eq!(names().label(Kind::Signal, "#27012"), Some("Lamp"));
+        assert_eq!(names().label(Kind::Variable, "#27012"), None);
+    }
+
+    #[test]
+    fn what_looks_like_an_address_is_no_name() {
+        const GRAMMAR: Grammar = Grammar { address: |_| None, prefixes: &["B", "SO"] };
+        for text in ["27018", "#9", "B300", "b5", "SO(05)", "SO20..27", "1.3", "", " x", "a,b", "a=b", "x\u{1b}", "-x"]
+        {
+            assert!(unusable(GRAMMAR, text).is_some(), "{text:?}");
+        }
+        for text in ["clamp", "VAC1", "B", "FILTER CLEAN", "2ND_PICK", "扉", "a.b", "B5X"] {
+            assert_eq!(unusable(GRAMMAR, text), None, "{text}");
+        }
+    }
+}
