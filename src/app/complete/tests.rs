@@ -51,6 +51,10 @@ fn values_are_those_of_their_kind() {
         ("armctl yrcx port get LO", &["LO0", "LO1"]),
         ("armctl yerc var get B", &["B", "BP"]),
         ("armctl yerc --target s", &["sim:", "serial://"]),
+        ("armctl --sim yerc io get grip", &["GRIPPER"]),
+        ("armctl --sim yerc io set BUSY", &["BUSY=on", "BUSY=off"]),
+        ("armctl --sim yerc var set parts_d", &["PARTS_DONE="]),
+        ("armctl --sim yerc register get L", &["LINE_SPEED"]),
         ("armctl session open --family t", &["toyo"]),
     ] {
         let found = found(line);

@@ -346,7 +346,9 @@ mod tests {
         let known = |text: &str| known(Family::Yerc, &robots, || read_signal(text));
         assert_eq!((known("clamp"), known("CLAMP"), known("27011")), (Ok(27015), Ok(27015), Ok(27011)));
         assert_eq!(known("clanp").unwrap_err(), "'clanp' is no number; did you mean 'clamp'?");
-        assert_eq!(known("door").unwrap_err(), "'door' is no number");
+        let unknown = known("door").unwrap_err();
+        assert_eq!(unknown, "'door' is no number; names that the controller has are read by `yerc names get`");
+        assert_eq!(known("#9x").unwrap_err().split(';').next(), Some("'#9x' is no number"));
         assert_eq!(read_signal("clamp").unwrap_err(), "'clamp' is no number", "it is as it was");
     }
 

@@ -15,6 +15,9 @@ use crate::controller::yerc::wire::RequestFrame;
 use crate::failure::Kind;
 use crate::gate::Gate;
 
+/// What sends nothing.
+const AT_HOME: [&str; 2] = ["names list", "names forget"];
+
 /// A line for each command, with files in `DIR`; its risk, and the most that a frame of it may be.
 const LINES: &[(&str, Risk, Risk)] = &[
     ("status", Read, Read),
@@ -62,6 +65,9 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("io set 27010=on", Write, Write),
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
+    ("names get", Read, Read),
+    ("names list", Read, Read),
+    ("names forget", Read, Read),
     ("servo on", Motion, Motion),
     ("servo off", Write, Write),
     ("hold on", Write, Write),
@@ -128,7 +134,9 @@ fn every_command_passes_the_gate_by_its_risk() {
 
         let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));
         let shown = frames.iter().map(risk_of).max();
-        assert_eq!(shown, Some(*most), "{line}: {frames:?}");
+        // What is kept on this machine is nobody else's matter.
+        let expected = Some(*most).filter(|_| !AT_HOME.contains(&line.as_str()));
+        assert_eq!(shown, expected, "{line}: {frames:?}");
     }
     let cli = Cli::command();
     let mut leaves = BTreeSet::new();

@@ -239,7 +239,7 @@ pub struct Reading {
 
 const KEYS: [&str; 5] = ["name", "kind", "number", "value", "value_hex"];
 /// What a report says beside them.
-const REPORTED: [&str; 3] = ["ok", "undefined", "error"];
+const REPORTED: [&str; 4] = ["ok", "label", "undefined", "error"];
 
 impl Reading {
     /// Reads an entry of a dump: the variable, and its value unless that is null. The error begins with the place in the
@@ -370,7 +370,7 @@ mod tests {
     fn numbers_survive_json() {
         assert_eq!(
             round("B7", &Value::Byte(255)),
-            json!({"name": "B7", "kind": "B", "number": 7, "ok": true, "value": 255})
+            json!({"name": "B7", "label": null, "kind": "B", "number": 7, "ok": true, "value": 255})
         );
         round("I0", &Value::Integer(-32768));
         round("D0", &Value::Double(i32::MIN));
@@ -390,7 +390,7 @@ mod tests {
         let s = |bytes: &[u8]| Value::Long(Text::new(bytes).unwrap());
         assert_eq!(
             round("S0", &s(b"\x83\x65")),
-            json!({"name": "S0", "kind": "S", "number": 0, "ok": true, "value": "テ"})
+            json!({"name": "S0", "label": null, "kind": "S", "number": 0, "ok": true, "value": "テ"})
         );
         assert_eq!(round("S0", &s(b"A\xFF"))["value_hex"], json!("41ff"));
         round("S0", &s(b""));

@@ -151,6 +151,10 @@ fn variable<'k>(
         }
         first = if column == NAME { first } else { at };
     }
+    if whole.contains_key("value_hex") && whole.get("value") == Some(&json!("")) {
+        // With its bytes beside it, it is no empty text.
+        whole.insert("value".to_owned(), json!(EMPTY));
+    }
     let reference: Reference = name.1.parse().map_err(|error| (name.0, format!("{error}")))?;
     let reference = in_form(reference, reading.model, false);
     let is_position = reference.kind.is_position();
