@@ -1,7 +1,7 @@
 //! Command lines that only read, asked along with the looks at the robots of their family: `yerc var get B0..B9`.
 
 use std::fmt;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::command::AnyCommand;
 use crate::command::face::words::{Typed, Wish};
@@ -12,7 +12,7 @@ use crate::settings::target::Family;
 
 /// Such a line. Two with the same text are the same.
 pub struct Extra {
-    text: Rc<str>,
+    text: Arc<str>,
     family: Family,
     command: Box<dyn AnyCommand>,
 }
@@ -54,7 +54,7 @@ impl Extra {
     }
 
     /// As it was typed.
-    pub fn text(&self) -> &Rc<str> {
+    pub fn text(&self) -> &Arc<str> {
         &self.text
     }
 

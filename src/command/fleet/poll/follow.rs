@@ -1,6 +1,5 @@
 //! Looks at one robot again and again, at its own pace.
 
-use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -163,7 +162,7 @@ impl Follower {
             match self.ask(link, extra).await {
                 // The line has failed, and not what was asked.
                 Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
-                told => extras.push((Rc::clone(extra.text()), told)),
+                told => extras.push((Arc::clone(extra.text()), told)),
             }
         }
         let through_session = link.is_shared;
@@ -257,8 +256,8 @@ mod tests {
     fn pauses_double_up_to_a_bound_and_begin_anew() {
         let [second, most] = [1, 10].map(Duration::from_secs);
         let mut pauses = Pauses::default();
-        let paused: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();
-        assert_eq!(paused, [1, 2, 4, 8, 10, 10]);
+        let seconds: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();
+        assert_eq!(seconds, [1, 2, 4, 8, 10, 10]);
         pauses.begin_anew();
         assert_eq!(pauses.next(EVERY, most), second);
         assert_eq!(Pauses::default().next(30 * second, most), 30 * second, "never more often than when it answers");

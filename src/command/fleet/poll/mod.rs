@@ -100,7 +100,7 @@ pub struct Look {
     /// Whether it went through a session.
     pub through_session: bool,
     /// What the command lines that were wished for this family told, with each its text as it was wished.
-    pub extras: Vec<(Rc<str>, Result<Value, Failure>)>,
+    pub extras: Vec<(Arc<str>, Result<Value, Failure>)>,
     /// Why the fault could not be explained with `alarms.toml`, where that is so.
     pub unexplained: Option<Failure>,
 }

@@ -198,16 +198,16 @@ impl Model {
     pub fn leave(&mut self, robot: &RobotId) {
         let chosen = self.chosen().map(Seen::id);
         self.robots.retain(|seen| seen.id() != *robot);
-        self.choose(chosen);
+        self.choose(chosen.as_ref());
     }
 
     /// Puts the cursor on a robot, where it is still there.
-    fn choose(&mut self, robot: Option<RobotId>) {
+    fn choose(&mut self, robot: Option<&RobotId>) {
         let robots = self.robots();
-        match robots.iter().position(|seen| Some(seen.id()) == robot) {
-            Some(at) => self.cursor = at,
-            None => (self.cursor, self.is_open) = (self.cursor.min(robots.len().saturating_sub(1)), false),
-        }
+        let at = robots.iter().position(|seen| Some(&seen.id()) == robot);
+        let last = robots.len().saturating_sub(1);
+        self.is_open &= at.is_some();
+        self.cursor = at.unwrap_or(self.cursor.min(last));
         self.keep_cursor();
     }
 
@@ -278,7 +278,7 @@ impl Model {
             KeyAction::Pause if self.is_paused() => {
                 let chosen = self.chosen().map(Seen::id);
                 self.frozen = None;
-                self.choose(chosen);
+                self.choose(chosen.as_ref());
             }
             KeyAction::Pause => self.frozen = Some((now, self.robots.clone())),
             KeyAction::Faster => self.every = nearest(self.every, true),
@@ -528,6 +528,30 @@ mod tests {
         assert!(seen.is_old(NOW + Duration::from_secs(3), EVERY));
         model.take(NOW + 2 * EVERY, 0, Ok(sample(2.0)));
         assert!(model.robots()[0].sample().is_some());
+    }
+
+    #[test]
+    fn robots_come_and_go_and_the_cursor_stays_at_its_own() {
+        let robots = fleet(4);
+        let mut model = Model::new(&robots[..3], EVERY);
+        model.obey(NOW, KeyAction::Down(2));
+        model.obey(NOW, KeyAction::Open);
+        model.appear(&robots[0]);
+        assert_eq!(names(&model), ["cell1", "cell2", "cell3"], "one that is known is not there twice");
+        model.leave(&RobotId::of(&robots[0]));
+        assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell2", "cell3"], 1, true));
+        model.appear(&robots[3]);
+        assert_eq!(model.chosen().map(|seen| seen.name.as_str()), Some("cell3"));
+        // A pause shows what was; the cursor finds its robot again behind it.
+        model.obey(NOW, KeyAction::Pause);
+        model.leave(&RobotId::of(&robots[1]));
+        assert_eq!(names(&model), ["cell2", "cell3", "cell4"]);
+        model.obey(NOW, KeyAction::Pause);
+        assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell3", "cell4"], 0, true));
+        model.leave(&RobotId::of(&robots[2]));
+        assert_eq!((names(&model), model.is_open), (vec!["cell4"], false), "nothing is shown of one that has gone");
+        model.leave(&RobotId::of(&robots[3]));
+        assert!(model.chosen().is_none() && model.open().is_none());
     }
 
     #[test]
