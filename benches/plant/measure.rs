@@ -67,7 +67,7 @@ fn metrics(effort: &Effort) -> anyhow::Result<Table> {
     let mut most: f64 = memory;
     let mut read = Vec::new();
     while began.elapsed() < effort.time {
-        thread::sleep(SCRAPE.min(effort.time - began.elapsed().min(effort.time)));
+        thread::sleep(SCRAPE.min(effort.time.saturating_sub(began.elapsed())));
         let start = Instant::now();
         let length = page(at)?.len();
         read.push((start.elapsed(), length));
