@@ -28,7 +28,7 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "docs/yerc.md",
     "docs/toyo.md",
@@ -38,6 +38,7 @@ const PAGES: [&str; 10] = [
     "docs/scripting.md",
     "docs/watching.md",
     "docs/sessions.md",
+    "docs/monitoring/README.md",
     "docs/safety.md",
 ];
 

@@ -14,6 +14,8 @@ mod eip_bad_input;
 mod environment;
 mod examples;
 mod gate;
+#[cfg(feature = "plant")]
+mod monitoring;
 mod pictures;
 mod readme;
 mod repl;

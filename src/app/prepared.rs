@@ -93,7 +93,7 @@ impl PreparedCommand {
         let mut run = prepare(globals, need, line)?;
         match &task {
             Task::Family(own, _) => run.own = own.clone(),
-            Task::Common(Common::Status(_) | Common::Top(_)) => {
+            Task::Common(common) if common.is_for_all() => {
                 run.sources.widen();
                 run.sources.selection.every_simulator = true;
             }

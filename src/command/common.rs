@@ -3,6 +3,8 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
+#[cfg(feature = "plant")]
+use super::fleet::serve;
 use super::fleet::status::Overview;
 use super::fleet::{backup, robots, session, setup, tools, top};
 use super::frame::run::{Run, RunError};
@@ -17,6 +19,10 @@ pub enum Common {
     Status(Overview),
     /// Full-screen live monitor
     Top(top::Top),
+    /// Serve metrics of robots to other programs
+    #[cfg(feature = "plant")]
+    #[command(subcommand)]
+    Serve(serve::Serve),
     /// The inventory: list, add, set, edit, and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
@@ -54,8 +60,20 @@ impl Common {
             Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
                 true
             }
+            #[cfg(feature = "plant")]
+            Self::Serve(_) => true,
             Self::Backup(backup) => backup.takes_robot(),
             Self::Diff(diff) => diff.takes_robot(),
+            _ => false,
+        }
+    }
+
+    /// Whether it is for all robots of the inventory where none is named, and for the simulators of all families.
+    pub fn is_for_all(&self) -> bool {
+        match self {
+            Self::Status(_) | Self::Top(_) => true,
+            #[cfg(feature = "plant")]
+            Self::Serve(_) => true,
             _ => false,
         }
     }
@@ -66,6 +84,8 @@ impl Common {
             Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
             Self::Sim(sim) if sim.is_list() => None,
             Self::Sim(_) => Some("it serves until it is ended"),
+            #[cfg(feature = "plant")]
+            Self::Serve(_) => Some("it serves until it is ended"),
             Self::Top(_) => Some("it is a view for a terminal"),
             Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
             Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
@@ -90,6 +110,8 @@ impl Common {
             Self::Restore(restore) => run.robots(&restore).await,
             Self::Diff(diff) => run.robots(&diff).await,
             Self::Top(top) => Box::pin(top.run(run)).await,
+            #[cfg(feature = "plant")]
+            Self::Serve(serve) => Box::pin(serve.run(run)).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

@@ -11,6 +11,7 @@ pub mod flat;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;
+pub mod log;
 mod pager;
 pub mod painter;
 pub mod progress;

@@ -7,6 +7,8 @@ pub mod capture;
 pub mod devicenet;
 pub mod eip;
 pub mod fault;
+#[cfg(feature = "plant")]
+pub mod http;
 pub mod image;
 pub mod line;
 pub mod local;
@@ -21,6 +23,8 @@ pub mod session;
 pub mod sim;
 pub mod stream;
 pub mod stream_server;
+#[cfg(feature = "plant")]
+pub mod supervisor;
 pub mod tap;
 pub mod tcp;
 #[cfg(test)]

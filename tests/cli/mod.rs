@@ -41,6 +41,7 @@ transcripts! {
     information
     inventory
     jobs
+    metrics
     mistakes
     models
     moves

@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn words_are_completed_where_they_stand() {
-        assert_eq!(completed(&["yerc"], "serv"), ["servo "]);
+        assert_eq!(completed(&["yerc"], "hlo"), ["hlock "]);
         assert_eq!(completed(&["yerc"], "rob"), ["robots "]);
         assert_eq!(completed(&["yerc"], "servo o"), ["servo on", "servo off"]);
         assert_eq!(completed(&["yerc"], "toyo ho"), ["toyo host", "toyo home"]);

@@ -7,6 +7,8 @@ use crate::command::ValueKind;
 use crate::command::backup::check::Checked;
 use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
+#[cfg(feature = "plant")]
+use crate::command::fleet::metrics;
 use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{robots, session, tools};
 use crate::command::frame::background::Opened;
@@ -72,6 +74,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::entry::WasSet>("robots.set"),
         SchemaEntry::of::<robots::Shown>("robots.show"),
         SchemaEntry::of::<crate::command::frame::names::Listing>("robots.names"),
+        #[cfg(feature = "plant")]
+        SchemaEntry::of::<metrics::Listening>("serve.metrics"),
         SchemaEntry::of::<session::Closed>("session.close"),
         SchemaEntry::of::<session::Sessions>("session.list"),
         SchemaEntry::of::<Opened>("session.open"),

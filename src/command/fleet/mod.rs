@@ -1,7 +1,14 @@
 //! Commands for robots of any family.
 
 pub mod backup;
+#[cfg(feature = "plant")]
+pub mod metrics;
+pub mod poll;
 pub mod robots;
+#[cfg(feature = "plant")]
+pub mod serve;
+#[cfg(feature = "plant")]
+pub mod service;
 pub mod session;
 pub mod setup;
 pub mod status;

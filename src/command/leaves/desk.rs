@@ -23,6 +23,10 @@ pub const LINES: &[&str] = &[
     "batch morning.txt --set job=WELD --dry-run",
     "top",
     "top -r cell3",
+    #[cfg(feature = "plant")]
+    "serve metrics",
+    #[cfg(feature = "plant")]
+    "serve metrics --tag line1 --listen 0.0.0.0:9464",
     "teach -r cell3",
     "teach -r cell3 --max-step 1 --max-speed 5",
     "robots list",

@@ -1,0 +1,164 @@
+//! The metrics: name, kind, unit, what they say, and where that is found. There is no second list;
+//! `docs/monitoring/README.md` explains each, and a test compares both.
+
+use super::board::{Board, Seen};
+use super::page::{Form, Kind, Page, Samples, labels};
+use crate::controller::units::{DEGREE, MILLIMETRE, PULSE};
+
+/// A metric.
+pub struct Metric {
+    /// Its name, without `_total` and `_info`.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// The ending of its name that is its unit; empty where it has none.
+    pub unit: &'static str,
+    /// In a sentence.
+    pub help: &'static str,
+    /// Writes its samples.
+    read: fn(&Board, &mut Samples<'_>),
+}
+
+const fn metric(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    help: &'static str,
+    read: fn(&Board, &mut Samples<'_>),
+) -> Metric {
+    Metric { name, kind, unit, help, read }
+}
+
+use Kind::{Counter, Gauge, Histogram, Info};
+
+/// All of them, in the order of a page.
+#[rustfmt::skip]
+pub const METRICS: &[Metric] = &[
+    metric("armctl_build", Info, "", "The armctl that serves this.", |_, samples| {
+        let build = [("version", env!("CARGO_PKG_VERSION")), ("revision", env!("BUILT_COMMIT"))];
+        samples.put(&labels("", &build), 1);
+    }),
+    metric("armctl_robots", Gauge, "", "Robots that are polled.", |board, samples| {
+        samples.put("", board.robots.len());
+    }),
+    metric("armctl_inventory_last_reload_successful", Gauge, "",
+        "Whether robots.toml could be read when it had changed last.",
+        |board, samples| samples.put("", u8::from(!board.is_inventory_broken))),
+    metric("armctl_robot_up", Gauge, "", "Whether the robot answered the latest poll.",
+        |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.look.is_some())))),
+    metric("armctl_robot_servo_on", Gauge, "", "Whether the servo power is on.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.servo_on))),
+    metric("armctl_robot_running", Gauge, "", "Whether a job or program runs, or an axis moves.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.running))),
+    metric("armctl_robot_held", Gauge, "", "Whether the robot is held or paused.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.held))),
+    metric("armctl_robot_faulted", Gauge, "", "Whether an alarm or error is present.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.fault.faulted))),
+    metric("armctl_robot_fault", Info, "", "The alarm or error that is present: the first one, with its code and text.",
+        faults),
+    metric("armctl_robot_mode", Info, "", "The mode of the controller, such as teach, play, auto or manual.", modes),
+    metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
+        // As divided, and not as multiplied by 0.001: 0.1025 stays what it is.
+        |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
+    metric("armctl_axis_position_degrees", Gauge, "degrees", "Position of a rotation.",
+        |board, samples| axes(board, samples, DEGREE.symbol, 1.0)),
+    metric("armctl_axis_position_pulses", Gauge, "pulses", "Position of a joint in pulses of its encoder.",
+        |board, samples| axes(board, samples, PULSE.symbol, 1.0)),
+    metric("armctl_axis_torque_ratio", Gauge, "ratio", "Torque of an axis, as a part of the greatest.",
+        |board, samples| torques(board, samples, "% of max", 100.0)),
+    metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis, as the controller has it, whose unit is not known.",
+        |board, samples| torques(board, samples, "raw", 1.0)),
+    metric("armctl_session_open", Gauge, "", "Whether the polls go through a session.",
+        |board, samples| each(board, samples, |seen| flag(Some(seen.look.as_ref()?.through_session)))),
+    metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "When the robot answered last.",
+        |board, samples| each(board, samples, |seen| seen.answered)),
+    metric("armctl_poll_duration_seconds", Histogram, "seconds", "How long polls took that were answered.", times),
+    metric("armctl_polls", Counter, "", "Polls that were begun.", |board, samples| {
+        each(board, samples, |seen| Some(seen.polls));
+    }),
+    metric("armctl_poll_failures", Counter, "", "Polls that failed, by the kind of the failure.", failures),
+    metric("armctl_polls_missed", Counter, "", "Polls that were left out, because the one before took too long.",
+        |board, samples| each(board, samples, |seen| Some(seen.missed))),
+    metric("armctl_poll_backoffs", Counter, "", "How often the pause before the next try was made longer.",
+        |board, samples| each(board, samples, |seen| Some(seen.backoffs))),
+    metric("armctl_poll_pause_seconds", Gauge, "seconds", "The pause before the next try; 0 while the robot answers.",
+        |board, samples| each(board, samples, |seen| Some(seen.pause.unwrap_or_default().as_secs_f64()))),
+];
+
+/// All metrics as text.
+pub fn page(board: &Board, form: Form) -> String {
+    let mut page = Page::new(form);
+    for Metric { name, kind, unit, help, read } in METRICS {
+        page.metric(name, *kind, unit, help, |samples| read(board, samples));
+    }
+    page.end()
+}
+
+fn flag(is_so: Option<bool>) -> Option<u8> {
+    is_so.map(u8::from)
+}
+
+/// A sample of each robot of which the value is known.
+fn each<V: std::fmt::Display>(board: &Board, samples: &mut Samples<'_>, value: impl Fn(&Seen) -> Option<V>) {
+    for seen in board.robots.values() {
+        if let Some(value) = value(seen) {
+            samples.put(&seen.labels, value);
+        }
+    }
+}
+
+fn faults(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        let fault = seen.line().map(|line| &line.fault).filter(|fault| fault.faulted == Some(true));
+        if let Some(fault) = fault {
+            let [code, text] = [&fault.fault_code, &fault.fault_text].map(|told| told.as_deref().unwrap_or_default());
+            samples.put(&labels(&seen.labels, &[("code", code), ("text", text)]), 1);
+        }
+    }
+}
+
+fn modes(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        if let Some(mode) = seen.line().and_then(|line| line.mode) {
+            samples.put(&labels(&seen.labels, &[("mode", mode)]), 1);
+        }
+    }
+}
+
+fn axes(board: &Board, samples: &mut Samples<'_>, unit: &str, divisor: f64) {
+    for seen in board.robots.values() {
+        for (labels, axis) in seen.axes(unit) {
+            samples.put(&labels, axis.position / divisor);
+        }
+    }
+}
+
+fn torques(board: &Board, samples: &mut Samples<'_>, torque_unit: &str, divisor: f64) {
+    for seen in board.robots.values() {
+        let whole = seen.look.as_ref().and_then(|look| look.sample.whole.as_ref());
+        if whole.is_none_or(|whole| whole.torque_unit != Some(torque_unit)) {
+            continue;
+        }
+        for unit in [PULSE.symbol, MILLIMETRE.symbol, DEGREE.symbol] {
+            for (labels, axis) in seen.axes(unit) {
+                if let Some(torque) = axis.torque {
+                    samples.put(&labels, torque / divisor);
+                }
+            }
+        }
+    }
+}
+
+fn times(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        samples.histogram(&seen.labels, &seen.times.buckets(), seen.times.sum, seen.times.count);
+    }
+}
+
+fn failures(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        for (kind, count) in &seen.failures {
+            samples.put(&labels(&seen.labels, &[("kind", kind)]), count);
+        }
+    }
+}

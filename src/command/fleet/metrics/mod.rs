@@ -1,0 +1,184 @@
+//! `armctl serve metrics`: what is known of the robots, for Prometheus and whatever else reads its text.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `catalogue` | the metrics |
+//! | `board` | what is known of the robots |
+//! | `page` | metrics as text, in two forms |
+
+mod board;
+mod catalogue;
+mod page;
+#[cfg(test)]
+mod tests;
+
+use std::cell::RefCell;
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::time::{Duration, SystemTime};
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use self::board::Board;
+use self::page::Form;
+use super::poll::{Poll, Subscription, Wish};
+use super::service::{self, Journal};
+use crate::command::Report;
+use crate::command::face::sample::Detail;
+use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::run::{Run, RunError};
+use crate::failure::{Failure, Kind, plain};
+use crate::output::Screen;
+use crate::output::log::Level;
+use crate::output::view::View;
+use crate::transport::http::{Answer, Request, Server, Status};
+
+/// Serves metrics of all robots, or of those that are named, until Ctrl-C or SIGTERM.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "GET /metrics is OpenMetrics, or the older text of Prometheus for who asks for that; GET /healthz tells \
+                  whether this is alive. --watch INTERVAL sets how often robots are asked (1s), however often they are \
+                  read. Without -r, --tag, --sim or -t, all robots of the inventory, as it changes. Nothing in here can \
+                  move a robot or change anything. There is no password: whoever reaches the port can read."
+)]
+pub struct Metrics {
+    /// Where to listen
+    #[arg(long, value_name = "ADDRESS", default_value_t = USUAL, value_parser = address)]
+    listen: SocketAddr,
+}
+
+/// Where exporters of this kind are looked for.
+const USUAL: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9464);
+/// Time from look to look, unless it is told; and the least one.
+const EVERY: Duration = Duration::from_secs(1);
+const LEAST: Duration = Duration::from_millis(50);
+
+/// Where metrics are served.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Listening {
+    /// The URL to read them from.
+    url: String,
+    /// How many robots it begins with.
+    robots: usize,
+    /// Time from look to look.
+    every_ms: u64,
+}
+
+impl Report for Listening {
+    fn view(&self) -> View {
+        let plural = if self.robots == 1 { "" } else { "s" };
+        View::text(format!("metrics of {} robot{plural} at {}", self.robots, self.url))
+    }
+}
+
+impl Metrics {
+    /// Does it.
+    pub async fn run(&self, run: &Run) -> Result<(), RunError> {
+        let every = run.repeat.every.unwrap_or(EVERY);
+        fits(run, every)?;
+        service::make_room();
+        // What links have to say is told where it is news, and not by each of them.
+        let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
+        let robots = poll.robots().len();
+        let server = Server::bind(self.listen).await.map_err(|error| cannot_listen(self.listen, &error))?;
+        let local = server.local().map_err(|error| Failure::io("listen", &error))?;
+        let supervisor = service::supervisor()?;
+        catch_interrupts();
+        let listening = Listening {
+            url: format!("http://{local}/metrics"),
+            robots,
+            every_ms: u64::try_from(every.as_millis()).unwrap_or(u64::MAX),
+        };
+        run.local("serve.metrics", &listening)?;
+        self.warn(&run.screen);
+        let mut events = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(every) });
+        let mut polled = Box::pin(poll.run());
+        let (journal, board) = (RefCell::new(Journal::new(run.screen)), RefCell::new(Board::default()));
+        service::ready(&supervisor, &format!("{robots} robots"))?;
+        let ended = interruptible(async {
+            tokio::select! {
+                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+                () = listen(&mut events, &journal, &board) => Err(Failure::local("nobody tells of the robots any more")),
+                ended = server.run(|request| answer(request, &board)) => {
+                    ended.map_err(|error| Failure::io("metrics", &error))
+                }
+                () = service::pulses(&supervisor, &run.screen, || journal.borrow().status()) => Ok(()),
+            }
+        })
+        .await;
+        // Nobody is left to be told that this cannot be told.
+        let _told = supervisor.stopping();
+        drop(events);
+        polled.await;
+        match ended {
+            Ok(ended) => Ok(ended?),
+            // This is how one ends a server.
+            Err(_) => Ok(()),
+        }
+    }
+
+    /// Says what a port means that others reach.
+    fn warn(&self, screen: &Screen) {
+        if !self.listen.ip().is_loopback() {
+            let text = "others on the network can read where these robots are and what is wrong with them; there is no \
+                        password";
+            screen.log(Level::Warning, text, &[("listen", &self.listen.to_string())]);
+        }
+    }
+}
+
+/// Takes what is told of the robots.
+async fn listen(events: &mut Subscription, journal: &RefCell<Journal>, board: &RefCell<Board>) {
+    while let Some(event) = events.next().await {
+        journal.borrow_mut().note(&event);
+        board.borrow_mut().take(&event, now());
+    }
+}
+
+/// Seconds since 1970.
+fn now() -> f64 {
+    SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs_f64()
+}
+
+fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
+    match request.path {
+        "/metrics" => {
+            let form = Form::wanted(request.accept);
+            Answer { status: Status::Ok, kind: form.content_type(), body: catalogue::page(&board.borrow(), form) }
+        }
+        "/healthz" => Answer::text(Status::Ok, "ok"),
+        _ => Answer::text(Status::NotFound, "there are /metrics and /healthz"),
+    }
+}
+
+/// Refuses what has no meaning here.
+fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
+    let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
+    if run.repeat.count.is_some() || run.repeat.until.is_some() {
+        return wrong("goes on until it is ended", "`armctl status --until FILTER` waits for a condition");
+    }
+    if run.trace.is_some() {
+        return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
+    }
+    if every < LEAST {
+        return wrong("asks every 50ms at most", "--watch 50ms or more");
+    }
+    Ok(())
+}
+
+/// An address with a port, or without one.
+fn address(text: &str) -> Result<SocketAddr, String> {
+    let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, USUAL.port())));
+    address.map_err(|_| format!("'{text}' is not a valid address, such as {USUAL}"))
+}
+
+fn cannot_listen(on: SocketAddr, error: &io::Error) -> Failure {
+    let hint = match error.kind() {
+        io::ErrorKind::AddrInUse => "another program listens there; choose another port with --listen 127.0.0.1:9465",
+        io::ErrorKind::PermissionDenied => "ports below 1024 need rights; choose a higher one with --listen",
+        _ => "choose an address of this machine with --listen",
+    };
+    Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
+}

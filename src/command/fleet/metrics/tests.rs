@@ -1,0 +1,182 @@
+//! What a board makes of what it is told.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::board::Board;
+use super::catalogue::{METRICS, page};
+use super::page::{Form, Kind};
+use crate::command::face::overview::Fault;
+use crate::command::face::sample::{Alarm, Sample};
+use crate::command::fleet::poll::{Event, Look};
+use crate::command::fleet::top::testing::{alarmed, fleet, sample, silence};
+use crate::settings::Robot;
+
+fn looked(robot: &Arc<Robot>, sample: Sample) -> Event {
+    Event::Looked(Arc::new(Look {
+        robot: Arc::clone(robot),
+        sample,
+        took: Duration::from_millis(30),
+        missed: 2,
+        through_session: false,
+        extras: Vec::new(),
+        unexplained: None,
+    }))
+}
+
+fn failed(robot: &Arc<Robot>, pause: u64) -> Event {
+    Event::Failed { robot: Arc::clone(robot), failure: silence(), pause: Duration::from_secs(pause) }
+}
+
+fn robots(count: usize) -> Vec<Arc<Robot>> {
+    fleet(count).into_iter().map(Arc::new).collect()
+}
+
+fn told(events: &[Event]) -> Board {
+    let mut board = Board::default();
+    for event in events {
+        board.take(event, 1000.5);
+    }
+    board
+}
+
+/// The samples of a metric, by the beginning of their lines.
+fn samples(board: &Board, name: &str) -> Vec<String> {
+    let page = page(board, Form::Text);
+    let is_of = |line: &&str| line.strip_prefix(name).is_some_and(|rest| rest.starts_with(['{', ' ']));
+    page.lines().filter(is_of).map(|line| line[name.len()..].to_owned()).collect()
+}
+
+const CELL1: &str = "robot=\"cell1\",family=\"yerc\"";
+
+#[test]
+fn a_robot_is_told_as_it_is_and_not_as_it_was() {
+    let robots = robots(1);
+    let mut board = told(&[Event::Appeared(Arc::clone(&robots[0]))]);
+    assert_eq!(samples(&board, "armctl_robot_up"), Vec::<String>::new(), "nobody knows yet");
+    assert_eq!(samples(&board, "armctl_polls_total"), [format!("{{{CELL1}}} 0")]);
+    board.take(&looked(&robots[0], sample(-400.0)), 1000.5);
+    for (name, value) in [
+        ("armctl_robot_up", "} 1"),
+        ("armctl_robot_servo_on", "} 1"),
+        ("armctl_robot_running", "} 1"),
+        ("armctl_robot_held", "} 0"),
+        ("armctl_robot_faulted", "} 0"),
+        ("armctl_robot_mode_info", ",mode=\"play\"} 1"),
+        ("armctl_robot_last_answer_timestamp_seconds", "} 1000.5"),
+        ("armctl_polls_total", "} 1"),
+        ("armctl_polls_missed_total", "} 2"),
+        ("armctl_poll_pause_seconds", "} 0"),
+        ("armctl_session_open", "} 0"),
+        ("armctl_poll_duration_seconds_count", "} 1"),
+    ] {
+        assert_eq!(samples(&board, name), [format!("{{{CELL1}{value}")], "{name}");
+    }
+    let of = |axis: &str, value: &str| format!("{{{CELL1},axis=\"{axis}\"}} {value}");
+    assert_eq!(samples(&board, "armctl_axis_position_pulses"), [of("S", "-400"), of("L", "-90000")]);
+    assert_eq!(samples(&board, "armctl_axis_position_meters"), [of("X", "1.0005"), of("Y", "-0.02025")]);
+    assert_eq!(samples(&board, "armctl_axis_torque_raw"), [of("S", "12"), of("L", "-3")]);
+    assert_eq!(samples(&board, "armctl_axis_torque_ratio"), Vec::<String>::new());
+    board.take(&failed(&robots[0], 1), 1001.0);
+    assert_eq!(samples(&board, "armctl_robot_up"), [format!("{{{CELL1}}} 0")]);
+    for name in ["armctl_robot_servo_on", "armctl_axis_position_pulses", "armctl_robot_mode_info"] {
+        assert_eq!(samples(&board, name), Vec::<String>::new(), "{name} is not known of one that is silent");
+    }
+    assert_eq!(samples(&board, "armctl_robot_last_answer_timestamp_seconds"), [format!("{{{CELL1}}} 1000.5")]);
+    board.take(&Event::Gone(Arc::clone(&robots[0])), 1002.0);
+    assert!(!page(&board, Form::Text).contains("cell1"));
+}
+
+#[test]
+fn pauses_failures_and_times_are_counted() {
+    let robots = robots(1);
+    let appeared = Event::Appeared(Arc::clone(&robots[0]));
+    let failures: Vec<Event> = [1, 2, 4, 4].into_iter().map(|pause| failed(&robots[0], pause)).collect();
+    let board = told(&[&[appeared][..], &failures].concat());
+    assert_eq!(samples(&board, "armctl_poll_backoffs_total"), [format!("{{{CELL1}}} 2")]);
+    assert_eq!(samples(&board, "armctl_poll_pause_seconds"), [format!("{{{CELL1}}} 4")]);
+    let of = |kind: &str, count: u64| format!("{{{CELL1},kind=\"{kind}\"}} {count}");
+    let counts = [of("malformed", 0), of("no_answer", 4), of("refused", 0)];
+    assert_eq!(samples(&board, "armctl_poll_failures_total"), counts);
+    assert_eq!(samples(&board, "armctl_polls_total"), [format!("{{{CELL1}}} 4")]);
+    let board = told(&[Event::Appeared(Arc::clone(&robots[0])), looked(&robots[0], sample(0.0))]);
+    let buckets = samples(&board, "armctl_poll_duration_seconds_bucket");
+    let counts: Vec<&str> = buckets.iter().filter_map(|line| line.rsplit(' ').next()).collect();
+    assert_eq!(counts, ["0", "0", "0", "1", "1", "1", "1", "1", "1", "1"], "30 ms are in 0.05 and above");
+}
+
+#[test]
+fn a_fault_has_its_code_and_a_text_that_spoils_nothing() {
+    let robots = robots(2);
+    let mut evil = alarmed();
+    let text = format!("\"}} 1\n{}", "x".repeat(5000));
+    let alarm = Alarm { code: "\\".to_owned(), text, remedy: String::new() };
+    evil.line.fault = Fault::new(true, Some(&alarm));
+    let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
+    let looks = [looked(&robots[0], alarmed()), looked(&robots[1], evil)];
+    let board = told(&appeared.chain(looks).collect::<Vec<_>>());
+    let [plain, evil] = &samples(&board, "armctl_robot_fault_info")[..] else { panic!("one each") };
+    assert_eq!(plain, &format!("{{{CELL1},code=\"4315\",text=\"COLLISION DETECT [SLURBT]\"}} 1"));
+    assert!(evil.contains("code=\"\\\\\"") && evil.ends_with("xxx\"} 1") && evil.len() < 250, "{evil}");
+}
+
+#[test]
+fn axes_of_one_name_do_not_spoil_the_page() {
+    let robots = robots(1);
+    let mut twice = sample(1.0);
+    if let Some(whole) = &mut twice.whole {
+        whole.axes.iter_mut().for_each(|axis| axis.name = "A".to_owned());
+    }
+    let board = told(&[Event::Appeared(Arc::clone(&robots[0])), looked(&robots[0], twice)]);
+    let lines = samples(&board, "armctl_axis_position_pulses");
+    assert!(lines[0].contains("axis=\"A\"") && lines[1].contains("axis=\"A'\""), "{lines:?}");
+}
+
+#[test]
+fn an_inventory_that_is_broken_is_told() {
+    let broken = told(&[Event::Inventory(Err(silence()))]);
+    assert_eq!(samples(&broken, "armctl_inventory_last_reload_successful"), [" 0"]);
+    let mended = told(&[Event::Inventory(Err(silence())), Event::Inventory(Ok(()))]);
+    assert_eq!(samples(&mended, "armctl_inventory_last_reload_successful"), [" 1"]);
+}
+
+/// What `docs/monitoring/README.md` promises.
+#[test]
+fn a_robot_has_no_more_series_than_is_promised() {
+    let robots = robots(3);
+    let looks = robots.iter().map(|robot| looked(robot, alarmed()));
+    let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
+    let board = told(&appeared.chain(looks).collect::<Vec<_>>());
+    let page = page(&board, Form::Text);
+    let without_axes = page.lines().filter(|line| line.contains("robot=\"cell1\"") && !line.contains("axis="));
+    assert!(without_axes.count() <= 32);
+}
+
+#[test]
+fn the_documentation_has_each_metric() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring/README.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `armctl_")?.split('`').next());
+    let mut rows: Vec<String> = rows.map(|row| format!("armctl_{row}")).collect();
+    let name = |metric: &super::catalogue::Metric| match metric.kind {
+        Kind::Counter => format!("{}_total", metric.name),
+        Kind::Info => format!("{}_info", metric.name),
+        Kind::Gauge | Kind::Histogram => metric.name.to_owned(),
+    };
+    let mut names: Vec<String> = METRICS.iter().map(name).collect();
+    rows.sort();
+    names.sort();
+    assert_eq!(rows, names);
+}
+
+#[test]
+fn names_are_as_conventions_want_them() {
+    for metric in METRICS {
+        let name = metric.name;
+        assert!(name.starts_with("armctl_") && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_'));
+        assert!(!name.ends_with("_total") && !name.ends_with("_info"), "{name}: its kind says so");
+        assert!(metric.unit.is_empty() || name.ends_with(&format!("_{}", metric.unit)), "{name}: OpenMetrics wants it");
+        assert!(metric.kind != Kind::Info || metric.unit.is_empty(), "{name}");
+        assert!(metric.help.ends_with('.') && !metric.help.contains(['\n', '\\', '"']), "{name}");
+    }
+}

@@ -1,0 +1,22 @@
+//! `armctl serve`: what is known of robots, for other programs.
+
+use clap::Subcommand;
+
+use super::metrics::Metrics;
+use crate::command::frame::run::{Run, RunError};
+
+/// What can be served.
+#[derive(Debug, Subcommand)]
+pub enum Serve {
+    /// Metrics for Prometheus, over HTTP
+    Metrics(Metrics),
+}
+
+impl Serve {
+    /// Does it.
+    pub async fn run(self, run: &Run) -> Result<(), RunError> {
+        match self {
+            Self::Metrics(metrics) => metrics.run(run).await,
+        }
+    }
+}

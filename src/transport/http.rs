@@ -1,0 +1,293 @@
+//! Hands out a few texts over HTTP/1.1, and no more than that: one request a connection, no bodies, everything bounded.
+//!
+//! A peer gets nothing for being slow or greedy: a connection has [`WITHIN`] for all of it, a request [`HEAD`] bytes, and
+//! no more than [`MOST`] connections are served at the same time; others wait with the system.
+
+use std::io;
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use futures_util::StreamExt as _;
+use futures_util::stream::FuturesUnordered;
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::time::{sleep, timeout};
+
+/// Longest head of a request.
+const HEAD: usize = 8 << 10;
+/// Most lines of it.
+const LINES: usize = 64;
+/// Time for a connection, from its first byte to its last.
+const WITHIN: Duration = Duration::from_secs(10);
+/// Connections that are served at the same time.
+const MOST: usize = 32;
+/// Pause where the system lets no more connections in: this process has too many files open.
+const FULL: Duration = Duration::from_millis(100);
+/// What is read of a peer that goes on talking when it was answered already, so that the answer reaches it.
+const REST: u64 = 64 << 10;
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Request<'a> {
+    /// The path, without what follows a `?`.
+    pub path: &'a str,
+    /// The kinds of text that are wanted, as the peer writes them.
+    pub accept: Option<&'a str>,
+}
+
+/// What is handed out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// 200, 404.
+    pub status: Status,
+    /// The kind of text.
+    pub kind: &'static str,
+    /// The text.
+    pub body: String,
+}
+
+/// How an answer goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Here it is.
+    Ok,
+    /// This is no request.
+    BadRequest,
+    /// There is no such path.
+    NotFound,
+    /// There is, and it can only be read.
+    MethodNotAllowed,
+    /// The request is too long.
+    TooLong,
+    /// Not now.
+    Unavailable,
+}
+
+impl Status {
+    fn line(self) -> &'static str {
+        match self {
+            Self::Ok => "200 OK",
+            Self::BadRequest => "400 Bad Request",
+            Self::NotFound => "404 Not Found",
+            Self::MethodNotAllowed => "405 Method Not Allowed",
+            Self::TooLong => "431 Request Header Fields Too Large",
+            Self::Unavailable => "503 Service Unavailable",
+        }
+    }
+}
+
+impl Answer {
+    /// A line for people.
+    pub fn text(status: Status, text: &str) -> Self {
+        Self { status, kind: "text/plain; charset=utf-8", body: format!("{text}\n") }
+    }
+}
+
+/// Listens for peers.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+}
+
+impl Server {
+    /// Listens at an address.
+    ///
+    /// # Errors
+    /// The port is in use, or no port of this machine.
+    pub async fn bind(address: SocketAddr) -> io::Result<Self> {
+        Ok(Self { listener: TcpListener::bind(address).await? })
+    }
+
+    /// Where it listens.
+    pub fn local(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    /// Serves, and does not end by itself.
+    ///
+    /// # Errors
+    /// Nobody can be let in any more.
+    pub async fn run(&self, answer: impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
+        let mut peers = FuturesUnordered::new();
+        loop {
+            tokio::select! {
+                accepted = self.listener.accept(), if peers.len() < MOST => match accepted {
+                    Ok((stream, _)) => peers.push(timeout(WITHIN, serve(stream, &answer))),
+                    Err(error) if is_passing(&error) => {}
+                    Err(error) if is_full(&error) => sleep(FULL).await,
+                    Err(error) => return Err(error),
+                },
+                // How it went is the peer's concern.
+                Some(_served) = peers.next() => {}
+            }
+        }
+    }
+}
+
+/// Whether it is about the one peer that was about to come in.
+fn is_passing(error: &io::Error) -> bool {
+    use io::ErrorKind::{ConnectionAborted, ConnectionReset, Interrupted, TimedOut, WouldBlock};
+
+    matches!(error.kind(), ConnectionAborted | ConnectionReset | Interrupted | TimedOut | WouldBlock)
+}
+
+/// Whether this process, or the machine, has no room for another connection at the moment (EMFILE, ENFILE, ENOBUFS).
+fn is_full(error: &io::Error) -> bool {
+    error.kind() == io::ErrorKind::OutOfMemory || matches!(error.raw_os_error(), Some(23 | 24 | 55 | 105))
+}
+
+/// What a peer asks for.
+enum Asked {
+    /// A text; whether only its head.
+    Text(Answer, bool),
+    /// Nothing: it has gone.
+    Nothing,
+}
+
+async fn serve(mut stream: TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
+    let Asked::Text(Answer { status, kind, body }, is_head) = asked(&mut stream, answer).await? else { return Ok(()) };
+    let allow = if status == Status::MethodNotAllowed { "Allow: GET, HEAD\r\n" } else { "" };
+    let head = format!(
+        "HTTP/1.1 {}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{allow}Cache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+        status.line(),
+        body.len()
+    );
+    stream.write_all(head.as_bytes()).await?;
+    if !is_head {
+        stream.write_all(body.as_bytes()).await?;
+    }
+    stream.shutdown().await?;
+    // What comes after an answer would make the system forget it, were the connection closed on it.
+    tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
+}
+
+/// Reads a request, and what there is to say to it.
+async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<Asked> {
+    let mut head = Vec::with_capacity(1 << 10);
+    loop {
+        let length = head.len();
+        let read = (&mut *stream).take(u64::try_from(HEAD - length).unwrap_or(0)).read_buf(&mut head).await?;
+        if read == 0 && length < HEAD {
+            return Ok(Asked::Nothing);
+        }
+        let mut lines = [httparse::EMPTY_HEADER; LINES];
+        let mut request = httparse::Request::new(&mut lines);
+        return Ok(match request.parse(&head) {
+            Ok(httparse::Status::Complete(_)) => answered(&request, answer),
+            Ok(httparse::Status::Partial) if head.len() < HEAD => continue,
+            Ok(httparse::Status::Partial) | Err(httparse::Error::TooManyHeaders) => {
+                Asked::Text(Answer::text(Status::TooLong, "the request is too long"), false)
+            }
+            Err(_) => Asked::Text(Answer::text(Status::BadRequest, "this is no HTTP request"), false),
+        });
+    }
+}
+
+fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) -> Answer) -> Asked {
+    let is_head = request.method == Some("HEAD");
+    let path = request.path.unwrap_or_default();
+    let path = path.split('?').next().unwrap_or_default();
+    let accept = request.headers.iter().find(|line| line.name.eq_ignore_ascii_case("accept"));
+    let accept = accept.and_then(|line| std::str::from_utf8(line.value).ok());
+    let answer = answer(&Request { path, accept });
+    if answer.status == Status::Ok && !is_head && request.method != Some("GET") {
+        return Asked::Text(Answer::text(Status::MethodNotAllowed, "this can only be read"), false);
+    }
+    Asked::Text(answer, is_head)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+    use std::pin::pin;
+
+    use super::*;
+
+    fn texts(request: &Request<'_>) -> Answer {
+        match request.path {
+            "/a" => Answer::text(Status::Ok, request.accept.unwrap_or("anything")),
+            _ => Answer::text(Status::NotFound, "there is no such page"),
+        }
+    }
+
+    /// What comes back for what is sent, in pieces; a server beside it, whose time is real.
+    async fn said(pieces: &[&[u8]]) -> String {
+        let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
+        let asked = async {
+            let mut stream = TcpStream::connect(server.local().unwrap()).await.unwrap();
+            for piece in pieces {
+                stream.write_all(piece).await.unwrap();
+                tokio::task::yield_now().await;
+            }
+            let mut said = Vec::new();
+            stream.read_to_end(&mut said).await.unwrap();
+            String::from_utf8(said).unwrap()
+        };
+        tokio::select! {
+            said = asked => said,
+            ended = server.run(texts) => panic!("{ended:?}"),
+        }
+    }
+
+    #[tokio::test]
+    async fn a_text_is_handed_out_whole_or_its_head() {
+        let said_to_get = said(&[b"GET /a?x=1 HTTP/1.1\r\nHost: x\r\nACCEPT: text/plain\r\n\r\n"]).await;
+        assert!(said_to_get.starts_with("HTTP/1.1 200 OK\r\n"), "{said_to_get}");
+        assert!(said_to_get.ends_with("Connection: close\r\n\r\ntext/plain\n"), "{said_to_get}");
+        let said_to_head = said(&[b"HEAD /a HTTP/1.1\r\n\r\n"]).await;
+        assert!(said_to_head.contains("Content-Length: 9\r\n") && said_to_head.ends_with("\r\n\r\n"), "{said_to_head}");
+        let in_pieces = said(&[b"GE", b"T /a HT", b"TP/1.0\r\n", b"\r\n"]).await;
+        assert!(in_pieces.ends_with("anything\n"), "{in_pieces}");
+    }
+
+    #[tokio::test]
+    async fn what_is_not_there_or_no_request_is_refused() {
+        let long = [&b"GET /a HTTP/1.1\r\nX: "[..], &[b'x'; HEAD]].concat();
+        let many = [&b"GET /a HTTP/1.1\r\n"[..], &b"X: y\r\n".repeat(LINES + 1), b"\r\n"].concat();
+        for (asked, status) in [
+            (&b"GET /b HTTP/1.1\r\n\r\n"[..], "404"),
+            (b"POST /b HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "404"),
+            (b"POST /a HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "405"),
+            (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", "400"),
+            (b"GET\r\n\r\n", "400"),
+            (&long, "431"),
+            (&many, "431"),
+        ] {
+            let said = said(&[asked]).await;
+            assert!(said.starts_with(&format!("HTTP/1.1 {status} ")), "{status}: {said}");
+            assert_eq!(said.contains("Allow: GET, HEAD"), status == "405");
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn who_says_nothing_is_let_go_and_keeps_nobody_out() {
+        let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
+        let address = server.local().unwrap();
+        let asked = async {
+            // More than are served at a time; some with half a request.
+            let mut silent = Vec::new();
+            for number in 0..MOST + 4 {
+                let mut stream = TcpStream::connect(address).await.unwrap();
+                if number % 2 == 0 {
+                    stream.write_all(b"GET /a HTTP/1.1\r\nX").await.unwrap();
+                }
+                silent.push(stream);
+            }
+            let mut stream = TcpStream::connect(address).await.unwrap();
+            stream.write_all(b"GET /a HTTP/1.1\r\n\r\n").await.unwrap();
+            let mut said = String::new();
+            stream.read_to_string(&mut said).await.unwrap();
+            let mut ended = [0; 1];
+            let closed = silent[0].read(&mut ended).await;
+            (said, closed.map_or(true, |read| read == 0))
+        };
+        let mut running = pin!(server.run(texts));
+        let (said, is_closed) = tokio::select! {
+            said = asked => said,
+            ended = &mut running => panic!("{ended:?}"),
+        };
+        assert!(said.ends_with("anything\n"), "{said}");
+        assert!(is_closed, "it had ten seconds");
+    }
+}

@@ -1,0 +1,173 @@
+//! Tells the service manager that started this process how it is: `sd_notify(3)`. Datagrams to the socket that
+//! `NOTIFY_SOCKET` names; without it there is nobody to be told, and nothing happens.
+
+use std::io;
+use std::time::Duration;
+
+/// Who started this process and wants to know how it is.
+#[derive(Debug, Default)]
+pub struct Supervisor {
+    #[cfg(unix)]
+    socket: Option<unix::Socket>,
+    watchdog: Option<Duration>,
+}
+
+impl Supervisor {
+    /// The one that the environment names.
+    ///
+    /// # Errors
+    /// What it names cannot be reached.
+    #[cfg(unix)]
+    pub fn find() -> io::Result<Self> {
+        let Some(name) = std::env::var_os("NOTIFY_SOCKET").filter(|name| !name.is_empty()) else {
+            return Ok(Self::default());
+        };
+        let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u64>().ok());
+        // The watchdog of a process that has started this one is not its own.
+        let is_own = number("WATCHDOG_PID").is_none_or(|process| process == u64::from(std::process::id()));
+        let watchdog = number("WATCHDOG_USEC").filter(|micros| is_own && *micros > 0).map(Duration::from_micros);
+        Ok(Self { socket: Some(unix::Socket::named(&name)?), watchdog })
+    }
+
+    /// There is none here.
+    ///
+    /// # Errors
+    /// None.
+    #[cfg(not(unix))]
+    pub fn find() -> io::Result<Self> {
+        Ok(Self::default())
+    }
+
+    /// How often it wants to hear that this process is alive: twice in the time after which it would start it anew.
+    pub fn pulse(&self) -> Option<Duration> {
+        self.watchdog.map(|within| within / 2)
+    }
+
+    /// All is set up: those who wait for this service may begin.
+    ///
+    /// # Errors
+    /// It cannot be told.
+    pub fn ready(&self, status: &str) -> io::Result<()> {
+        self.tell(&format!("READY=1\nSTATUS={status}"))
+    }
+
+    /// Still alive, and how.
+    ///
+    /// # Errors
+    /// It cannot be told.
+    pub fn alive(&self, status: &str) -> io::Result<()> {
+        self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
+    }
+
+    /// It comes to its end.
+    ///
+    /// # Errors
+    /// It cannot be told.
+    pub fn stopping(&self) -> io::Result<()> {
+        self.tell("STOPPING=1")
+    }
+
+    #[cfg(unix)]
+    fn tell(&self, text: &str) -> io::Result<()> {
+        self.socket.as_ref().map_or(Ok(()), |socket| socket.send(text))
+    }
+
+    #[cfg(not(unix))]
+    fn tell(&self, _text: &str) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::ffi::OsStr;
+    use std::io;
+    use std::os::unix::ffi::OsStrExt as _;
+    use std::os::unix::net::{SocketAddr, UnixDatagram};
+
+    #[derive(Debug)]
+    pub struct Socket {
+        own: UnixDatagram,
+        to: SocketAddr,
+    }
+
+    impl Socket {
+        pub fn named(name: &OsStr) -> io::Result<Self> {
+            let own = UnixDatagram::unbound()?;
+            // A manager that does not read must not hold up who is watched.
+            own.set_nonblocking(true)?;
+            let to = match name.as_bytes() {
+                [b'@', name @ ..] => in_abstract(name)?,
+                _ => SocketAddr::from_pathname(name)?,
+            };
+            Ok(Self { own, to })
+        }
+
+        pub fn send(&self, text: &str) -> io::Result<()> {
+            match self.own.send_to_addr(text.as_bytes(), &self.to) {
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(()),
+                sent => sent.map(|_| ()),
+            }
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    fn in_abstract(name: &[u8]) -> io::Result<SocketAddr> {
+        <SocketAddr as std::os::linux::net::SocketAddrExt>::from_abstract_name(name)
+    }
+
+    #[cfg(not(target_os = "linux"))]
+    fn in_abstract(_name: &[u8]) -> io::Result<SocketAddr> {
+        Err(io::Error::from(io::ErrorKind::Unsupported))
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::net::UnixDatagram;
+
+    use super::*;
+
+    #[test]
+    fn what_is_told_arrives_in_one_datagram() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("notify");
+        let manager = UnixDatagram::bind(&path).unwrap();
+        let socket = Some(unix::Socket::named(path.as_os_str()).unwrap());
+        let supervisor = Supervisor { socket, watchdog: Some(Duration::from_secs(10)) };
+        assert_eq!(supervisor.pulse(), Some(Duration::from_secs(5)));
+        let heard = || {
+            let mut text = [0; 100];
+            let length = manager.recv(&mut text).unwrap();
+            String::from_utf8_lossy(&text[..length]).into_owned()
+        };
+        supervisor.ready("3 robots").unwrap();
+        assert_eq!(heard(), "READY=1\nSTATUS=3 robots");
+        supervisor.alive("2 answer").unwrap();
+        assert_eq!(heard(), "WATCHDOG=1\nSTATUS=2 answer");
+        supervisor.stopping().unwrap();
+        assert_eq!(heard(), "STOPPING=1");
+        assert!(Supervisor::default().ready("nobody wants to know").is_ok());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_name_that_is_no_file_is_reached_too() {
+        use std::os::linux::net::SocketAddrExt as _;
+        use std::os::unix::net::SocketAddr;
+
+        let name = format!("armctl-test-{}", std::process::id());
+        let manager = UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(&name).unwrap()).unwrap();
+        unix::Socket::named(format!("@{name}").as_ref()).unwrap().send("READY=1").unwrap();
+        let mut text = [0; 20];
+        let length = manager.recv(&mut text).unwrap();
+        assert_eq!(&text[..length], b"READY=1");
+    }
+
+    #[test]
+    fn a_manager_that_is_gone_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let socket = Some(unix::Socket::named(folder.path().join("nobody").as_os_str()).unwrap());
+        assert!(Supervisor { socket, watchdog: None }.stopping().is_err());
+    }
+}

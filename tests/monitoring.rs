@@ -1,0 +1,415 @@
+//! `armctl serve metrics` as a service: what `promtool` and a real Prometheus say of its pages and of what is in
+//! `docs/monitoring/`, what it tells a service manager and the journal, and how it ends. What needs a program that is
+//! not installed is skipped, and says so.
+
+#![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::unix::fs::MetadataExt as _;
+use std::os::unix::net::UnixDatagram;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::support::simulator::Simulator;
+
+/// A process that is ended with the test.
+struct Service {
+    process: Child,
+}
+
+impl Service {
+    fn signal(&self, name: &str) {
+        let sent = Command::new("kill").args([&format!("-{name}"), &self.process.id().to_string()]).status();
+        assert!(sent.expect("kill is there").success());
+    }
+
+    fn end(&mut self) -> ExitStatus {
+        self.process.wait().expect("it ends")
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        let _gone = self.process.kill();
+        let _ended = self.process.wait();
+    }
+}
+
+/// A folder with an inventory of these robots: name, family, target.
+fn plant(robots: &[(&str, &str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), robots);
+    folder
+}
+
+fn write(folder: &Path, robots: &[(&str, &str, &str)]) {
+    let entry = |(name, family, target): &(&str, &str, &str)| {
+        format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\nretries = 0\n")
+    };
+    std::fs::write(folder.join("robots.toml"), robots.iter().map(entry).collect::<String>()).expect("written");
+}
+
+fn armctl(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).env("PATH", "/usr/bin:/bin");
+    command.env("ARMCTL_CONFIG", folder.join("robots.toml")).stdin(Stdio::null());
+    command
+}
+
+/// Serves metrics somewhere; says where.
+fn serve(mut command: Command) -> (Service, SocketAddr) {
+    command.args(["serve", "metrics", "--listen", "127.0.0.1:0", "--watch", "100ms"]).stdout(Stdio::piped());
+    let mut process = command.spawn().expect("it starts");
+    let mut line = String::new();
+    BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");
+    let (_, place) = line.split_once("http://").unwrap_or_else(|| panic!("no URL: {line}"));
+    let place = place.trim_end().trim_end_matches("/metrics").parse().expect("an address");
+    (Service { process }, place)
+}
+
+/// Head and body of what is at a path.
+fn get(at: SocketAddr, path: &str, accept: &str) -> (String, String) {
+    let mut stream = TcpStream::connect(at).expect("somebody listens");
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {at}\r\nAccept: {accept}\r\nConnection: close\r\n\r\n").expect("sent");
+    let mut said = String::new();
+    stream.read_to_string(&mut said).expect("an answer");
+    let (head, body) = said.split_once("\r\n\r\n").unwrap_or_else(|| panic!("no answer: {said}"));
+    (head.to_owned(), body.to_owned())
+}
+
+fn page(at: SocketAddr) -> String {
+    get(at, "/metrics", "text/plain").1
+}
+
+/// Asks until what comes is what is waited for.
+fn until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
+    /// Whoever waits as long as that waits for ever.
+    const PATIENCE: Duration = Duration::from_secs(120);
+
+    let began = Instant::now();
+    loop {
+        if let Some(found) = ask() {
+            return found;
+        }
+        assert!(began.elapsed() < PATIENCE, "it does not come to this: {what}");
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// Whether a program is there; a test that needs it says why it does nothing.
+fn is_there(program: &str) -> bool {
+    let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
+    if !found {
+        println!("skipped: there is no {program} here");
+    }
+    found
+}
+
+fn docs(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/monitoring").join(name)
+}
+
+fn succeeded(output: &Output) {
+    let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
+    assert!(output.status.success(), "{}\n{out}{err}", output.status);
+}
+
+fn promtool(words: &[&str]) {
+    let output = Command::new("promtool").args(words).current_dir(docs("")).output().expect("promtool runs");
+    succeeded(&output);
+}
+
+/// One simulator of each family and one robot that nobody is.
+fn mixed() -> (Vec<Simulator>, TempDir) {
+    let simulators: Vec<Simulator> = ["yerc", "yrcx", "toyo"].map(Simulator::start).into();
+    let urls: Vec<&str> = simulators.iter().map(|simulator| simulator.url.as_str()).collect();
+    let robots = [
+        ("cell3", "yerc", urls[0]),
+        ("press", "yrcx", urls[1]),
+        ("loader", "toyo", urls[2]),
+        ("gone", "toyo", "tcp://127.0.0.1:1"),
+    ];
+    let folder = plant(&robots);
+    (simulators, folder)
+}
+
+/// Waits until something is known of all four.
+fn known(at: SocketAddr) -> String {
+    until("all robots are known", || {
+        let page = page(at);
+        (page.matches("\narmctl_robot_up{").count() == 4).then_some(page)
+    })
+}
+
+#[test]
+fn pages_are_in_the_form_that_is_asked_for() {
+    let (_simulators, folder) = mixed();
+    let (_service, at) = serve(armctl(folder.path()));
+    let text = known(at);
+    assert!(text.contains("armctl_robot_up{robot=\"cell3\",family=\"yerc\"} 1\n"), "{text}");
+    assert!(text.contains("armctl_robot_up{robot=\"gone\",family=\"toyo\"} 0\n"), "{text}");
+    // What the page of the documentation shows is there.
+    let shown = std::fs::read_to_string(docs("README.md")).expect("the page is there");
+    let shown = shown.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a page");
+    for line in shown.lines() {
+        assert!(text.lines().any(|there| there == line), "{line} is not in\n{text}");
+    }
+    let (head, open) = get(at, "/metrics", "application/openmetrics-text;version=1.0.0,text/plain;q=0.5");
+    assert!(head.contains("application/openmetrics-text; version=1.0.0; charset=utf-8"), "{head}");
+    assert!(open.ends_with("\n# EOF\n") && open.contains("# UNIT armctl_axis_position_meters meters\n"), "{open}");
+    assert_eq!(get(at, "/healthz", "*/*").1, "ok\n");
+    assert!(get(at, "/", "*/*").0.starts_with("HTTP/1.1 404 "));
+    if is_there("promtool") {
+        let mut check =
+            Command::new("promtool").args(["check", "metrics"]).stdin(Stdio::piped()).spawn().expect("runs");
+        check.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("read");
+        assert!(check.wait().expect("it ends").success());
+    }
+}
+
+#[test]
+fn rules_and_configuration_are_what_prometheus_takes() {
+    if !is_there("promtool") {
+        return;
+    }
+    promtool(&["check", "config", "prometheus.yml"]);
+    promtool(&["test", "rules", "alerts_test.yml"]);
+    let [rules, tests] =
+        ["alerts.yml", "alerts_test.yml"].map(|name| std::fs::read_to_string(docs(name)).expect("it is there"));
+    for alert in rules.lines().filter_map(|line| line.trim().strip_prefix("- alert: ")) {
+        assert!(tests.contains(&format!("alertname: {alert}\n")), "{alert} has no test");
+    }
+}
+
+#[test]
+fn the_dashboard_asks_for_what_is_there() {
+    let text = std::fs::read_to_string(docs("dashboard.json")).expect("it is there");
+    let dashboard: Value = serde_json::from_str(&text).expect("JSON");
+    let panels = dashboard["panels"].as_array().expect("panels");
+    let of = |panel: &Value| panel["targets"].as_array().cloned().unwrap_or_default();
+    let questions: Vec<String> =
+        panels.iter().flat_map(of).filter_map(|target| target["expr"].as_str().map(str::to_owned)).collect();
+    assert!(questions.len() > 15);
+    let page = std::fs::read_to_string(docs("README.md")).expect("the page is there");
+    let mut rules = "groups:\n- name: dashboard\n  rules:\n".to_owned();
+    for (number, question) in questions.iter().enumerate() {
+        for name in
+            question.split(|c: char| !c.is_ascii_lowercase() && c != '_').filter(|word| word.starts_with("armctl_"))
+        {
+            let known = page.contains(&format!("`{}`", name.trim_end_matches("_bucket")));
+            assert!(known, "{name} is not one of the metrics: {question}");
+        }
+        let question = question.replace("$__rate_interval", "1m").replace(['\n', '\''], " ");
+        rules += &format!("  - record: q{number}\n    expr: '{question}'\n");
+    }
+    if is_there("promtool") {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("rules.yml");
+        std::fs::write(&file, rules).expect("written");
+        promtool(&["check", "rules", file.to_str().expect("a path")]);
+    }
+}
+
+#[test]
+fn a_prometheus_reads_it_and_its_alerts_come_and_go() {
+    if !is_there("prometheus") {
+        return;
+    }
+    let (simulators, folder) = mixed();
+    let (_service, at) = serve(armctl(folder.path()));
+    known(at);
+    let (_prometheus, prometheus) = prometheus(folder.path(), at);
+    let ask = |question: &str| -> Vec<(Value, String)> {
+        let Some(answer) = query(prometheus, question) else { return Vec::new() };
+        let results = answer["data"]["result"].as_array().cloned().unwrap_or_default();
+        results
+            .into_iter()
+            .map(|found| (found["metric"].clone(), found["value"][1].as_str().unwrap_or_default().to_owned()))
+            .collect()
+    };
+    let names = |found: Vec<(Value, String)>| -> Vec<String> {
+        let mut names: Vec<String> =
+            found.iter().filter_map(|(labels, _)| labels["robot"].as_str().map(str::to_owned)).collect();
+        names.sort();
+        names
+    };
+    until("three answer", || (names(ask("armctl_robot_up == 1")) == ["cell3", "loader", "press"]).then_some(()));
+    until("it is read", || ask("up{job=\"armctl\"}").iter().any(|(_, value)| value == "1").then_some(()));
+    // X, Y and Z of one, four axes of another; a YRCX tells no position where no session has its command.
+    until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
+    let rate = "histogram_quantile(0.99, sum by (robot, le) (rate(armctl_poll_duration_seconds_bucket[1m])))";
+    until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
+    until("its type is known", || {
+        let told = get(prometheus, "/api/v1/metadata?metric=armctl_polls_total", "*/*").1;
+        told.contains("\"counter\"").then_some(())
+    });
+    let pending = "ALERTS{alertname=\"RobotDown\"}";
+    until("who is gone is in the list of alerts", || (names(ask(pending)) == ["gone"]).then_some(()));
+    drop(simulators);
+    until("nobody answers", || {
+        (names(ask("armctl_robot_up == 0")) == ["cell3", "gone", "loader", "press"]).then_some(())
+    });
+    until("and all are in the list", || (names(ask(pending)).len() == 4).then_some(()));
+}
+
+/// Starts a Prometheus that reads metrics at an address five times a second.
+fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
+    let config = std::fs::read_to_string(docs("prometheus.yml")).expect("it is there");
+    let config = config.replace("127.0.0.1:9464", &at.to_string()).replace(": 5s", ": 200ms");
+    let config = config.replace("- alerts.yml", &format!("- {}", docs("alerts.yml").display()));
+    std::fs::write(folder.join("prometheus.yml"), config).expect("written");
+    let free = TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).expect("a port");
+    let mut command = Command::new("prometheus");
+    command.arg("--config.file").arg(folder.join("prometheus.yml")).arg("--storage.tsdb.path").arg(folder.join("data"));
+    command.args(["--web.listen-address", &free.to_string(), "--log.level", "error"]);
+    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let service = Service { process: command.spawn().expect("it starts") };
+    until("Prometheus is ready", || {
+        TcpStream::connect(free).is_ok().then(|| get(free, "/-/ready", "*/*").0).filter(|head| head.contains(" 200 "))
+    });
+    (service, free)
+}
+
+fn query(at: SocketAddr, question: &str) -> Option<Value> {
+    let escaped: String = question.bytes().map(|byte| format!("%{byte:02x}")).collect();
+    let (head, body) = get(at, &format!("/api/v1/query?query={escaped}"), "application/json");
+    // Long answers come in pieces, each with its length on a line before it.
+    let body = if head.to_lowercase().contains("transfer-encoding: chunked") { joined(&body) } else { body };
+    serde_json::from_str(&body).ok()
+}
+
+fn joined(mut pieces: &str) -> String {
+    let mut body = String::new();
+    while let Some((length, rest)) = pieces.split_once("\r\n") {
+        let length = usize::from_str_radix(length.trim(), 16).unwrap_or(0);
+        if length == 0 {
+            break;
+        }
+        body += rest.get(..length).unwrap_or_default();
+        pieces = rest.get(length + 2..).unwrap_or_default();
+    }
+    body
+}
+
+#[test]
+fn robots_come_and_go_while_it_runs() {
+    let simulator = Simulator::start("toyo");
+    let folder = plant(&[("loader", "toyo", &simulator.url)]);
+    let (_service, at) = serve(armctl(folder.path()));
+    let has = |what: &'static str| until(what, || page(at).contains(what).then_some(()));
+    has("armctl_robot_up{robot=\"loader\",family=\"toyo\"} 1\n");
+    std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
+    has("armctl_inventory_last_reload_successful 0\n");
+    has("armctl_robot_up{robot=\"loader\",family=\"toyo\"} 1\n");
+    write(folder.path(), &[("hand", "toyo", &simulator.url), ("cell9", "yerc", "sim:")]);
+    has("armctl_robot_up{robot=\"hand\",family=\"toyo\"} 1\n");
+    has("armctl_robot_up{robot=\"cell9\",family=\"yerc\"} 1\n");
+    assert!(!page(at).contains("loader"));
+    assert!(page(at).contains("armctl_inventory_last_reload_successful 1\n"));
+}
+
+#[test]
+fn a_service_manager_is_told_and_sigterm_ends_it_well() {
+    let folder = plant(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let path = folder.path().join("notify");
+    let manager = UnixDatagram::bind(&path).expect("a socket");
+    let mut command = armctl(folder.path());
+    command.env("NOTIFY_SOCKET", &path).env("WATCHDOG_USEC", "200000").stderr(Stdio::null());
+    let (mut service, _) = serve(command);
+    let heard = || {
+        let mut text = [0; 200];
+        let length = manager.recv(&mut text).expect("it is told");
+        String::from_utf8_lossy(&text[..length]).into_owned()
+    };
+    assert_eq!(heard(), "READY=1\nSTATUS=2 robots");
+    while heard() != "WATCHDOG=1\nSTATUS=2 robots, 1 answers" {}
+    service.signal("TERM");
+    while heard() != "STOPPING=1" {}
+    assert_eq!(service.end().code(), Some(0));
+}
+
+#[test]
+fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
+    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let log = folder.path().join("log");
+    let file = std::fs::File::create(&log).expect("a file");
+    let stat = file.metadata().expect("it is there");
+    let mut command = armctl(folder.path());
+    command.env("JOURNAL_STREAM", format!("{}:{}", stat.dev(), stat.ino())).stderr(file);
+    let (_service, _) = serve(command);
+    let has = |wanted: &[&str]| {
+        until("a line of the log", || {
+            let text = std::fs::read_to_string(&log).expect("it is there");
+            text.lines().find(|line| wanted.iter().all(|part| line.contains(part))).map(str::to_owned)
+        })
+    };
+    let line = has(&["<4>gone (tcp://127.0.0.1:1)", "robot=gone family=toyo kind=no_answer"]);
+    assert!(line.starts_with("<4>"), "{line}");
+    std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
+    has(&["<4>", "robots.toml:1:", "the robots stay as they were", "kind=usage"]);
+    write(folder.path(), &[("cell3", "yerc", "sim:")]);
+    has(&["<5>gone (tcp://127.0.0.1:1): is looked at no more robot=gone family=toyo"]);
+    has(&["<5>cell3 (sim:): is looked at from now on robot=cell3 family=yerc"]);
+    // A variable that a terminal has passed on is not the journal.
+    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let log = folder.path().join("log");
+    let mut command = armctl(folder.path());
+    command.env("JOURNAL_STREAM", "1:2").stderr(std::fs::File::create(&log).expect("a file"));
+    let (_service, _) = serve(command);
+    let text = until("a line", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
+    assert!(text.starts_with("warning: gone (tcp://127.0.0.1:1)") && !text.contains("kind="), "{text}");
+}
+
+#[test]
+fn a_port_that_others_reach_is_warned_of() {
+    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let log = folder.path().join("log");
+    // In a network of its own, where nobody is.
+    let alone = || Command::new("unshare").args(["-Urn", "true"]).stderr(Stdio::null()).status();
+    if !alone().is_ok_and(|status| status.success()) {
+        println!("skipped: there are no user namespaces here");
+        return;
+    }
+    let mut command = Command::new("unshare");
+    command.args(["-Urn", env!("CARGO_BIN_EXE_armctl"), "serve", "metrics", "--listen", "0.0.0.0"]);
+    command.env_clear().env("HOME", folder.path()).env("ARMCTL_CONFIG", folder.path().join("robots.toml"));
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(std::fs::File::create(&log).expect("a file"));
+    let _service = Service { process: command.spawn().expect("it starts") };
+    let said = until("a warning", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
+    assert!(said.starts_with("warning: others on the network can read") && said.contains("no password"), "{said}");
+}
+
+#[test]
+fn a_port_in_use_is_refused() {
+    let taken = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let words =
+        ["serve", "metrics", "--listen", &taken.local_addr().expect("an address").to_string()].map(str::to_owned);
+    let output = armctl(folder.path()).args(words).output().expect("it runs");
+    assert_eq!(output.status.code(), Some(4));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("already in use") && said.contains("--listen 127.0.0.1:9465"), "{said}");
+}
+
+#[test]
+fn the_unit_is_one_that_systemd_takes() {
+    let text = std::fs::read_to_string(docs("armctl-metrics.service")).expect("it is there");
+    // Ready, watched, started anew, and its command line is one.
+    for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
+        assert!(text.contains(wanted), "{wanted}");
+    }
+    if !is_there("systemd-analyze") {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let unit = folder.path().join("armctl-metrics.service");
+    std::fs::write(&unit, text.replace("/usr/local/bin/armctl", env!("CARGO_BIN_EXE_armctl"))).expect("written");
+    let mut verify = Command::new("systemd-analyze");
+    succeeded(&verify.args(["verify", "--man=no"]).arg(&unit).output().expect("it runs"));
+}
