@@ -10,6 +10,8 @@ pub mod fault;
 pub mod image;
 pub mod line;
 pub mod local;
+#[cfg(feature = "plant")]
+pub mod mqtt;
 mod port;
 pub mod ports;
 pub mod profibus;
