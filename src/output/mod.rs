@@ -10,6 +10,7 @@ pub mod flat;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;
+pub mod log;
 mod pager;
 pub mod painter;
 pub mod progress;

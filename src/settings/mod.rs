@@ -179,7 +179,7 @@ impl Selection {
 }
 
 /// Everything that settings are made of.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Sources {
     /// The choice of robots.
     pub selection: Selection,
@@ -227,6 +227,26 @@ impl Sources {
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
              set ARMCTL_TARGET or ARMCTL_ROBOT"
         )))
+    }
+
+    /// Whether the robots are those of the inventory, so that another inventory may mean others.
+    pub fn follows_inventory(&self) -> bool {
+        let Selection { sim, target, all, robots, tags, environment, .. } = &self.selection;
+        let by_entry = *all || !robots.is_empty() || !tags.is_empty();
+        !*sim && target.is_none() && (by_entry || environment.is_none())
+    }
+
+    /// The robots that were chosen, as far as an inventory has them that is not the one they were chosen from: there may
+    /// be none left.
+    pub fn robots_left(&self) -> Result<Vec<Robot>, Failure> {
+        let Selection { robots, tags, all, .. } = &self.selection;
+        let is_named = |entry: &Entry| match &robots[..] {
+            _ if *all => true,
+            [] => !tags.is_empty() || self.inventory.default.as_ref() == Some(&entry.name),
+            patterns => patterns.iter().any(|pattern| inventory::fits(pattern, &entry.name)),
+        };
+        let is_chosen = |entry: &&Entry| is_named(entry) && tags.iter().all(|tag| entry.tags.contains(tag));
+        self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolved(entry, None)).collect()
     }
 
     /// What alarms mean at the site of the inventory.

@@ -17,9 +17,10 @@ use super::{Face, HeldLink, Watch};
 use crate::command::backup::words::Backups;
 use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
+use crate::command::frame::authority::Authority;
 use crate::command::frame::connection;
 use crate::command::serve::Serve;
-use crate::command::{Access, AnyContext, Command, CommandSet, Driver, Own, SchemaEntry};
+use crate::command::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, Outcome, Own, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -41,8 +42,8 @@ pub trait Declaration: Backups {
     type AlarmHistory: Command<Family = Self, Report: Recorded> + Args;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
-    /// Looks for `top`.
-    type Poller: Poller;
+    /// Looks for the poller.
+    type Poller: Poller<Family = Self>;
 
     /// Which it is.
     const NAME: target::Family;
@@ -87,13 +88,18 @@ pub trait Declaration: Backups {
     async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
 }
 
-/// Looks at a robot again and again, for `top`.
+/// Looks at a robot again and again.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Poller: Sized + 'static {
+    /// The family of the robot.
+    type Family: connection::Family;
+
     /// Connects.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
     /// Looks once.
     async fn look(&mut self, detail: Detail) -> Result<Sample, Failure>;
+    /// The connection, for a command that only reads.
+    fn link(&mut self) -> &mut <Self::Family as connection::Family>::Link;
     /// Closes the connection.
     async fn close(self, screen: &Screen) -> Result<(), Failure>;
 }
@@ -234,6 +240,20 @@ impl<F: Declaration> Face for Declared<F> {
 impl<E: Poller> Watch for E {
     fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>> {
         Poller::look(self, detail).boxed_local()
+    }
+
+    fn ask<'a>(
+        &'a mut self,
+        command: &'a dyn AnyCommand,
+        robot: &'a Robot,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Outcome> {
+        async move {
+            let authority = Authority::reading(screen, robot);
+            let mut lent = connection::Lent::<E::Family>(self.link());
+            command.run(AnyContext { robot, connection: &mut lent, screen, several: false, authority }).await
+        }
+        .boxed_local()
     }
 
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {

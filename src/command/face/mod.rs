@@ -19,7 +19,7 @@ use self::sample::{Detail, Sample};
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
-use super::frame::{Access, AnyContext, Connection, Driver, SchemaEntry};
+use super::frame::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -69,7 +69,7 @@ pub trait Face: Sync {
         access: Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<Vec<Layer>, Failure>>;
-    /// Connects for `top`.
+    /// Connects to look again and again.
     fn watch<'a>(
         &self,
         robot: &'a Robot,
@@ -103,10 +103,17 @@ pub trait Face: Sync {
     ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
 }
 
-/// Looks at a robot again and again, for `top`.
+/// Looks at a robot again and again, for the poller.
 pub trait Watch {
     /// Looks once.
     fn look(&mut self, detail: Detail) -> LocalBoxFuture<'_, Result<Sample, Failure>>;
+    /// Runs a command of the family over the same connection. Nothing but reads can leave.
+    fn ask<'a>(
+        &'a mut self,
+        command: &'a dyn AnyCommand,
+        robot: &'a Robot,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Outcome>;
     /// Closes the connection.
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
 }

@@ -7,11 +7,14 @@ use tokio::time::Instant;
 use crate::command::face::overview::OverviewReport;
 use crate::output::view::Tone;
 
-/// How much is asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How much is asked, the least first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
     /// What a line of a list shows.
     Summary,
+    /// The same, with the axes and their torque: [`Sample::whole`] without signals, limits and errors of position that
+    /// would have to be asked for.
+    Axes,
     /// What a screen of its own shows.
     Full,
 }
@@ -25,7 +28,7 @@ pub struct Sample {
     pub answered_in: Option<Duration>,
     /// The alarms and errors that are present, the latest first, as far as they can be asked for.
     pub alarms: Vec<Alarm>,
-    /// What only [`Detail::Full`] asks for.
+    /// What [`Detail::Full`] asks for, and [`Detail::Axes`] in part.
     pub whole: Option<Whole>,
 }
 

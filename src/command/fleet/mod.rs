@@ -1,6 +1,7 @@
 //! Commands for robots of any family.
 
 pub mod backup;
+pub mod poll;
 pub mod robots;
 pub mod session;
 pub mod setup;

@@ -208,6 +208,32 @@ pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, 
     link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
 }
 
+/// The link of a family, lent as a [`Connection`] for a command that is run over it.
+pub struct Lent<'a, F: Family>(pub &'a mut F::Link);
+
+impl<F: Family> Connection for Lent<'_, F> {
+    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
+        F::halt(self.0).boxed_local()
+    }
+
+    fn must_halt(&self) -> bool {
+        F::must_halt(self.0)
+    }
+
+    fn planned(&mut self) -> Plan {
+        F::planned(self.0)
+    }
+
+    /// It is closed by who has lent it.
+    fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        async { Ok(()) }.boxed_local()
+    }
+
+    fn as_any(&mut self) -> &mut dyn Any {
+        self.0
+    }
+}
+
 /// The link of a family as a [`Connection`].
 struct Connected<F: Family>(F::Link);
 

@@ -30,6 +30,8 @@ pub struct Poller {
 type Limits = [Option<(f64, f64)>; 4];
 
 impl declared::Poller for Poller {
+    type Family = Toyo;
+
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Toyo::connect(robot, access, screen).await?, limits: None })
     }
@@ -39,16 +41,20 @@ impl declared::Poller for Poller {
         let first = first?;
         let rest: &[u8] = match (detail, first.has_error()) {
             (Detail::Full, _) => &[1, 2, 3, 4],
-            (Detail::Summary, true) => &[1, 2, 3],
-            (Detail::Summary, false) => &[2, 3],
+            (_, true) => &[1, 2, 3],
+            (_, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
         let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Coordinates::of(&record));
         let whole = match detail {
             Detail::Summary => None,
-            Detail::Full => Some(self.whole(status, place).await?),
+            Detail::Axes | Detail::Full => Some(self.whole(detail, status, place).await?),
         };
         Ok(Sample { line: report(status, fault(status), place), answered_in, alarms: alarms(status), whole })
+    }
+
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
     }
 
     async fn close(self, screen: &Screen) -> Result<(), Failure> {
@@ -57,12 +63,17 @@ impl declared::Poller for Poller {
 }
 
 impl Poller {
-    async fn whole(&mut self, status: Status, place: Option<Coordinates>) -> Result<Whole, Failure> {
+    async fn whole(&mut self, detail: Detail, status: Status, place: Option<Coordinates>) -> Result<Whole, Failure> {
+        let is_full = detail == Detail::Full;
         let limits = match self.limits {
             Some(limits) => limits,
-            None => *self.limits.insert(limits(&mut self.link).await?),
+            None if is_full => *self.limits.insert(limits(&mut self.link).await?),
+            None => Limits::default(),
         };
-        let banks = vec![self.bank("inputs", INPUTS).await?, self.bank("outputs", OUTPUTS).await?];
+        let mut banks = Vec::new();
+        for (name, ports) in [("inputs", INPUTS), ("outputs", OUTPUTS)].into_iter().filter(|_| is_full) {
+            banks.push(self.bank(name, ports).await?);
+        }
         let letters = self.link.letters().await?.all();
         let axes = place.map_or_else(Vec::new, |place| axes(place, letters, limits));
         Ok(Whole { indicators: indicators(status), axes, torque_unit: None, banks, not_asked: None })

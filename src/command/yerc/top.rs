@@ -32,6 +32,8 @@ const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
 impl declared::Poller for Poller {
+    type Family = Yerc;
+
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         Ok(Self { link: Yerc::connect(robot, access, screen).await?, texts: true })
     }
@@ -45,10 +47,14 @@ impl declared::Poller for Poller {
         let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
         let whole = match detail {
             Detail::Summary => None,
-            Detail::Full => Some(self.whole(status, base.as_ref()).await?),
+            Detail::Axes | Detail::Full => Some(self.whole(detail, status, base.as_ref()).await?),
         };
         let fault = Fault::new(status.faulted(), alarms.first());
         Ok(Sample { line: report(status, fault, base.as_ref()), answered_in, alarms, whole })
+    }
+
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
     }
 
     async fn close(self, screen: &Screen) -> Result<(), Failure> {
@@ -57,15 +63,21 @@ impl declared::Poller for Poller {
 }
 
 impl Poller {
-    async fn whole(&mut self, status: ControllerStatus, base: Option<&Position>) -> Result<Whole, Failure> {
+    async fn whole(
+        &mut self,
+        detail: Detail,
+        status: ControllerStatus,
+        base: Option<&Position>,
+    ) -> Result<Whole, Failure> {
         let model = self.link.model;
         let pulses = self.position(Coordinates::Pulse).await?;
         let torque = self.ask(ReadTorque::new(model, Group::R1)).await?;
-        let error = self.ask(ReadPositionError::new(model, Group::R1)).await?;
+        let is_full = detail == Detail::Full;
+        let error = if is_full { self.ask(ReadPositionError::new(model, Group::R1)).await? } else { None };
         let mut axes = pulses.map_or_else(Vec::new, |pulses| joints(pulses.axes, torque, error));
         axes.extend(base.into_iter().flat_map(coordinates));
         let mut banks = Vec::new();
-        for (name, first) in BANKS {
+        for (name, first) in BANKS.into_iter().filter(|_| is_full) {
             if let Some(bytes) = self.ask(ReadIoGroups::new(model, first, GROUPS)).await? {
                 let groups = (first..).zip(bytes).map(|(group, byte)| SignalByte::rising(format!("#{group}0"), byte));
                 banks.push(Bank { name, groups: groups.collect() });

@@ -58,6 +58,8 @@ const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
 impl declared::Poller for Poller {
+    type Family = Yrcx;
+
     /// Opens it; nothing but reads can leave, and no connection is opened that the controller would miss.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
@@ -79,8 +81,12 @@ impl declared::Poller for Poller {
         }
         let position = self.told.position_mm.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
         let line = OverviewReport { position, not_asked, ..report(&self.link, &image, self.told.alarm.as_ref()) };
-        let whole = (detail == Detail::Full).then(|| self.whole(&image, not_asked));
+        let whole = (detail >= Detail::Axes).then(|| self.whole(detail, &image, not_asked));
         Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
+    }
+
+    fn link(&mut self) -> &mut Link {
+        &mut self.link
     }
 
     async fn close(self, screen: &Screen) -> Result<(), Failure> {
@@ -108,7 +114,7 @@ impl Poller {
     }
 
     fn questions(&self, detail: Detail, has_alarm: bool) -> Vec<Command> {
-        let is_whole = detail == Detail::Full;
+        let is_whole = detail >= Detail::Axes;
         let wanted = [
             (Command::PositionMm, true),
             (Command::AlarmHistory, has_alarm && self.told.alarm.is_none()),
@@ -145,13 +151,13 @@ impl Poller {
         Ok(())
     }
 
-    fn whole(&self, image: &Image, not_asked: Option<&'static str>) -> Whole {
+    fn whole(&self, detail: Detail, image: &Image, not_asked: Option<&'static str>) -> Whole {
         let shown = self.link.shown().copied();
         let mut banks = Vec::new();
-        if let Some(shown) = shown {
-            banks.push(bank("inputs", Side::Input, &shown));
+        if detail == Detail::Full {
+            banks.extend(shown.map(|shown| bank("inputs", Side::Input, &shown)));
+            banks.push(bank("outputs", Side::Output, image));
         }
-        banks.push(bank("outputs", Side::Output, image));
         let torque_unit = self.told.torque_percent.map(|_| "% of max");
         Whole { indicators: indicators(image), axes: self.axes(), torque_unit, banks, not_asked }
     }

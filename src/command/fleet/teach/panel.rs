@@ -6,15 +6,16 @@ use futures_util::StreamExt as _;
 use futures_util::future::{FutureExt as _, LocalBoxFuture};
 use futures_util::stream::FuturesUnordered;
 use serde_json::Value;
-use tokio::sync::{mpsc, watch};
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep_until};
 
 use super::keys::order;
 use super::model::{Model, Wish};
 use super::view::{Robot as Shown, draw};
 use super::{Teach, Types};
 use crate::command::face::panel::{Panel, SmallStep, Step};
-use crate::command::fleet::top::{self, Pace, Update, follow};
+use crate::command::fleet::poll::{Poll, RobotId, Subscription, Wish as Looks};
+use crate::command::fleet::top;
 use crate::command::frame::interrupt::asked_to_end;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -24,10 +25,8 @@ use crate::settings::Robot;
 
 /// Time from look to look, and between pictures.
 const EVERY: Duration = Duration::from_millis(250);
-/// How long what only looks may take to end.
-const LEAVE_WITHIN: Duration = Duration::from_secs(1);
-/// Looks that wait to be taken.
-const UPDATES: usize = 16;
+/// The longest that the robot is left alone while it does not answer.
+const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
 /// What a line came to.
 enum Done {
@@ -56,11 +55,10 @@ pub async fn show(
         let sizes = (0..model.system().axes.len()).map(|axis| size(&told, axis)).collect::<Option<Vec<f64>>>();
         model.scale_by(sizes.ok_or_else(|| Failure::local("internal error: the small step of the axes is not told"))?);
     }
-    let pace = Pace { every: EVERY, open: Some(0), is_over: false };
-    let (pace, paces) = watch::channel(pace);
-    let (tell, updates) = mpsc::channel(UPDATES);
-    let follower = follow(0, robot.clone(), screen.silenced(), Duration::ZERO, paces, tell);
-    let mut follower = follower.boxed_local();
+    let looks = Looks { whole: Some(RobotId::of(robot)), longest_pause: LONGEST_PAUSE, ..Looks::every(EVERY) };
+    let mut poll = Poll::of(robot.clone(), screen.silenced());
+    let mut updates = poll.subscribe(looks);
+    let mut polled = poll.run().boxed_local();
     let ended = {
         let terminal = screen.fullscreen()?;
         let (press, keys) = mpsc::unbounded_channel();
@@ -70,12 +68,12 @@ pub async fn show(
         let is_real = !robot.target.value.is_simulated();
         let mut shown = Show { terminal, palette, model, seen, is_real, lines, start: Instant::now(), leaving: None };
         tokio::select! {
-            ended = shown.run(updates, keys) => ended,
-            () = &mut follower => Err(Failure::local("nobody looks at the robot any more")),
+            ended = shown.run(&mut updates, keys) => ended,
+            () = &mut polled => Err(Failure::local("nobody looks at the robot any more")),
         }
     };
-    pace.send_modify(|pace| pace.is_over = true);
-    let _left = timeout(LEAVE_WITHIN, follower).await;
+    drop(updates);
+    polled.await;
     ended
 }
 
@@ -94,7 +92,7 @@ struct Show<'a, L> {
 impl<'a, L: Types> Show<'a, L> {
     async fn run(
         &mut self,
-        mut updates: mpsc::Receiver<Update>,
+        updates: &mut Subscription,
         mut events: mpsc::UnboundedReceiver<Event>,
     ) -> Result<(), Failure> {
         let mut running: Running<'a> = FuturesUnordered::new();
@@ -121,7 +119,9 @@ impl<'a, L: Types> Show<'a, L> {
                 how = asked_to_end(), if self.leaving.is_none() => {
                     self.leave(Err(Failure::new(Kind::Interrupted, how)));
                 }
-                Some((robot, looked)) = updates.recv() => self.seen.take(self.start.elapsed(), robot, looked),
+                Some(told) = updates.next() => {
+                    self.seen.hear(self.start.elapsed(), told);
+                }
                 () = sleep_until(next) => {}
             }
         }

@@ -2,7 +2,6 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `poller` | looks at one robot again and again, through links that let only reads pass |
 //! | `model` | what is known and chosen; no terminal, no line, no clock |
 //! | `track` | the past of an axis |
 //! | `keys` | what keys order, and how they are explained |
@@ -10,7 +9,6 @@
 
 mod keys;
 mod model;
-mod poller;
 #[cfg(test)]
 pub(super) mod testing;
 mod track;
@@ -19,18 +17,14 @@ mod view;
 use std::time::Duration;
 
 use clap::Args;
-use futures_util::StreamExt as _;
-use futures_util::stream::FuturesUnordered;
-use tokio::sync::{mpsc, watch};
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::sync::mpsc;
+use tokio::time::{Instant, sleep_until};
 
 use self::keys::{KeyAction, order};
 pub use self::model::Model;
-pub use self::poller::{Pace, Update, follow};
 use self::view::Palette;
 pub use self::view::robot;
-use crate::command::families;
-use crate::command::frame::attach::identify;
+use crate::command::fleet::poll::{self, Poll, RobotId, Subscription, Wish};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind};
@@ -53,40 +47,25 @@ const LEAST: Duration = Duration::from_millis(50);
 /// Least time between two pictures, and the greatest: times that pass are shown as well.
 const PICTURE: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
-/// How long links may take to close.
-const LEAVE_WITHIN: Duration = Duration::from_secs(1);
-/// Update that wait to be taken.
-const UPDATES: usize = 64;
+/// The longest that a robot is left alone that does not answer: somebody waits for it.
+const LONGEST_PAUSE: Duration = Duration::from_secs(4);
 
 impl Top {
     /// Does it.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
-        let mut robots = run.sources.robots(None)?;
+        // What links have to say would be written over the picture.
+        let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let screen = run.screen;
         if !screen.can_fill() {
             return Err(Failure::usage("top draws on a terminal, and stdout is none that can be drawn on")
                 .hint("`armctl status --watch` prints a table again and again; -o jsonl is for programs")
                 .into());
         }
-        for robot in &mut robots {
-            // One that does not answer is shown as that.
-            let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
-        }
-        // What links have to say would be written over the picture.
-        let silent = screen.silenced();
-        let model = Model::new(&robots, every);
-        let (pace, _) = watch::channel(pace_of(&model));
-        let (tell, updates) = mpsc::channel(UPDATES);
-        let share = every / u32::try_from(robots.len().max(1)).unwrap_or(u32::MAX);
-        let mut followers: FuturesUnordered<_> = robots
-            .into_iter()
-            .zip(0_u32..)
-            .enumerate()
-            .map(|(index, (robot, at))| follow(index, robot, silent, share * at, pace.subscribe(), tell.clone()))
-            .collect();
-        drop(tell);
+        let model = Model::new(poll.robots(), every);
+        let mut updates = poll.subscribe(wish_of(&model));
+        let mut polled = Box::pin(poll.run());
         // From here on nothing may end the process that does not give the terminal back.
         catch_interrupts();
         let palette = Palette { has_color: screen.stdout_color(), is_unicode: screen.is_unicode() };
@@ -94,19 +73,17 @@ impl Top {
             let terminal = screen.fullscreen()?;
             let (press, keys) = mpsc::unbounded_channel();
             let _keys = Keys::listen(move |event| press.send(event).is_ok());
-            let mut view = View { terminal, model, palette, pace: &pace, start: Instant::now() };
-            let shown = interruptible(view.show(updates, keys));
+            let mut view = View { terminal, model, palette, updates: &mut updates, start: Instant::now() };
+            let shown = interruptible(view.show(keys));
             tokio::select! {
                 ended = shown => ended.and_then(|ended| ended),
-                // They go on until they are told.
-                () = async { while followers.next().await.is_some() {} } => {
-                    Err(Failure::local("nobody looks at the robots any more"))
-                }
+                // It goes on as long as somebody wants to know.
+                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
             }
         };
         // The terminal is as it was found. Links are left properly, but nobody waits long for it.
-        pace.send_modify(|pace| pace.is_over = true);
-        let _left = timeout(LEAVE_WITHIN, async { while followers.next().await.is_some() {} }).await;
+        drop(updates);
+        polled.await;
         Ok(ended?)
     }
 }
@@ -135,8 +112,8 @@ fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     Ok(())
 }
 
-fn pace_of(model: &Model) -> Pace {
-    Pace { every: model.every, open: model.open(), is_over: false }
+fn wish_of(model: &Model) -> Wish {
+    Wish { whole: model.open(), longest_pause: LONGEST_PAUSE, ..Wish::every(model.every) }
 }
 
 /// The picture, and what changes it.
@@ -145,17 +122,13 @@ struct View<'a> {
     terminal: Fullscreen,
     model: Model,
     palette: Palette,
-    pace: &'a watch::Sender<Pace>,
+    updates: &'a mut Subscription,
     start: Instant,
 }
 
 impl View<'_> {
     /// Shows what comes until a key ends it. Update are drawn together, keys at once.
-    async fn show(
-        &mut self,
-        mut updates: mpsc::Receiver<Update>,
-        mut events: mpsc::UnboundedReceiver<Event>,
-    ) -> Result<(), Failure> {
+    async fn show(&mut self, mut events: mpsc::UnboundedReceiver<Event>) -> Result<(), Failure> {
         self.draw()?;
         let mut drawn = Instant::now();
         let mut has_updates = false;
@@ -180,11 +153,8 @@ impl View<'_> {
                         continue;
                     }
                 }
-                told = updates.recv() => {
-                    if let Some((robot, looked)) = told {
-                        self.model.take(self.start.elapsed(), robot, looked);
-                        has_updates = true;
-                    }
+                Some(told) = self.updates.next() => {
+                    has_updates |= self.take(told);
                     continue;
                 }
             }
@@ -192,6 +162,19 @@ impl View<'_> {
             drawn = Instant::now();
             has_updates = false;
         }
+    }
+
+    /// Takes what was told of a robot; whether it changes the picture.
+    fn take(&mut self, told: poll::Event) -> bool {
+        let now = self.start.elapsed();
+        match told {
+            poll::Event::Appeared(robot) => self.model.appear(&robot),
+            poll::Event::Gone(robot) => self.model.leave(&RobotId::of(&robot)),
+            told => return self.model.hear(now, told),
+        }
+        // The robot that has the screen may be another one.
+        self.updates.wish(wish_of(&self.model));
+        true
     }
 
     fn draw(&mut self) -> Result<(), Failure> {
@@ -209,8 +192,7 @@ impl View<'_> {
             Some(KeyAction::Refresh) => self.terminal.refresh()?,
             Some(order) => {
                 self.model.obey(self.start.elapsed(), order);
-                let pace = pace_of(&self.model);
-                self.pace.send_if_modified(|last| std::mem::replace(last, pace) != pace);
+                self.updates.wish(wish_of(&self.model));
             }
             None => {}
         }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use super::keys::KeyAction;
 use super::track::Track;
 use crate::command::face::sample::Sample;
+use crate::command::fleet::poll::{Event, RobotId};
 use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
 use crate::settings::{Robot, target};
@@ -168,6 +169,48 @@ impl Model {
         self.axis = found.unwrap_or(self.axis);
     }
 
+    /// Takes what a poll has told of a look at a robot; whether there is anything new.
+    pub fn hear(&mut self, now: Moment, told: Event) -> bool {
+        let (robot, looked) = match told {
+            Event::Looked(look) => {
+                // A text that cannot be read is a mistake that somebody can set right.
+                let looked = look.unexplained.clone().map_or_else(|| Ok(look.sample.clone()), Err);
+                (RobotId::of(&look.robot), looked)
+            }
+            Event::Failed { robot, failure, .. } => (RobotId::of(&robot), Err(failure)),
+            Event::Appeared(_) | Event::Gone(_) | Event::Inventory(_) => return false,
+        };
+        let at = self.robots.iter().position(|seen| seen.id() == robot);
+        if let Some(at) = at {
+            self.take(now, at, looked);
+        }
+        at.is_some()
+    }
+
+    /// A robot is looked at from now on, or is another one under its name.
+    pub fn appear(&mut self, robot: &Robot) {
+        if !self.robots.iter().any(|seen| seen.id() == RobotId::of(robot)) {
+            self.robots.push(Seen::new(robot));
+        }
+    }
+
+    /// A robot is looked at no more.
+    pub fn leave(&mut self, robot: &RobotId) {
+        let chosen = self.chosen().map(Seen::id);
+        self.robots.retain(|seen| seen.id() != *robot);
+        self.choose(chosen);
+    }
+
+    /// Puts the cursor on a robot, where it is still there.
+    fn choose(&mut self, robot: Option<RobotId>) {
+        let robots = self.robots();
+        match robots.iter().position(|seen| Some(seen.id()) == robot) {
+            Some(at) => self.cursor = at,
+            None => (self.cursor, self.is_open) = (self.cursor.min(robots.len().saturating_sub(1)), false),
+        }
+        self.keep_cursor();
+    }
+
     /// Takes what a look came to.
     pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample, Failure>) {
         let every = self.every;
@@ -192,8 +235,8 @@ impl Model {
     }
 
     /// The robot that has the screen for itself, which is looked at in full.
-    pub fn open(&self) -> Option<usize> {
-        self.is_open.then_some(self.cursor)
+    pub fn open(&self) -> Option<RobotId> {
+        self.chosen().filter(|_| self.is_open).map(Seen::id)
     }
 
     /// The robot at the cursor.
@@ -232,7 +275,11 @@ impl Model {
             KeyAction::Back if !self.is_open => self.filter.clear(),
             KeyAction::Back => self.is_open = false,
             KeyAction::Sort => self.sort = self.sort.next(),
-            KeyAction::Pause if self.is_paused() => self.frozen = None,
+            KeyAction::Pause if self.is_paused() => {
+                let chosen = self.chosen().map(Seen::id);
+                self.frozen = None;
+                self.choose(chosen);
+            }
             KeyAction::Pause => self.frozen = Some((now, self.robots.clone())),
             KeyAction::Faster => self.every = nearest(self.every, true),
             KeyAction::Slower => self.every = nearest(self.every, false),
@@ -286,6 +333,11 @@ impl Seen {
             answers: VecDeque::with_capacity(ANSWERS),
             tracks: Vec::new(),
         }
+    }
+
+    /// What tells it from others.
+    pub fn id(&self) -> RobotId {
+        RobotId { name: self.name.clone(), family: self.family }
     }
 
     /// Whether its name, family, place or a tag has this in it.
@@ -444,12 +496,14 @@ mod tests {
         let mut model = Model::new(&fleet(2), EVERY);
         assert_eq!(model.open(), None);
         model.obey(NOW, KeyAction::Open);
-        assert_eq!(model.open(), Some(0));
+        let id = |model: &Model, at: usize| Some(model.robots[at].id());
+        assert_eq!(model.open(), id(&model, 0));
         model.obey(NOW, KeyAction::Next);
-        assert_eq!(model.open(), Some(1));
+        assert_eq!(model.open(), id(&model, 1));
         model.obey(NOW, KeyAction::Back);
         assert_eq!(model.open(), None);
-        assert_eq!(Model::new(&fleet(1), EVERY).open(), Some(0), "a single one needs no list");
+        let single = Model::new(&fleet(1), EVERY);
+        assert_eq!(single.open(), id(&single, 0), "a single one needs no list");
     }
 
     #[test]

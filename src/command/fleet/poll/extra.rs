@@ -1,0 +1,109 @@
+//! Command lines that only read, asked along with the looks at the robots of their family: `yerc var get B0..B9`.
+
+use std::fmt;
+use std::rc::Rc;
+
+use crate::command::AnyCommand;
+use crate::command::face::words::{Typed, Wish};
+use crate::command::families;
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::settings::target::Family;
+
+/// Such a line. Two with the same text are the same.
+pub struct Extra {
+    text: Rc<str>,
+    family: Family,
+    command: Box<dyn AnyCommand>,
+}
+
+impl Extra {
+    /// Reads a line; its first word is the family.
+    ///
+    /// # Errors
+    /// It is no command, or one that does more than read, or none that has an end.
+    pub fn parse(text: &str) -> Result<Self, Failure> {
+        let wrong = |why: &str, hint: &str| Err(Failure::usage(format!("'{text}' {why}")).hint(hint));
+        let example = "such as 'yerc var get B0..B9' or 'toyo counter get'";
+        let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", example) };
+        let Some(family) = words.first().and_then(|word| word.parse::<Family>().ok()) else {
+            return wrong("does not begin with a family", example);
+        };
+        let face = families::of(family);
+        let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
+        let read = parser.try_get_matches_from(&words).and_then(|mut matches| face.read(&mut matches));
+        let command = match read {
+            Ok(Typed { wish: Wish::Command(command), .. }) => command,
+            Ok(_) => return wrong("is no command", example),
+            Err(error) => {
+                let told = error.render().to_string();
+                let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+                return wrong(&format!("is not understood: {told}"), &format!("see `armctl {family} --help`"));
+            }
+        };
+        if command.intent(None).risk > Risk::Read {
+            return wrong("does more than read", "whoever watches robots changes nothing; choose a command that reads");
+        }
+        if command.driver().is_none() {
+            return wrong("asks no robot", example);
+        }
+        if command.is_endless() {
+            return wrong("does not end by itself", "use the command that reads once: it is asked again and again");
+        }
+        Ok(Self { text: text.into(), family, command })
+    }
+
+    /// As it was typed.
+    pub fn text(&self) -> &Rc<str> {
+        &self.text
+    }
+
+    /// The family whose robots are asked.
+    pub fn family(&self) -> Family {
+        self.family
+    }
+
+    /// What it is, without its type.
+    pub fn command(&self) -> &dyn AnyCommand {
+        &*self.command
+    }
+}
+
+impl PartialEq for Extra {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl fmt::Debug for Extra {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Extra").field(&self.text).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_reads_and_ends_is_taken() {
+        for text in ["yerc var get B0..B9", "yrcx io get", "toyo counter get 1", "yerc say hello"] {
+            let risky = text.contains("say");
+            assert_eq!(Extra::parse(text).is_err(), risky, "{text}");
+        }
+        for (text, why) in [
+            ("", "does not begin with a family"),
+            ("status", "does not begin with a family"),
+            ("yerc", "is no command"),
+            ("yerc 'var", "has a quote without an end"),
+            ("yerc frobnicate", "is not understood"),
+            ("yerc var set B0=1", "does more than read"),
+            ("yerc job start", "does more than read"),
+            ("yerc io watch 10010", "does not end by itself"),
+            ("toyo ports", "asks no robot"),
+        ] {
+            let failure = Extra::parse(text).unwrap_err();
+            assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Looks at one robot again and again, at its own pace.
+
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde_json::Value;
+use tokio::sync::watch;
+use tokio::time::{Instant, sleep_until, timeout};
+
+use super::wish::Wants;
+use super::{Event, Extra, LEAVE_WITHIN, Look, RobotId, Teller, over};
+use crate::command::face::Watch;
+use crate::command::families;
+use crate::command::frame::attach::is_held;
+use crate::command::{Access, ConnectMode, Entry};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::Robot;
+
+/// Who looks at a robot.
+pub(super) struct Follower {
+    pub robot: Arc<Robot>,
+    pub screen: Screen,
+    /// How much later than others it begins.
+    pub delay: Duration,
+    pub wants: watch::Receiver<Wants>,
+    pub stopped: watch::Receiver<bool>,
+    pub tell: Teller,
+}
+
+/// How long a robot that failed is left alone at first, unless looks are further apart.
+const AGAIN: Duration = Duration::from_secs(1);
+/// Time between two looks for a session that was opened meanwhile.
+const SESSIONS: Duration = Duration::from_secs(5);
+
+/// Why looks through a link have ended.
+enum Ended {
+    /// It is over.
+    Over,
+    /// A session holds the link to the robot by now, and the looks shall go through it.
+    Session,
+    /// No answer, or none that makes sense.
+    Failed(Failure),
+}
+
+/// Looks at a robot until it is over.
+pub(super) async fn follow(mut follower: Follower) {
+    let mut start = Instant::now() + follower.delay;
+    let mut pauses = Pauses::default();
+    loop {
+        let Follower { robot, screen, .. } = &follower;
+        let mut stopped = follower.stopped.clone();
+        let opened = tokio::select! {
+            biased;
+            () = over(&mut stopped) => return,
+            opened = async {
+                sleep_until(start).await;
+                let is_shared = is_held(robot);
+                let access = Access::reading(ConnectMode::Monitor);
+                let watch = families::of(robot.family).watch(robot, access, screen).await?;
+                Ok(Link { watch, is_shared })
+            } => opened,
+        };
+        let ended = match opened {
+            Err(failure) => Ended::Failed(failure),
+            Ok(mut link) => {
+                let ended = follower.look_on(&mut link, &mut pauses).await;
+                // Nothing was changed: how the end of it went is nobody's concern.
+                let _closed = timeout(LEAVE_WITHIN, link.watch.close(&follower.screen)).await;
+                ended
+            }
+        };
+        match ended {
+            Ended::Over => return,
+            Ended::Session => start = Instant::now(),
+            Ended::Failed(failure) => {
+                let (every, longest) = {
+                    let wants = follower.wants.borrow();
+                    (wants.every, wants.longest_pause)
+                };
+                let pause = pauses.next(every, longest);
+                start = Instant::now() + pause;
+                follower.tell.tell(Event::Failed { robot: Arc::clone(&follower.robot), failure, pause }).await;
+            }
+        }
+    }
+}
+
+/// A link to a robot, and whether it is that of a session.
+struct Link {
+    watch: Box<dyn Watch>,
+    is_shared: bool,
+}
+
+impl Follower {
+    /// Looks until something fails, or it is over.
+    async fn look_on(&mut self, link: &mut Link, pauses: &mut Pauses) -> Ended {
+        let id = RobotId::of(&self.robot);
+        let mut stopped = self.stopped.clone();
+        let mut ticks = Ticks::new(Instant::now(), self.wants.borrow().every);
+        let mut sessions = Instant::now() + SESSIONS;
+        let mut missed = 0;
+        loop {
+            let wants = self.wants.borrow_and_update().clone();
+            let began = Instant::now();
+            let looked = tokio::select! {
+                biased;
+                () = over(&mut stopped) => return Ended::Over,
+                looked = self.look(link, &id, &wants) => looked,
+            };
+            match looked {
+                Ok(look) => {
+                    pauses.begin_anew();
+                    let look = Look { took: began.elapsed(), missed, ..look };
+                    self.tell.tell(Event::Looked(Arc::new(look))).await;
+                }
+                Err(failure) => return Ended::Failed(failure),
+            }
+            let now = Instant::now();
+            if !link.is_shared && now >= sessions {
+                sessions = now + SESSIONS;
+                if is_held(&self.robot) {
+                    return Ended::Session;
+                }
+            }
+            let mut next = ticks.next(now);
+            // The look was late from one moment to the next: how many of them it has taken.
+            missed = ticks.between(began, next);
+            // Waits for the next look; one that is wanted in greater detail comes at once.
+            loop {
+                tokio::select! {
+                    biased;
+                    () = over(&mut stopped) => return Ended::Over,
+                    () = sleep_until(next) => break,
+                    changed = self.wants.changed() => {
+                        if changed.is_err() {
+                            return Ended::Over;
+                        }
+                        let now = self.wants.borrow_and_update().clone();
+                        if now.detail(&id) > wants.detail(&id) {
+                            missed = 0;
+                            break;
+                        }
+                        if now.every != ticks.every {
+                            ticks = Ticks::new(Instant::now(), now.every);
+                            next = ticks.next(Instant::now());
+                            missed = 0;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Looks once, and asks what is asked along with it.
+    async fn look(&self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
+        let robot = &self.robot;
+        let mut sample = link.watch.look(wants.detail(id)).await?;
+        let unexplained = sample.line.fault.explain(robot).err();
+        let mut extras = Vec::new();
+        for extra in wants.extras(id) {
+            match self.ask(link, extra).await {
+                // The line has failed, and not what was asked.
+                Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
+                told => extras.push((Rc::clone(extra.text()), told)),
+            }
+        }
+        let through_session = link.is_shared;
+        Ok(Look {
+            robot: Arc::clone(robot),
+            sample,
+            took: Duration::ZERO,
+            missed: 0,
+            through_session,
+            extras,
+            unexplained,
+        })
+    }
+
+    /// Asks what a command line asks, unless that takes a connection which the controller would miss.
+    async fn ask(&self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
+        if matches!(extra.command().entry(&self.robot), Entry::Stops(_)) {
+            let message = format!("'{}' takes a command connection, whose end stops the robot", extra.text());
+            return Err(Failure::new(Kind::Rejected, message)
+                .hint(format!("`armctl session open -r {}` keeps one open, and is used then", self.robot.name)));
+        }
+        let report = link.watch.ask(extra.command(), &self.robot, &self.screen).await?;
+        report.data()
+    }
+}
+
+/// How long a robot that fails is left alone: twice as long each time, up to a bound.
+#[derive(Debug, Default)]
+struct Pauses {
+    last: Option<Duration>,
+}
+
+impl Pauses {
+    fn next(&mut self, every: Duration, longest: Duration) -> Duration {
+        let first = AGAIN.max(every);
+        let next = self.last.map_or(first, |last| last.saturating_mul(2)).clamp(first, longest.max(first));
+        *self.last.insert(next)
+    }
+
+    fn begin_anew(&mut self) {
+        self.last = None;
+    }
+}
+
+/// Moments at equal distances from the first one, whatever happens between them.
+#[derive(Debug)]
+struct Ticks {
+    first: Instant,
+    every: Duration,
+}
+
+impl Ticks {
+    fn new(first: Instant, every: Duration) -> Self {
+        Self { first, every }
+    }
+
+    /// The next one after `now`; those that were missed are left out.
+    fn next(&mut self, now: Instant) -> Instant {
+        let since = now.saturating_duration_since(self.first);
+        let every = self.every.as_nanos().max(1);
+        let rest = every - since.as_nanos() % every;
+        now + Duration::from_nanos(u64::try_from(rest).unwrap_or(u64::MAX))
+    }
+
+    /// How many there are between two moments, neither of them counted.
+    fn between(&self, from: Instant, to: Instant) -> u64 {
+        let every = self.every.as_nanos().max(1);
+        let whole = |moment: Instant| moment.saturating_duration_since(self.first).as_nanos() / every;
+        u64::try_from(whole(to).saturating_sub(whole(from)).saturating_sub(1)).unwrap_or(u64::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVERY: Duration = Duration::from_millis(100);
+
+    #[tokio::test(start_paused = true)]
+    async fn ticks_do_not_drift_and_do_not_pile_up() {
+        let start = Instant::now();
+        let mut ticks = Ticks::new(start, EVERY);
+        assert_eq!(ticks.next(start + Duration::from_millis(30)), start + EVERY);
+        assert_eq!(ticks.next(start + EVERY), start + 2 * EVERY, "a moment that is now has been");
+        assert_eq!(ticks.next(start + Duration::from_millis(730)), start + 8 * EVERY);
+        assert_eq!(ticks.between(start, start + EVERY), 0);
+        assert_eq!(ticks.between(start + EVERY, start + 8 * EVERY), 6);
+    }
+
+    #[test]
+    fn pauses_double_up_to_a_bound_and_begin_anew() {
+        let [second, most] = [1, 10].map(Duration::from_secs);
+        let mut pauses = Pauses::default();
+        let paused: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();
+        assert_eq!(paused, [1, 2, 4, 8, 10, 10]);
+        pauses.begin_anew();
+        assert_eq!(pauses.next(EVERY, most), second);
+        assert_eq!(Pauses::default().next(30 * second, most), 30 * second, "never more often than when it answers");
+    }
+}

@@ -1,0 +1,390 @@
+//! The poller against simulators in this process, in virtual time.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+use futures_util::future::join;
+use tempfile::TempDir;
+use tokio::time::Instant;
+
+use super::{Event, Extra, Poll, RobotId, Subscription, Wish};
+use crate::command::face::sample::{Detail, Sample};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::settings::inventory::{Inventory, Location};
+use crate::settings::{Selection, Sources};
+
+const EVERY: Duration = Duration::from_millis(100);
+
+/// An inventory in a folder of its own.
+struct Plant {
+    folder: TempDir,
+}
+
+impl Plant {
+    fn new(robots: &[(&str, &str, &str)]) -> Self {
+        let plant = Self { folder: tempfile::tempdir().unwrap() };
+        plant.write(robots);
+        plant
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("robots.toml")
+    }
+
+    /// Name, family and target of each robot. One that does not answer is asked once.
+    fn write(&self, robots: &[(&str, &str, &str)]) {
+        let entry = |(name, family, target): &(&str, &str, &str)| {
+            format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\nretries = 0\n")
+        };
+        self.write_text(&robots.iter().map(entry).collect::<String>());
+    }
+
+    fn write_text(&self, text: &str) {
+        std::fs::write(self.path(), text).unwrap();
+    }
+
+    fn poll(&self, selection: Selection) -> Result<Poll, Failure> {
+        let inventory = Inventory::load(&Location::Named(self.path())).unwrap();
+        Poll::new(&Sources { selection, inventory, ..Sources::default() }, Screen::silent())
+    }
+
+    fn all(&self) -> Poll {
+        self.poll(Selection { all: true, ..Selection::default() }).unwrap()
+    }
+}
+
+fn fleet() -> Plant {
+    Plant::new(&[("a", "yerc", "sim:"), ("b", "yrcx", "sim:"), ("c", "toyo", "sim:")])
+}
+
+/// Runs a poll for one consumer, until `consume` has seen enough.
+async fn watched<T>(mut poll: Poll, wish: Wish, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
+    let mut events = poll.subscribe(wish);
+    let consumed = async {
+        let seen = consume(&mut events).await;
+        drop(events);
+        seen
+    };
+    join(poll.run(), consumed).await.1
+}
+
+/// The names of what happens until `count` events are there, in order; looks only where they are wanted.
+async fn told(events: &mut Subscription, count: usize, looks: bool) -> Vec<String> {
+    let mut all = Vec::new();
+    while all.len() < count {
+        match events.next().await.expect("it goes on") {
+            Event::Appeared(robot) => all.push(format!("appeared {}", robot.name)),
+            Event::Looked(look) if looks => all.push(format!("looked {}", look.robot.name)),
+            Event::Looked(_) => {}
+            Event::Failed { robot, pause, .. } => all.push(format!("failed {} {}", robot.name, pause.as_secs())),
+            Event::Gone(robot) => all.push(format!("gone {}", robot.name)),
+            Event::Inventory(read) => all.push(match read {
+                Ok(()) => "inventory".to_owned(),
+                Err(failure) => format!("inventory {:?}", failure.kind),
+            }),
+        }
+    }
+    all
+}
+
+#[tokio::test(start_paused = true)]
+async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
+    let ids = ["a", "b", "c"];
+    for (detail, whole) in [(Detail::Summary, None), (Detail::Axes, None), (Detail::Full, None)]
+        .into_iter()
+        .chain((0..3).map(|at| (Detail::Summary, Some(at))))
+    {
+        let plant = fleet();
+        let poll = plant.all();
+        let id = whole.map(|at: usize| RobotId::of(&poll.robots()[at]));
+        let wish = Wish { detail, whole: id, ..Wish::every(EVERY) };
+        let samples = watched(poll, wish, async |events: &mut Subscription| {
+            let mut samples: BTreeMap<String, Vec<Sample>> = BTreeMap::new();
+            while samples.len() < 3 || samples.values().any(|samples| samples.len() < 3) {
+                if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                    samples.entry(look.robot.name.clone()).or_default().push(look.sample.clone());
+                }
+            }
+            samples
+        })
+        .await;
+        for (at, name) in ids.iter().enumerate() {
+            let sample = samples[*name].last().unwrap();
+            assert!(sample.line.reachable && sample.line.mode.is_some() && sample.line.position.is_some());
+            let full = detail == Detail::Full || whole == Some(at);
+            assert_eq!(sample.whole.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
+            if let Some(found) = &sample.whole {
+                assert!(found.indicators.len() > 8 && found.axes.len() >= 4, "{found:?}");
+                assert_eq!(found.axes.iter().any(|axis| axis.torque.is_some()), *name != "c", "{name}: {found:?}");
+                assert_eq!(found.banks.len(), if full { 2 } else { 0 }, "{name}: {found:?}");
+                assert!(found.banks.iter().all(|bank| !bank.groups.is_empty()), "{found:?}");
+            }
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_robot_that_is_gone_holds_up_no_other() {
+    let plant = Plant::new(&[
+        ("a", "yerc", "sim:"),
+        ("b", "yrcx", "sim:"),
+        ("c", "toyo", "sim:"),
+        // All that is sent to it is lost.
+        ("d", "yerc", "sim:?fault=drop%3D100%25"),
+    ]);
+    let began = Instant::now();
+    let counts = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+        let mut counts = BTreeMap::new();
+        loop {
+            match events.next().await.expect("it goes on") {
+                Event::Looked(look) => *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1,
+                Event::Failed { robot, failure, .. } => {
+                    assert_eq!((robot.name.as_str(), failure.kind), ("d", Kind::NoAnswer));
+                    return counts;
+                }
+                _ => {}
+            }
+        }
+    })
+    .await;
+    let looks = began.elapsed().as_millis() / EVERY.as_millis();
+    assert!(looks >= 10, "it takes a timeout until one knows");
+    assert_eq!(counts.len(), 3);
+    assert!(counts.values().all(|count| count + 2 >= looks), "{counts:?} of {looks}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn one_that_is_silent_is_left_alone_longer_each_time() {
+    let plant = Plant::new(&[("d", "yerc", "sim:?fault=drop%3D100%25")]);
+    let wish = Wish { longest_pause: Duration::from_secs(5), ..Wish::every(EVERY) };
+    let told = watched(plant.all(), wish, async |events: &mut Subscription| told(events, 6, true).await).await;
+    assert_eq!(told, ["appeared d", "failed d 1", "failed d 2", "failed d 4", "failed d 5", "failed d 5"]);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_slow_line_is_asked_at_its_own_pace() {
+    let plant = Plant::new(&[("slow", "yerc", "sim:?fault=delay%3D150ms"), ("fast", "yerc", "sim:")]);
+    let looks = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+        let mut looks = Vec::new();
+        while looks.len() < 3 {
+            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                if look.robot.name == "slow" {
+                    looks.push((look.took, look.missed));
+                } else {
+                    assert_eq!(look.missed, 0, "the other one is not held up");
+                }
+            }
+        }
+        looks
+    })
+    .await;
+    let (took, missed) = looks[2];
+    assert!(took > 2 * EVERY, "{took:?}");
+    let intervals = u64::try_from(took.as_millis() / EVERY.as_millis()).unwrap();
+    assert_eq!(missed, intervals, "what a look takes of the next ones is left out: {looks:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_counts() {
+    let plant = fleet();
+    let mut poll = plant.all();
+    let mut one = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(Duration::from_secs(10)) });
+    let mut other = poll.subscribe(Wish::every(EVERY));
+    let began = Instant::now();
+    let compared = async {
+        let mut looks = 0;
+        while looks < 30 {
+            match (one.next().await.unwrap(), other.next().await.unwrap()) {
+                (Event::Looked(one), Event::Looked(other)) => {
+                    assert!(Arc::ptr_eq(&one, &other), "asked once, for both");
+                    assert!(one.sample.whole.is_some(), "with all that any of them wants");
+                    looks += 1;
+                }
+                (Event::Appeared(one), Event::Appeared(other)) => assert!(Arc::ptr_eq(&one, &other)),
+                (one, other) => panic!("{one:?} {other:?}"),
+            }
+        }
+        let ten_looks = began.elapsed();
+        assert!(ten_looks >= 9 * EVERY && ten_looks <= 11 * EVERY, "{ten_looks:?}");
+        // One goes, and the wish of the other one is left.
+        drop(other);
+        let mut last = BTreeMap::new();
+        for _ in 0..12 {
+            if let Event::Looked(look) = one.next().await.unwrap() {
+                last.insert(look.robot.name.clone(), Instant::now());
+            }
+        }
+        assert!(began.elapsed() >= Duration::from_secs(20), "every ten seconds: {:?}", began.elapsed());
+        drop(one);
+    };
+    join(poll.run(), compared).await;
+}
+
+#[tokio::test(start_paused = true)]
+async fn command_lines_are_asked_along_with_the_looks_of_their_family() {
+    let plant = fleet();
+    let extras = ["yerc var get B0..B1", "toyo counter get 1", "yerc var get B0"];
+    let extras: Rc<[Rc<Extra>]> = extras.iter().map(|text| Rc::new(Extra::parse(text).unwrap())).collect();
+    let wish = Wish { extras, ..Wish::every(EVERY) };
+    let extras = watched(plant.all(), wish, async |events: &mut Subscription| {
+        let mut extras = BTreeMap::new();
+        while extras.len() < 3 {
+            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                let told = look.extras.iter().map(|(text, told)| (text.to_string(), told.clone()));
+                extras.insert(look.robot.name.clone(), told.collect::<Vec<_>>());
+            }
+        }
+        extras
+    })
+    .await;
+    let texts = |robot: &str| extras[robot].iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>();
+    assert_eq!(texts("a"), ["yerc var get B0..B1", "yerc var get B0"]);
+    assert_eq!(texts("b"), Vec::<&str>::new());
+    assert_eq!(texts("c"), ["toyo counter get 1"]);
+    for (text, told) in extras.values().flatten() {
+        let data = told.as_ref().unwrap_or_else(|failure| panic!("{text}: {failure:?}"));
+        assert!(data.as_object().is_some_and(|data| !data.is_empty()), "{text}: {data}");
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn robots_come_and_go_as_the_inventory_says() {
+    let plant = fleet();
+    let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+        let mut all = told(events, 3, false).await;
+        // One goes, one comes, one is another one from now on.
+        plant.write(&[("a", "yerc", "sim:"), ("c", "yerc", "sim:"), ("d", "toyo", "sim:")]);
+        all.extend(told(events, 5, false).await);
+        // What cannot be read changes nothing, and is told once.
+        plant.write_text("[[robot]]\nname = ");
+        all.extend(told(events, 1, false).await);
+        let later = Instant::now() + Duration::from_secs(10);
+        while Instant::now() < later {
+            assert!(matches!(events.next().await, Some(Event::Looked(_))), "those that are known are looked at");
+        }
+        plant.write(&[("a", "yerc", "sim:?fault=delay%3D1ms")]);
+        all.extend(told(events, 5, false).await);
+        std::fs::remove_file(plant.path()).unwrap();
+        all.extend(told(events, 1, false).await);
+        plant.write(&[]);
+        all.extend(told(events, 2, false).await);
+        plant.write(&[("e", "yrcx", "sim:")]);
+        all.extend(told(events, 2, false).await);
+        all
+    })
+    .await;
+    let expected = "appeared a, appeared b, appeared c, inventory, gone c, gone b, appeared c, appeared d, \
+                    inventory Usage, inventory, gone d, gone c, gone a, appeared a, inventory Usage, inventory, gone a, \
+                    inventory, appeared e";
+    // Those that go do so side by side: in which order is no matter.
+    assert_eq!(sorted_runs(&told.join(", ")), sorted_runs(expected));
+}
+
+/// A list of what happened, in which what happened at once stands in the order of the letters.
+fn sorted_runs(told: &str) -> Vec<String> {
+    let mut runs: Vec<Vec<&str>> = Vec::new();
+    for event in told.split(", ").map(str::trim) {
+        let verb = |event: &str| event.split(' ').next().unwrap_or_default().to_owned();
+        match runs.last_mut() {
+            Some(run) if verb(run[0]) == verb(event) => run.push(event),
+            _ => runs.push(vec![event]),
+        }
+    }
+    for run in &mut runs {
+        run.sort_unstable();
+    }
+    runs.concat().into_iter().map(ToOwned::to_owned).collect()
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_file_that_is_being_written_is_not_read() {
+    let plant = fleet();
+    let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
+        let mut all = told(events, 3, false).await;
+        // Growing from one look at it to the next, as under an editor that is slow.
+        let mut text = String::new();
+        for number in 0..10 {
+            text += &format!("[[robot]]\nname = \"r{number}\"\nfamily = \"toyo\"\ntarget = \"sim:\"\n");
+            plant.write_text(&text);
+            let later = Instant::now() + Duration::from_millis(700);
+            while Instant::now() < later {
+                match events.next().await {
+                    Some(Event::Looked(_)) => {}
+                    told => all.push(format!("{told:?}")),
+                }
+            }
+        }
+        all.extend(told(events, 1 + 3 + 10, false).await);
+        all
+    })
+    .await;
+    assert_eq!(told[3], "inventory");
+    assert_eq!(told.iter().filter(|told| told.starts_with("appeared r")).count(), 10, "{told:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn names_and_tags_count_as_the_inventory_changes() {
+    let text = |tagged: &[&str]| -> String {
+        let entry = |name: &&str| {
+            let tags = if tagged.contains(name) { "tags = [\"line1\"]\n" } else { "" };
+            format!("[[robot]]\nname = \"{name}\"\nfamily = \"toyo\"\ntarget = \"sim:\"\n{tags}")
+        };
+        ["a1", "a2", "b1"].iter().map(entry).collect()
+    };
+    let robots = |patterns: &[&str], tags: &[&str]| Selection {
+        robots: patterns.iter().map(|name| (*name).to_owned()).collect(),
+        tags: tags.iter().map(|tag| (*tag).to_owned()).collect(),
+        ..Selection::default()
+    };
+    for (selection, first, then) in [
+        (robots(&["a*"], &[]), &["appeared a1", "appeared a2"][..], &["gone a1", "gone a2"][..]),
+        (robots(&[], &["line1"]), &["appeared a1"], &["gone a1", "appeared b1"]),
+        (robots(&["a*", "b1"], &["line1"]), &["appeared a1"], &["gone a1", "appeared b1"]),
+    ] {
+        let plant = Plant::new(&[]);
+        plant.write_text(&text(&["a1"]));
+        let is_by_tag = !selection.tags.is_empty();
+        let poll = plant.poll(selection).unwrap();
+        let told = watched(poll, Wish::every(EVERY), async |events: &mut Subscription| {
+            let mut all = told(events, first.len(), false).await;
+            plant.write_text(&if is_by_tag { text(&["b1"]) } else { String::new() });
+            all.extend(told(events, 1 + then.len(), false).await);
+            all
+        })
+        .await;
+        let expected: Vec<&str> = first.iter().chain(&["inventory"]).chain(then).copied().collect();
+        assert_eq!(sorted_runs(&told.join(", ")), expected);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_robot_that_stands_by_itself_is_looked_at_until_nobody_wants_to_know() {
+    let plant = fleet();
+    let robot = plant.all().robots()[0].clone();
+    let poll = Poll::of(robot, Screen::silent());
+    std::fs::remove_file(plant.path()).unwrap();
+    let told = watched(poll, Wish::every(EVERY), async |events: &mut Subscription| {
+        let told = told(events, 100, true).await;
+        assert!(told[1..].iter().all(|told| told == "looked a"), "{told:?}");
+        told.len()
+    })
+    .await;
+    assert_eq!(told, 100);
+}
+
+#[test]
+fn without_robots_there_is_nothing_to_poll() {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    let _inside = runtime.enter();
+    let plant = Plant::new(&[]);
+    let failure = plant.poll(Selection { all: true, ..Selection::default() }).unwrap_err();
+    assert_eq!(failure.kind, Kind::Usage);
+    assert!(failure.hint.is_some());
+    let named = Selection { robots: vec!["x".to_owned()], ..Selection::default() };
+    assert_eq!(plant.poll(named).unwrap_err().kind, Kind::Usage);
+    assert!(Path::new(&plant.path()).exists());
+}

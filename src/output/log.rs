@@ -1,0 +1,96 @@
+//! What a service says of itself as it runs: lines on stderr. Where that is the journal of systemd, each begins with its
+//! priority (`sd-daemon(3)`) and ends with its fields, so that `journalctl -p warning` and `grep robot=cell3` find it.
+
+use std::fmt::Write as _;
+
+use super::{Screen, escape};
+
+/// How much a line matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Something is wrong with this service.
+    Error,
+    /// Something is wrong with what it looks after.
+    Warning,
+    /// Something that happens now and then.
+    Notice,
+}
+
+impl Level {
+    /// The number of syslog(3).
+    fn priority(self) -> u8 {
+        match self {
+            Self::Error => 3,
+            Self::Warning => 4,
+            Self::Notice => 5,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error: ",
+            Self::Warning => "warning: ",
+            Self::Notice => "",
+        }
+    }
+}
+
+/// Longest value of a field, in characters.
+const LONGEST: usize = 200;
+
+impl Screen {
+    /// Says what happens in a service, with fields for the journal.
+    pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+        if self.quiet && level == Level::Notice {
+            return;
+        }
+        let text = escape::line(text);
+        if is_journal() {
+            Self::stderr(&format!("<{}>{text}{}\n", level.priority(), list(fields)));
+        } else {
+            Self::prose(&format!("{}{text}\n", level.name()));
+        }
+    }
+}
+
+/// Fields as ` name=value`, with quotes where a value would not end by itself.
+fn list(fields: &[(&str, &str)]) -> String {
+    let mut all = String::new();
+    for (name, value) in fields {
+        let value: String = value.chars().take(LONGEST).collect();
+        let value = escape::line(&value);
+        let is_plain = !value.is_empty() && !value.contains([' ', '"', '=', '\\']);
+        let _never_fails = if is_plain {
+            write!(all, " {name}={value}")
+        } else {
+            write!(all, " {name}=\"{}\"", value.replace('\\', "\\\\").replace('"', "\\\""))
+        };
+    }
+    all
+}
+
+/// Whether stderr is the journal: the variable may be one that a terminal has passed on.
+#[cfg(unix)]
+fn is_journal() -> bool {
+    let Some(named) = std::env::var_os("JOURNAL_STREAM") else { return false };
+    let own = rustix::fs::fstat(std::io::stderr()).map(|stat| format!("{}:{}", stat.st_dev, stat.st_ino));
+    own.is_ok_and(|own| named == *own)
+}
+
+#[cfg(not(unix))]
+fn is_journal() -> bool {
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_are_plain_or_quoted_and_bounded() {
+        let fields = [("robot", "cell3"), ("why", "no answer"), ("text", "a\"b\\c\n"), ("none", "")];
+        assert_eq!(list(&fields), " robot=cell3 why=\"no answer\" text=\"a\\\"b\\\\c\\\\n\" none=\"\"");
+        assert_eq!(list(&[("long", &"x".repeat(999))]).len(), LONGEST + " long=".len());
+        assert_eq!(list(&[("evil", "\u{1b}[2J")]), " evil=\"\\\\x1b[2J\"");
+    }
+}
