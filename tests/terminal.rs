@@ -14,6 +14,7 @@ mod eip_bad_input;
 mod environment;
 mod examples;
 mod gate;
+mod mqtt;
 mod pictures;
 mod readme;
 mod repl;

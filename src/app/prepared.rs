@@ -97,6 +97,11 @@ impl PreparedCommand {
                 run.sources.widen();
                 run.sources.selection.every_simulator = true;
             }
+            #[cfg(feature = "plant")]
+            Task::Common(Common::Publish(_)) => {
+                run.sources.widen();
+                run.sources.selection.every_simulator = true;
+            }
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),

@@ -3,6 +3,8 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
+#[cfg(feature = "plant")]
+use super::fleet::publish;
 use super::fleet::status::Overview;
 use super::fleet::{backup, robots, session, setup, tools, top};
 use super::frame::run::{Run, RunError};
@@ -17,6 +19,9 @@ pub enum Common {
     Status(Overview),
     /// Full-screen live monitor
     Top(top::Top),
+    /// Publish robots to an MQTT broker
+    #[cfg(feature = "plant")]
+    Publish(publish::Publish),
     /// The inventory: list, add, set, edit, and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
@@ -51,6 +56,8 @@ impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         match self {
+            #[cfg(feature = "plant")]
+            Self::Publish(_) => true,
             Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
                 true
             }
@@ -67,6 +74,8 @@ impl Common {
             Self::Sim(sim) if sim.is_list() => None,
             Self::Sim(_) => Some("it serves until it is ended"),
             Self::Top(_) => Some("it is a view for a terminal"),
+            #[cfg(feature = "plant")]
+            Self::Publish(_) => Some("it goes on until it is ended"),
             Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
             Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
@@ -90,6 +99,8 @@ impl Common {
             Self::Restore(restore) => run.robots(&restore).await,
             Self::Diff(diff) => run.robots(&diff).await,
             Self::Top(top) => Box::pin(top.run(run)).await,
+            #[cfg(feature = "plant")]
+            Self::Publish(publish) => Box::pin(publish.run(run)).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

@@ -45,6 +45,7 @@ transcripts! {
     moves
     orders
     positions
+    publish
     raw
     repl
     robots

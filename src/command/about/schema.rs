@@ -7,6 +7,8 @@ use crate::command::ValueKind;
 use crate::command::backup::check::Checked;
 use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
+#[cfg(feature = "plant")]
+use crate::command::fleet::publish;
 use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{robots, session, tools};
 use crate::command::frame::background::Opened;
@@ -77,6 +79,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::entry::Changed>("setup"),
         SchemaEntry::of::<tools::Simulators>("sim"),
     ]);
+    #[cfg(feature = "plant")]
+    others.extend(publish::schemas());
     others.sort_unstable_by_key(|entry| entry.id);
     all.extend(others);
     all

@@ -2,6 +2,8 @@
 
 pub mod backup;
 pub mod poll;
+#[cfg(feature = "plant")]
+pub mod publish;
 pub mod robots;
 pub mod session;
 pub mod setup;

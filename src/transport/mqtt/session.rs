@@ -21,6 +21,8 @@ pub const LARGEST: u32 = 256 * 1024;
 const RECEIVE_MAXIMUM: u16 = 16;
 /// How long a broker has to answer a ping.
 const PONG_WITHIN: Duration = Duration::from_secs(10);
+/// What a broker begins with (3.1.1, section 3.2.1; 5 the same).
+const CONNACK: u8 = 0x20;
 /// Longest text of a broker that is passed on, in characters.
 const LONGEST_TEXT: usize = 200;
 
@@ -141,6 +143,7 @@ pub struct Session {
     /// How many pings have left, and were answered.
     pings: u64,
     pongs: u64,
+    has_heard: bool,
     is_over: bool,
 }
 
@@ -167,6 +170,7 @@ impl Session {
             answer_by: Some(answer_by),
             pings: 0,
             pongs: 0,
+            has_heard: false,
             is_over: false,
         };
         session.send(now, connect(hello)?)?;
@@ -206,6 +210,12 @@ impl Session {
 
     /// Takes bytes from the broker.
     pub fn handle(&mut self, now: Instant, bytes: &[u8]) {
+        // Whoever speaks something else is waited for in vain.
+        if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
+            && *first != CONNACK
+        {
+            return self.lose(Loss::Garbage(format!("it begins with 0x{first:02X}")));
+        }
         let mut cursor = Cursor::new(bytes);
         let end = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
         while !self.is_over && cursor.position() < end {
@@ -238,6 +248,10 @@ impl Session {
     /// Nothing was sent then.
     pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u16>, SendError> {
         let Message { topic, payload, retain, acknowledged } = message;
+        // The standard forbids it (section 1.5.4), and some brokers end the connection.
+        if topic.is_empty() || topic.contains('\0') {
+            return Err(SendError::Invalid);
+        }
         let id = if *acknowledged { Some(self.inner.acquire_packet_id()?) } else { None };
         let qos = if *acknowledged { Qos::AtLeastOnce } else { Qos::AtMostOnce };
         let built: Result<Packet, MqttError> = match self.version {
@@ -544,9 +558,9 @@ mod tests {
         // A PUBLISH that announces 256 MB.
         session.handle(now, &[0x30, 0xff, 0xff, 0xff, 0x7f, 1, 2, 3]);
         assert!(matches!(session.next_event(), Some(Event::Lost(Loss::TooLarge))));
-        let (mut session, now) = connected(Version::V5);
+        let (mut session, now) = started(Version::V5);
         session.handle(now, b"HTTP/1.1 400 Bad Request\r\n\r\n");
-        assert!(matches!(session.next_event(), Some(Event::Lost(_))));
+        assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Garbage(_)))));
         let (mut session, now) = connected(Version::V5);
         session.handle(now, &[0xe0, 1, 0x8e]);
         let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
@@ -557,7 +571,7 @@ mod tests {
     fn topics_that_are_none_do_not_leave() {
         let (mut session, now) = connected(Version::V5);
         session.outgoing().clear();
-        for topic in ["a/+/b", "a/#", "a\0b"] {
+        for topic in ["", "a/+/b", "a/#", "a\0b"] {
             let message = Message { topic: topic.to_owned(), ..message(true) };
             assert_eq!(session.publish(now, &message), Err(SendError::Invalid), "{topic:?}");
         }
