@@ -80,7 +80,7 @@ impl Client {
     ///
     /// # Errors
     /// Nothing was sent then.
-    pub fn publish(&mut self, message: &Message) -> Result<Option<u16>, SendError> {
+    pub fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         self.session.publish(Instant::now(), message)
     }
 

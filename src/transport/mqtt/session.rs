@@ -1,6 +1,6 @@
 //! The protocol: time and bytes in, bytes and events out. The packets are those of `mqtt-protocol-core`.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use std::fmt;
 use std::time::Duration;
 
@@ -103,8 +103,8 @@ pub enum Event {
     Connected,
     /// It did not.
     Refused(Refusal),
-    /// A message is the broker's. Or it does not take it, and this is the code.
-    Acknowledged(u16, Option<u8>),
+    /// The message of this number is the broker's. Or it does not take it, and this is the code.
+    Acknowledged(u64, Option<u8>),
     /// A subscription is there, or it is refused.
     Subscribed(bool),
     /// The broker answered the ping of this number: all that went before that has arrived.
@@ -139,6 +139,10 @@ pub struct Session {
     outgoing: Vec<u8>,
     events: VecDeque<Event>,
     timers: Vec<(TimerKind, Instant)>,
+    /// Messages under way by their packet identifiers, with numbers of their own: an identifier is used again as soon as it
+    /// is acknowledged, and events may wait to be taken.
+    under_way: HashMap<u16, u64>,
+    published: u64,
     answer_by: Option<Instant>,
     /// How many pings have left, and were answered.
     pings: u64,
@@ -167,6 +171,8 @@ impl Session {
             outgoing: Vec::new(),
             events: VecDeque::new(),
             timers: Vec::new(),
+            under_way: HashMap::new(),
+            published: 0,
             answer_by: Some(answer_by),
             pings: 0,
             pongs: 0,
@@ -246,7 +252,7 @@ impl Session {
     ///
     /// # Errors
     /// Nothing was sent then.
-    pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u16>, SendError> {
+    pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u64>, SendError> {
         let Message { topic, payload, retain, acknowledged } = message;
         // The standard forbids it (section 1.5.4), and some brokers end the connection.
         if topic.is_empty() || topic.contains('\0') {
@@ -271,7 +277,12 @@ impl Session {
             let events = self.inner.release_packet_id(id);
             self.take(now, events);
         }
-        sent.map(|()| id)
+        sent?;
+        Ok(id.map(|id| {
+            self.published += 1;
+            self.under_way.insert(id, self.published);
+            self.published
+        }))
     }
 
     /// Wants the messages of these topics.
@@ -369,10 +380,16 @@ impl Session {
                     }
                 }
             }
-            Packet::V3_1_1Puback(puback) => Event::Acknowledged(puback.packet_id(), None),
+            Packet::V3_1_1Puback(puback) => match self.under_way.remove(&puback.packet_id()) {
+                Some(number) => Event::Acknowledged(number, None),
+                None => return,
+            },
             Packet::V5_0Puback(puback) => {
                 let code = puback.reason_code().map_or(0, |code| code as u8);
-                Event::Acknowledged(puback.packet_id(), (code >= 0x80).then_some(code))
+                match self.under_way.remove(&puback.packet_id()) {
+                    Some(number) => Event::Acknowledged(number, (code >= 0x80).then_some(code)),
+                    None => return,
+                }
             }
             Packet::V3_1_1Suback(suback) => {
                 Event::Subscribed(suback.return_codes().iter().all(|code| (*code as u8) < 0x80))
@@ -513,17 +530,27 @@ mod tests {
     fn a_message_is_acknowledged_by_its_number() {
         for version in [Version::V3, Version::V5] {
             let (mut session, now) = connected(version);
-            let id = session.publish(now, &message(true)).unwrap().unwrap();
+            let numbers = [(); 2].map(|()| session.publish(now, &message(true)).unwrap().unwrap());
             assert_eq!(session.outgoing()[0], 0x33, "PUBLISH with QoS 1, kept");
-            session.handle(now, &[0x40, 2, id.to_be_bytes()[0], id.to_be_bytes()[1]]);
-            assert!(matches!(session.next_event(), Some(Event::Acknowledged(acked, None)) if acked == id));
+            // Both at once; their identifiers are free again before anybody has taken the events.
+            session.handle(now, &[0x40, 2, 0, 1, 0x40, 2, 0, 2]);
+            let third = session.publish(now, &message(true)).unwrap().unwrap();
+            let mut acknowledged = Vec::new();
+            while let Some(Event::Acknowledged(number, None)) = session.next_event() {
+                acknowledged.push(number);
+            }
+            assert_eq!(acknowledged, numbers);
+            assert!(!numbers.contains(&third));
             assert_eq!(session.publish(now, &message(false)), Ok(None));
         }
-        // MQTT 5 can say no: not authorized.
+        // MQTT 5 can say no: not authorized. And that nobody listens, which is no refusal.
         let (mut session, now) = connected(Version::V5);
-        let id = session.publish(now, &message(true)).unwrap().unwrap();
-        session.handle(now, &[0x40, 3, id.to_be_bytes()[0], id.to_be_bytes()[1], 0x87]);
-        assert!(matches!(session.next_event(), Some(Event::Acknowledged(_, Some(0x87)))));
+        session.publish(now, &message(true)).unwrap();
+        session.handle(now, &[0x40, 3, 0, 1, 0x87]);
+        assert!(matches!(session.next_event(), Some(Event::Acknowledged(1, Some(0x87)))));
+        session.publish(now, &message(true)).unwrap();
+        session.handle(now, &[0x40, 3, 0, 1, 0x10]);
+        assert!(matches!(session.next_event(), Some(Event::Acknowledged(2, None))));
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub trait Uplink {
     /// What happens next; may be dropped.
     async fn next(&mut self) -> Event;
     /// Sends a message; the number of its acknowledgement, if it gets one.
-    fn publish(&mut self, message: &Message) -> Result<Option<u16>, SendError>;
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
     /// Wants messages.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
     /// Asks whether all has arrived; the number of the ping.
@@ -113,7 +113,7 @@ struct Open<U> {
     uplink: U,
     is_accepted: bool,
     /// Acknowledged messages, by their numbers.
-    acknowledged: HashMap<u16, Option<Ticket>>,
+    acknowledged: HashMap<u64, Option<Ticket>>,
     /// Records whose messages have no acknowledgement and were not confirmed by a ping.
     unconfirmed: VecDeque<Ticket>,
     /// Those that a ping under way will confirm.
@@ -430,7 +430,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         Ok(())
     }
 
-    fn acknowledged(&mut self, id: u16, code: Option<u8>) {
+    fn acknowledged(&mut self, id: u64, code: Option<u8>) {
         let Line::Open(open) = &mut self.line else { return };
         let Some(ticket) = open.acknowledged.remove(&id) else { return };
         open.progress = Instant::now();

@@ -108,7 +108,7 @@ impl Fake {
     fn places(&self, name: &str) -> Vec<f64> {
         let topic = format!("armctl/{name}/position");
         let taken = self.taken.borrow();
-        let envelopes = taken.iter().filter(|message| message.topic == topic);
+        let envelopes = taken.iter().filter(|message| message.topic == topic && !message.payload.is_empty());
         envelopes
             .map(|message| serde_json::from_slice::<serde_json::Value>(&message.payload).unwrap())
             .filter_map(|envelope| envelope["data"]["position"]["x_mm"].as_f64())
@@ -119,7 +119,7 @@ impl Fake {
 struct Connection<'a> {
     fake: &'a Fake,
     events: VecDeque<Event>,
-    next: u16,
+    next: u64,
     pings: u64,
 }
 
@@ -153,7 +153,7 @@ impl Uplink for Connection<'_> {
         }
     }
 
-    fn publish(&mut self, message: &Message) -> Result<Option<u16>, SendError> {
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         let id = self.next;
         self.next += 1;
         if *self.fake.mood.borrow() == Mood::Works {

@@ -25,7 +25,7 @@ impl pump::Uplink for Client {
         Self::next(self).await
     }
 
-    fn publish(&mut self, message: &Message) -> Result<Option<u16>, SendError> {
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         Self::publish(self, message)
     }
 

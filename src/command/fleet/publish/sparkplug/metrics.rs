@@ -53,7 +53,7 @@ pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
                 let codes = alarms.iter().map(|alarm| alarm.code.as_str()).filter(|code| *code != Alarm::UNREADABLE);
                 let codes = codes.collect::<Vec<_>>().join(",");
                 metrics.extend([
-                    metric("alarms/count", DataType::UInt32, Some(Value::IntValue(count))),
+                    metric("alarms/count", DataType::Int32, Some(Value::IntValue(count))),
                     metric("alarms/codes", DataType::String, Some(Value::StringValue(codes))),
                 ]);
             }
