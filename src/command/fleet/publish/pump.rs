@@ -229,8 +229,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             tokio::select! {
                 biased;
                 () = &mut stop => break Ok(()),
-                step = step(&mut self.line) => {
-                    if let Err(failure) = self.go(step) {
+                next = step(&mut self.line) => {
+                    if let Err(failure) = self.go(next) {
                         break Err(failure);
                     }
                 }
@@ -523,8 +523,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
                 if self.outbox.is_empty() && self.is_idle() || !self.speech.is_ready() {
                     break;
                 }
-                let step = step(&mut self.line).await;
-                if self.go(step).is_err() {
+                let next = step(&mut self.line).await;
+                if self.go(next).is_err() {
                     break;
                 }
                 self.fill();
@@ -536,8 +536,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             self.send(None, &messages);
             let heard = async {
                 while matches!(&self.line, Line::Open(open) if open.acknowledged.values().any(Option::is_none)) {
-                    let step = step(&mut self.line).await;
-                    if self.go(step).is_err() {
+                    let next = step(&mut self.line).await;
+                    if self.go(next).is_err() {
                         break;
                     }
                 }
