@@ -21,7 +21,7 @@ pub enum Common {
     Top(top::Top),
     /// Publish robots to an MQTT broker
     #[cfg(feature = "plant")]
-    Publish(publish::Publish),
+    Publish(Box<publish::Publish>),
     /// The inventory: list, add, set, edit, and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),

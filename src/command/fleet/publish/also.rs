@@ -42,15 +42,14 @@ impl Also {
         };
         let extra = Extra::parse(text)
             .map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
-        let level = match name {
-            Some(name) => topic::level(name)?,
-            None => {
-                let words: Vec<&str> = text.split_whitespace().skip(1).collect();
-                topic::level(&words.join("-").replace(['"', '\''], "")).map_err(|failure| {
-                    Failure { message: format!("--also '{line}': {}", failure.message), ..failure }
-                        .hint(format!("give it a shorter name: --also 'NAME={text}'"))
-                })?
-            }
+        let level = if let Some(name) = name {
+            topic::level(name)?
+        } else {
+            let words: Vec<&str> = text.split_whitespace().skip(1).collect();
+            topic::level(&words.join("-").replace(['"', '\''], "")).map_err(|failure| {
+                Failure { message: format!("--also '{line}': {}", failure.message), ..failure }
+                    .hint(format!("give it a shorter name: --also 'NAME={text}'"))
+            })?
         };
         Ok(Self { level, extra: Rc::new(extra) })
     }

@@ -110,10 +110,10 @@ impl Outbox {
                     return;
                 }
                 Some((Err(error), bytes)) => {
-                    if let SpoolError::Io(error) = error {
-                        if !std::mem::replace(&mut self.is_troubled, true) {
-                            self.trouble = Some(error);
-                        }
+                    if let SpoolError::Io(error) = error
+                        && !std::mem::replace(&mut self.is_troubled, true)
+                    {
+                        self.trouble = Some(error);
                     }
                     // A file goes as a whole: once that has room again, the disk is asked again.
                     if !self.make_room(size, bytes) {
