@@ -196,23 +196,20 @@ impl Node {
         for mut metric in found {
             metric.timestamp = Some(now_ms);
             let Some(name) = metric.name.clone() else { continue };
-            match device.metrics.get_mut(&name) {
-                Some((_, last)) => {
-                    // What had a type keeps it: hosts know the metric by that.
-                    if metric.datatype != last.datatype {
-                        continue;
-                    }
-                    if last.value != metric.value || is_due {
-                        changed.push(metric.clone());
-                    }
-                    *last = metric;
+            if let Some((_, last)) = device.metrics.get_mut(&name) {
+                // What had a type keeps it: hosts know the metric by that.
+                if metric.datatype != last.datatype {
+                    continue;
                 }
-                None => {
-                    has_new = true;
+                if last.value != metric.value || is_due {
                     changed.push(metric.clone());
-                    device.metrics.insert(name, (self.next_alias, metric));
-                    self.next_alias += 1;
                 }
+                *last = metric;
+            } else {
+                has_new = true;
+                changed.push(metric.clone());
+                device.metrics.insert(name, (self.next_alias, metric));
+                self.next_alias += 1;
             }
         }
         let kind = if has_new { kind::BIRTH } else { kind::DATA };
