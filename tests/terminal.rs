@@ -16,6 +16,8 @@ mod examples;
 mod gate;
 #[cfg(feature = "plant")]
 mod monitoring;
+#[cfg(feature = "plant")]
+mod mqtt;
 mod pictures;
 mod readme;
 mod repl;

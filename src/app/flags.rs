@@ -46,6 +46,8 @@ impl Uses {
             | Common::Robots(Robots::Check(_)) => ALL,
             #[cfg(feature = "plant")]
             Common::Serve(_) => Self { gate: false, ..ALL },
+            #[cfg(feature = "plant")]
+            Common::Publish(_) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },

@@ -3,10 +3,10 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
-#[cfg(feature = "plant")]
-use super::fleet::serve;
 use super::fleet::status::Overview;
 use super::fleet::{backup, robots, session, setup, tools, top};
+#[cfg(feature = "plant")]
+use super::fleet::{publish, serve};
 use super::frame::run::{Run, RunError};
 use crate::command::Command as _;
 
@@ -19,6 +19,9 @@ pub enum Common {
     Status(Overview),
     /// Full-screen live monitor
     Top(top::Top),
+    /// Publish robots to an MQTT broker
+    #[cfg(feature = "plant")]
+    Publish(Box<publish::Publish>),
     /// Serve metrics of robots to other programs
     #[cfg(feature = "plant")]
     #[command(subcommand)]
@@ -57,6 +60,8 @@ impl Common {
     /// Whether it asks or lists robots, and so needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         match self {
+            #[cfg(feature = "plant")]
+            Self::Publish(_) => true,
             Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
                 true
             }
@@ -73,7 +78,7 @@ impl Common {
         match self {
             Self::Status(_) | Self::Top(_) => true,
             #[cfg(feature = "plant")]
-            Self::Serve(_) => true,
+            Self::Serve(_) | Self::Publish(_) => true,
             _ => false,
         }
     }
@@ -87,6 +92,8 @@ impl Common {
             #[cfg(feature = "plant")]
             Self::Serve(_) => Some("it serves until it is ended"),
             Self::Top(_) => Some("it is a view for a terminal"),
+            #[cfg(feature = "plant")]
+            Self::Publish(_) => Some("it goes on until it is ended"),
             Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
             Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
@@ -112,6 +119,8 @@ impl Common {
             Self::Top(top) => Box::pin(top.run(run)).await,
             #[cfg(feature = "plant")]
             Self::Serve(serve) => Box::pin(serve.run(run)).await,
+            #[cfg(feature = "plant")]
+            Self::Publish(publish) => Box::pin(publish.run(run)).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

@@ -201,6 +201,35 @@ fn locked_folder(_: &Path) -> Option<File> {
     None
 }
 
+/// A folder that is this process's, until dropped.
+#[derive(Debug)]
+pub struct Claim {
+    _folder: Option<File>,
+}
+
+/// Takes a folder for this process alone. Where folders cannot be locked, as on some network drives, everybody gets it.
+///
+/// # Errors
+/// [`ErrorKind::WouldBlock`] if another process has it.
+#[cfg(unix)]
+pub fn claim(folder: &Path) -> io::Result<Claim> {
+    let file = File::open(folder)?;
+    match rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive) {
+        Ok(()) => Ok(Claim { _folder: Some(file) }),
+        Err(error) if io::Error::from(error).kind() == ErrorKind::WouldBlock => Err(ErrorKind::WouldBlock.into()),
+        Err(_) => Ok(Claim { _folder: None }),
+    }
+}
+
+/// Takes a folder for this process alone: here everybody gets it.
+///
+/// # Errors
+/// If it is not there.
+#[cfg(not(unix))]
+pub fn claim(folder: &Path) -> io::Result<Claim> {
+    folder.metadata().map(|_| Claim { _folder: None })
+}
+
 /// Locks a file, unless another process has it.
 #[cfg(unix)]
 fn lock(file: &File) -> bool {

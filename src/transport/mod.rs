@@ -12,6 +12,8 @@ pub mod http;
 pub mod image;
 pub mod line;
 pub mod local;
+#[cfg(feature = "plant")]
+pub mod mqtt;
 mod port;
 pub mod ports;
 pub mod profibus;

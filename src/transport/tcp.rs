@@ -91,7 +91,7 @@ impl Tcp {
     }
 }
 
-async fn connect(host: &str, port: u16) -> Result<TcpStream, ConnectError> {
+pub(crate) async fn connect(host: &str, port: u16) -> Result<TcpStream, ConnectError> {
     let addresses = tokio::net::lookup_host((host, port)).await.map_err(|_| ConnectError::NotFound)?;
     let mut failed = ConnectError::NotFound;
     for address in addresses {

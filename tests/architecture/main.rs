@@ -122,14 +122,15 @@ const BORDERS: [(&str, &[&str]); 7] = [
 ];
 
 /// Commands that touch a transport: the link of a family with its trace and its face, what reads captures, sessions, the
-/// simulators' servers, the list of ports, and the peer of tests.
-const LINKS: [&str; 44] = [
+/// simulators' servers, the list of ports, the connection to a broker, and the peer of tests.
+const LINKS: [&str; 45] = [
     "command/decode/capture/mod.rs",
     "command/decode/capture/report.rs",
     "command/decode/capture/stream.rs",
     "command/face/declared.rs",
     "command/face/mod.rs",
     "command/fleet/metrics/mod.rs",
+    "command/fleet/publish/uplink.rs",
     "command/fleet/service.rs",
     "command/fleet/session/close.rs",
     "command/fleet/session/host.rs",

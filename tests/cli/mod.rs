@@ -48,6 +48,7 @@ transcripts! {
     names
     orders
     positions
+    publish
     raw
     repl
     robots

@@ -7,9 +7,9 @@ use crate::command::ValueKind;
 use crate::command::backup::check::Checked;
 use crate::command::backup::words::{Backup, Diff, Restore};
 use crate::command::families::FAMILIES;
-#[cfg(feature = "plant")]
-use crate::command::fleet::metrics;
 use crate::command::fleet::status::{Fleet, Overview};
+#[cfg(feature = "plant")]
+use crate::command::fleet::{metrics, publish};
 use crate::command::fleet::{robots, session, tools};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
@@ -82,6 +82,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::entry::Changed>("setup"),
         SchemaEntry::of::<tools::Simulators>("sim"),
     ]);
+    #[cfg(feature = "plant")]
+    others.extend(publish::schemas());
     others.sort_unstable_by_key(|entry| entry.id);
     all.extend(others);
     all

@@ -4,6 +4,8 @@ pub mod backup;
 #[cfg(feature = "plant")]
 pub mod metrics;
 pub mod poll;
+#[cfg(feature = "plant")]
+pub mod publish;
 pub mod robots;
 #[cfg(feature = "plant")]
 pub mod serve;

@@ -27,6 +27,14 @@ pub const LINES: &[&str] = &[
     "serve metrics",
     #[cfg(feature = "plant")]
     "serve metrics --tag line1 --listen 0.0.0.0:9464",
+    #[cfg(feature = "plant")]
+    "publish mqtt://192.168.1.5",
+    #[cfg(feature = "plant")]
+    "publish mqtts://broker.example --user plant --password-file plant.txt --tag line1",
+    #[cfg(feature = "plant")]
+    "publish mqtt://192.168.1.5 --also 'parts=yerc var get B0..B9' --watch 500ms",
+    #[cfg(feature = "plant")]
+    "publish mqtt://192.168.1.5 --sparkplug --group Plant --node Cell7",
     "teach -r cell3",
     "teach -r cell3 --max-step 1 --max-speed 5",
     "robots list",

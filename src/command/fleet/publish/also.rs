@@ -1,0 +1,111 @@
+//! Command lines whose answers are told, too: `yerc var get B0..B9`, or `parts=yerc var get B0..B9`.
+
+use std::rc::Rc;
+
+use super::Kind;
+use super::topic;
+use crate::command::fleet::poll::Extra;
+use crate::failure::Failure;
+use crate::settings::target::Family;
+
+/// Such a line, and the level of the topics that it is told in.
+#[derive(Debug)]
+pub struct Also {
+    level: String,
+    extra: Rc<Extra>,
+}
+
+impl Also {
+    /// All lines. Each must read and nothing else, and have a level of its own.
+    pub fn all(lines: &[String]) -> Result<Rc<[Self]>, Failure> {
+        let mut all: Vec<Self> = Vec::with_capacity(lines.len());
+        for line in lines {
+            let also = Self::new(line)?;
+            let is_kind = Kind::ALL.iter().any(|kind| kind.name() == also.level);
+            if is_kind || also.level == "state" || all.iter().any(|other| other.level == also.level) {
+                return Err(Failure::usage(format!("--also '{line}': '{}' is told already", also.level))
+                    .hint(format!("give it a name of its own: --also 'NAME={}'", also.text())));
+            }
+            if let Some(other) = all.iter().find(|other| other.extra == also.extra) {
+                return Err(Failure::usage(format!("--also '{line}' is asked already, as '{}'", other.level))
+                    .hint("remove one of them"));
+            }
+            all.push(also);
+        }
+        Ok(all.into())
+    }
+
+    fn new(line: &str) -> Result<Self, Failure> {
+        let (name, text) = match line.split_once('=') {
+            Some((name, text)) if !name.is_empty() && !name.contains(char::is_whitespace) => (Some(name), text),
+            _ => (None, line),
+        };
+        let extra = Extra::parse(text)
+            .map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
+        let level = if let Some(name) = name {
+            topic::level(name)?
+        } else {
+            let words: Vec<&str> = text.split_whitespace().skip(1).collect();
+            topic::level(&words.join("-").replace(['"', '\''], "")).map_err(|failure| {
+                Failure { message: format!("--also '{line}': {}", failure.message), ..failure }
+                    .hint(format!("give it a shorter name: --also 'NAME={text}'"))
+            })?
+        };
+        Ok(Self { level, extra: Rc::new(extra) })
+    }
+
+    /// The level of a topic, or the beginning of the names of metrics.
+    pub fn level(&self) -> &str {
+        &self.level
+    }
+
+    /// The line, as the poller knows it.
+    pub fn text(&self) -> &str {
+        self.extra.text()
+    }
+
+    /// The id of the command.
+    pub fn id(&self) -> &'static str {
+        self.extra.command().id()
+    }
+
+    /// Whose robots are asked.
+    pub fn family(&self) -> Family {
+        self.extra.family()
+    }
+
+    /// As the poller wants it.
+    pub fn extra(&self) -> Rc<Extra> {
+        Rc::clone(&self.extra)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(lines: &[&str]) -> Result<Vec<String>, String> {
+        let lines: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
+        let all = Also::all(&lines).map_err(|failure| failure.message)?;
+        Ok(all.iter().map(|also| format!("{} {}", also.level, also.id())).collect())
+    }
+
+    #[test]
+    fn lines_have_a_level_of_their_own() {
+        assert_eq!(
+            all(&["yerc var get B0..B9", "parts=toyo counter get 1"]).unwrap(),
+            ["var-get-B0..B9 yerc.var.get", "parts toyo.counter.get"]
+        );
+        assert!(all(&["a=yerc var get B0", "a=yerc var get B1"]).unwrap_err().contains("told already"));
+        assert!(all(&["status=yerc var get B0"]).unwrap_err().contains("told already"));
+        assert!(all(&["a=yerc var get B0", "b=yerc var get B0"]).unwrap_err().contains("asked already"));
+    }
+
+    #[test]
+    fn what_does_more_than_read_is_refused() {
+        for line in ["yerc var set B0=1", "x=yerc job start", "yrcx servo on", "toyo home"] {
+            assert!(all(&[line]).unwrap_err().contains("does more than read"), "{line}");
+        }
+        assert!(all(&["status"]).is_err());
+    }
+}

@@ -1,0 +1,264 @@
+//! Where the broker is, and as whom one comes: from the words of the command line, files and the environment.
+
+use std::env;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+
+use super::uplink::{Endpoint, Hello, Identity, Tls, Trust, Version, Will};
+use super::words;
+use crate::failure::Failure;
+use crate::files;
+
+/// Longest silence between this program and a broker.
+const KEEP_ALIVE: Duration = Duration::from_secs(30);
+/// Largest password and certificate file, in bytes.
+const LARGEST_FILE: u64 = 1 << 20;
+/// Holds the password, where no file does.
+const PASSWORD: &str = "ARMCTL_MQTT_PASSWORD";
+
+/// The URL of a broker.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Url {
+    /// Name or address.
+    pub host: String,
+    /// Its port.
+    pub port: u16,
+    /// Whether it is talked to over TLS.
+    pub is_secure: bool,
+}
+
+impl fmt::Display for Url {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scheme = if self.is_secure { "mqtts" } else { "mqtt" };
+        let (open, close) = if self.host.contains(':') { ("[", "]") } else { ("", "") };
+        write!(f, "{scheme}://{open}{}{close}:{}", self.host, self.port)
+    }
+}
+
+impl FromStr for Url {
+    type Err = String;
+
+    /// What is wrong is said without the text itself: somebody may have typed a password into it.
+    fn from_str(text: &str) -> Result<Self, String> {
+        const FORM: &str = "write mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS";
+        let Some((scheme, rest)) = text.split_once("://") else { return Err(FORM.to_owned()) };
+        let (is_secure, usual) = match scheme.to_ascii_lowercase().as_str() {
+            "mqtt" | "tcp" => (false, 1883),
+            "mqtts" | "ssl" => (true, 8883),
+            _ => return Err(FORM.to_owned()),
+        };
+        let rest = rest.strip_suffix('/').unwrap_or(rest);
+        if rest.contains('@') {
+            return Err(format!(
+                "user and password do not belong into the URL, where others can read them: --user NAME, and \
+                 --password-file FILE or {PASSWORD}"
+            ));
+        }
+        let (host, port) = match rest.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+            Some((host, port)) => (host, port.strip_prefix(':').or(port.is_empty().then_some("")).ok_or(FORM)?),
+            None => rest.split_once(':').unwrap_or((rest, "")),
+        };
+        let is_address = host.parse::<std::net::IpAddr>().is_ok();
+        let is_name = host.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '-' | '_'));
+        if host.is_empty() || host.len() > 253 || !(is_address || is_name) {
+            return Err(FORM.to_owned());
+        }
+        let port = match port {
+            "" => usual,
+            port => port.parse().ok().filter(|port| *port != 0).ok_or("the port is a number, 1 to 65535")?,
+        };
+        Ok(Self { host: host.to_owned(), port, is_secure })
+    }
+}
+
+/// Which MQTT.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Protocol {
+    /// MQTT 3.1.1
+    #[value(name = "3.1.1")]
+    V3,
+    /// MQTT 5
+    #[value(name = "5")]
+    V5,
+}
+
+impl From<Protocol> for Version {
+    fn from(protocol: Protocol) -> Self {
+        match protocol {
+            Protocol::V3 => Self::V3,
+            Protocol::V5 => Self::V5,
+        }
+    }
+}
+
+/// As whom one comes to the broker.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct Login {
+    /// User name at the broker
+    #[arg(long, value_name = "NAME", help_heading = "Broker")]
+    user: Option<String>,
+    /// File with the password (or ARMCTL_MQTT_PASSWORD)
+    #[arg(long, value_name = "FILE", requires = "user", help_heading = "Broker")]
+    password_file: Option<PathBuf>,
+    /// Certificate of the authority that signed the broker's (PEM), instead of those of this machine
+    #[arg(long, value_name = "FILE", help_heading = "Broker")]
+    ca: Option<PathBuf>,
+    /// Certificate of this client (PEM)
+    #[arg(long, value_name = "FILE", requires = "key", help_heading = "Broker")]
+    cert: Option<PathBuf>,
+    /// Its private key (PEM)
+    #[arg(long, value_name = "FILE", requires = "cert", help_heading = "Broker")]
+    key: Option<PathBuf>,
+    /// Version of MQTT
+    #[arg(long, value_name = "VERSION", default_value = "5", help_heading = "Broker")]
+    protocol: Protocol,
+}
+
+/// Where a broker is, and as whom one comes; the will is not said yet.
+#[derive(Debug)]
+pub struct Broker {
+    /// As it is shown.
+    pub url: Url,
+    /// Where.
+    pub endpoint: Endpoint,
+    version: Version,
+    user: Option<String>,
+    password: Secret,
+}
+
+/// What nobody is shown.
+struct Secret(Option<Vec<u8>>);
+
+impl fmt::Debug for Secret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "a password" } else { "no password" })
+    }
+}
+
+impl Broker {
+    /// Reads files and environment.
+    ///
+    /// # Errors
+    /// Something of it cannot be meant, or not be read.
+    pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
+        let has_tls_words = login.ca.is_some() || login.cert.is_some();
+        if has_tls_words && !url.is_secure {
+            return Err(Failure::usage("--ca, --cert and --key are for TLS")
+                .hint(format!("mqtts://{}:8883 is talked to over TLS", url.host)));
+        }
+        let tls = if url.is_secure {
+            let trust = match &login.ca {
+                Some(path) => Trust::Roots(bytes(path)?),
+                None => Trust::System,
+            };
+            let identity = match (&login.cert, &login.key) {
+                (Some(certificates), Some(key)) => {
+                    Some(Identity { certificates: bytes(certificates)?, key: bytes(key)? })
+                }
+                _ => None,
+            };
+            let tls = Tls::new(&url.host, &trust, identity.as_ref());
+            Some(Arc::new(tls.map_err(|error| words::distrust(url, &error))?))
+        } else {
+            None
+        };
+        Ok(Self {
+            url: url.clone(),
+            endpoint: Endpoint { host: url.host.clone(), port: url.port, tls },
+            version: login.protocol.into(),
+            user: login.user.clone(),
+            password: Secret(password(login)?),
+        })
+    }
+
+    /// What is said to it first.
+    pub fn hello(&self, client_id: String, will: Will) -> Hello {
+        Hello {
+            version: self.version,
+            client_id,
+            user: self.user.clone(),
+            password: self.password.0.clone(),
+            keep_alive: KEEP_ALIVE,
+            will: Some(will),
+        }
+    }
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    Ok(files::read(path, LARGEST_FILE).with_context(|| path.display().to_string())?)
+}
+
+/// The password: of the file, without the end of its line; or of the environment.
+fn password(login: &Login) -> Result<Option<Vec<u8>>, Failure> {
+    if let Some(path) = &login.password_file {
+        let mut password = bytes(path)?;
+        while password.last().is_some_and(|last| matches!(last, b'\n' | b'\r')) {
+            password.pop();
+        }
+        if password.is_empty() {
+            return Err(Failure::usage(format!("{}: there is no password in it", path.display()))
+                .hint("the file holds the password and nothing else"));
+        }
+        return Ok(Some(password));
+    }
+    match env::var_os(PASSWORD).filter(|password| !password.is_empty()) {
+        None => Ok(None),
+        Some(_) if login.user.is_none() => Err(Failure::usage(format!("{PASSWORD} is set, and no user is named"))
+            .hint(format!("add --user NAME, or unset {PASSWORD}"))),
+        Some(password) => Ok(Some(password.into_encoded_bytes())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn urls_are_read_and_shown() {
+        for (text, shown) in [
+            ("mqtt://broker", "mqtt://broker:1883"),
+            ("mqtts://broker.plant.example", "mqtts://broker.plant.example:8883"),
+            ("MQTT://10.0.0.7:2000/", "mqtt://10.0.0.7:2000"),
+            ("mqtt://[::1]:1884", "mqtt://[::1]:1884"),
+            ("mqtts://[fe80::1]", "mqtts://[fe80::1]:8883"),
+        ] {
+            assert_eq!(text.parse::<Url>().unwrap().to_string(), shown);
+        }
+    }
+
+    #[test]
+    fn what_is_no_url_is_refused_without_being_shown() {
+        for text in [
+            "broker",
+            "http://broker",
+            "mqtt://",
+            "mqtt://:1883",
+            "mqtt://a b",
+            "mqtt://a:0",
+            "mqtt://a:70000",
+            "mqtt://[::1",
+            "mqtt://[::1]x",
+            "mqtt://a/topic",
+            "mqtt://a?x",
+        ] {
+            assert!(text.parse::<Url>().is_err(), "{text}");
+        }
+        let told = "mqtts://me:hunter2@broker".parse::<Url>().unwrap_err();
+        assert!(told.contains("--password-file") && !told.contains("hunter2"), "{told}");
+        let told = "mqtt://broker:hunter2".parse::<Url>().unwrap_err();
+        assert!(!told.contains("hunter2"), "{told}");
+    }
+
+    #[test]
+    fn nobody_is_shown_a_password() {
+        let secret = format!("{:?}", Secret(Some(b"hunter2".to_vec())));
+        assert_eq!(secret, "a password");
+    }
+}

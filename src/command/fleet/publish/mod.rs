@@ -1,0 +1,420 @@
+//! `armctl publish`: tells an MQTT broker what `top` shows, as it changes. It only reads; what comes from the broker
+//! reaches no robot.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `broker` | where the broker is, and as whom one comes |
+//! | `topic` | names as levels of topics |
+//! | `also` | command lines whose answers are told, too |
+//! | `speech` | a way to tell of robots: what the next two have in common |
+//! | `plain` | one topic a robot and kind, with envelopes |
+//! | `sparkplug` | a Sparkplug B node whose devices are robots |
+//! | `outbox` | what is not told yet, in memory; no broker, no clock |
+//! | `spool` | the same on disk |
+//! | `pump` | between poller and broker |
+//! | `uplink` | the connection |
+//! | `words` | what brokers refuse, in words |
+
+mod also;
+mod broker;
+mod outbox;
+mod plain;
+mod pump;
+mod sparkplug;
+mod speech;
+mod spool;
+#[cfg(test)]
+mod tests;
+mod topic;
+mod uplink;
+mod words;
+
+use std::collections::BTreeMap;
+use std::env;
+use std::future::pending;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use self::also::Also;
+use self::broker::{Broker, Login, Url};
+use self::outbox::Outbox;
+use self::plain::{Alarms, Plain, Position};
+use self::pump::{Counts, Pauses, Pump};
+use self::sparkplug::{Names, Node};
+use self::speech::Speech;
+use self::spool::Spool;
+use self::topic::Levels;
+use crate::command::fleet::poll::{Event, Poll, RobotId, Subscription, Wish};
+use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::local::state_folder;
+use crate::command::frame::run::{Run, RunError};
+use crate::command::{Report, SchemaEntry};
+use crate::failure::Failure;
+use crate::files;
+use crate::output::Format;
+use crate::output::view::{Cell, Tone, View};
+use crate::settings::duration;
+
+/// Publish robots to an MQTT broker, as they change.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Without -r, --tag, --sim or -t, all robots of the inventory. --watch INTERVAL sets how often they are \
+                  looked at (1s). Topics are PREFIX/ROBOT/status and so on, kept by the broker, with the envelope of --json \
+                  as payload; PREFIX/NODE/state is online or offline. Nothing in here can move a robot or change \
+                  anything, whatever the broker sends. It goes on until Ctrl-C or SIGTERM, which is exit code 0, and \
+                  tries a broker that is not there again and again; with --count N it ends after N looks at each robot, or \
+                  with exit code 4 where there is no broker. docs/monitoring/mqtt.md tells the rest."
+)]
+pub struct Publish {
+    /// mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS
+    // Not read by the parser, which would show what is wrong: there may be a password in it.
+    #[arg(value_name = "URL")]
+    broker: String,
+    #[command(flatten)]
+    login: Login,
+    /// What is told of each robot
+    #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "status,alarms,position")]
+    kinds: Vec<Kind>,
+    /// A command line that reads, whose answer is told too, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
+    /// (repeatable)
+    #[arg(long, value_name = "LINE")]
+    also: Vec<String>,
+    /// Tell at least so often what does not change
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse_some)]
+    every: Duration,
+    /// First levels of all topics
+    #[arg(long, value_name = "TOPIC", default_value = "armctl", value_parser = topic::prefix)]
+    prefix: String,
+    /// Name of this publisher at the broker, unless it is that of this machine
+    #[arg(long, value_name = "NAME")]
+    node: Option<String>,
+    #[command(flatten)]
+    sparkplug: SparkplugArguments,
+    #[command(flatten)]
+    buffer: BufferArguments,
+}
+
+/// Sparkplug B instead of topics of armctl's own.
+#[derive(Debug, Args)]
+#[group(skip)]
+struct SparkplugArguments {
+    /// Be a Sparkplug B node, whose devices are the robots
+    #[arg(long = "sparkplug", requires = "group", conflicts_with = "prefix", help_heading = "Sparkplug")]
+    is_wanted: bool,
+    /// Its group
+    #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
+    group: Option<String>,
+    /// The primary host: what is found while that is offline is told later, as history
+    #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
+    host: Option<String>,
+}
+
+/// What waits while the broker is away.
+#[derive(Debug, Args)]
+#[group(skip)]
+struct BufferArguments {
+    /// Most memory for what waits
+    #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is away")]
+    memory: u64,
+    /// Most disk for what memory has no room for, 0 for none
+    #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is away")]
+    disk: u64,
+    /// Where on disk, unless in the state folder
+    #[arg(long = "buffer-dir", value_name = "PATH", help_heading = "While the broker is away")]
+    path: Option<PathBuf>,
+}
+
+/// Least size of a buffer, in bytes: less holds no envelope of a full position.
+const LEAST: u64 = 64 << 10;
+/// Least time from look to look, and the usual one.
+const LEAST_EVERY: Duration = Duration::from_millis(50);
+const EVERY: Duration = Duration::from_secs(1);
+
+fn size(text: &str) -> Result<u64, String> {
+    let wrong = || format!("'{text}' is not a valid size; write 64K, 16M or 1G");
+    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
+    let (number, unit) = text.split_at_checked(digits).ok_or_else(wrong)?;
+    let shift = match unit.to_ascii_lowercase().trim_end_matches("ib").trim_end_matches('b') {
+        "" => 0,
+        "k" => 10,
+        "m" => 20,
+        "g" => 30,
+        _ => return Err(wrong()),
+    };
+    number.parse::<u64>().ok().and_then(|number| number.checked_mul(1 << shift)).ok_or_else(wrong)
+}
+
+fn memory_size(text: &str) -> Result<u64, String> {
+    match size(text)? {
+        bytes if bytes < LEAST => Err("a buffer takes 64K at least".to_owned()),
+        bytes => Ok(bytes),
+    }
+}
+
+fn disk_size(text: &str) -> Result<u64, String> {
+    if size(text)? == 0 { Ok(0) } else { memory_size(text) }
+}
+
+/// What is told of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// Its state, as `armctl status` has it
+    Status,
+    /// Its alarms and errors
+    Alarms,
+    /// Where it is
+    Position,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Status, Self::Alarms, Self::Position];
+
+    /// The last level of its topic.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Status => "status",
+            Self::Alarms => "alarms",
+            Self::Position => "position",
+        }
+    }
+
+    /// The command of its envelope, whose schema `armctl schema` prints.
+    fn id(self) -> &'static str {
+        match self {
+            Self::Status => "status",
+            Self::Alarms => "publish.alarms",
+            Self::Position => "publish.position",
+        }
+    }
+}
+
+/// The schemas of what is published, and of the report at the end.
+pub fn schemas() -> Vec<SchemaEntry> {
+    vec![
+        SchemaEntry::of::<Published>("publish"),
+        SchemaEntry::of::<Alarms>("publish.alarms"),
+        SchemaEntry::of::<Position>("publish.position"),
+    ]
+}
+
+/// What was published, once it is over.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct Published {
+    /// Where.
+    broker: String,
+    /// As whom.
+    node: String,
+    /// Robots, as it began.
+    robots: usize,
+    /// What has arrived: messages, or with Sparkplug the data of devices.
+    published: u64,
+    /// What the broker did not want.
+    refused: u64,
+    /// What had no room while the broker was away.
+    dropped: u64,
+    /// What had not arrived at the end, and is kept nowhere.
+    undelivered: u64,
+    /// How many times the broker came back.
+    reconnects: u64,
+}
+
+impl Report for Published {
+    fn view(&self) -> View {
+        let count = |count: u64| Cell::from(count).tone(if count == 0 { Tone::Plain } else { Tone::Warning });
+        View::fields([
+            ("broker", self.broker.as_str().into()),
+            ("node", self.node.as_str().into()),
+            ("robots", Cell::from(self.robots)),
+            ("published", Cell::from(self.published)),
+            ("refused", count(self.refused)),
+            ("dropped", count(self.dropped)),
+            ("undelivered", count(self.undelivered)),
+            ("reconnects", Cell::from(self.reconnects)),
+        ])
+    }
+}
+
+impl Publish {
+    /// Does it.
+    pub async fn run(&self, run: &Run) -> Result<(), RunError> {
+        let interval = run.repeat.every.unwrap_or(EVERY);
+        self.fits(run, interval)?;
+        let also = Also::all(&self.also)?;
+        let url: Url = self.broker.parse().map_err(|why: String| {
+            Failure::usage(format!("this is not the URL of a broker: {why}")).hint("such as mqtt://192.168.1.5")
+        })?;
+        let broker = Broker::new(&url, &self.login)?;
+        let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
+        let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
+        let levels = Levels::new(poll.robots());
+        for robot in poll.robots() {
+            levels.of(robot)?;
+        }
+        let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::of).collect();
+        let (outbox, folder) = self.outbox(&node)?;
+        let speech = self.speech((&node, levels), &also, folder.as_deref());
+        let screen = run.screen;
+        let say = |level: u8, text: &str| {
+            if level == 0 { screen.note(text) } else { screen.detail(level, text) }
+        };
+        catch_interrupts();
+        let extras = also.iter().map(Also::extra).collect();
+        let mut events = poll.subscribe(Wish { extras, ..Wish::every(interval) });
+        let mut polled = Box::pin(poll.run());
+        let pauses = Pauses::new(fastrand::u64(..));
+        let pump = Pump::new((&broker, &broker.url), speech, outbox, (&say, pauses), run.repeat.count.is_some());
+        let mut looks = Looks::new(&robots, run.repeat.count);
+        let counts = {
+            let found = async || looks.next(&mut events).await;
+            let stop = async {
+                let _asked = interruptible(pending::<()>()).await;
+            };
+            tokio::select! {
+                counts = pump.run(found, stop) => counts,
+                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+            }
+        };
+        drop(events);
+        polled.await;
+        let Counts { published, refused, dropped, reconnects, undelivered } = counts?;
+        let broker = broker.url.to_string();
+        let robots = robots.len();
+        run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
+    }
+
+    /// Refuses what has no meaning here.
+    fn fits(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
+        let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
+        if run.filter.is_some() || run.repeat.until.is_some() {
+            return wrong(
+                "prints no data but a report at its end",
+                "`armctl status --until FILTER` waits for a condition, and takes --jq",
+            );
+        }
+        if run.gate.dry_run {
+            return wrong("sends nothing to robots but reads", "`armctl status --dry-run` shows some of them");
+        }
+        if run.trace.is_some() {
+            return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
+        }
+        if run.screen.format == Format::Csv {
+            return wrong("prints no table", "leave the format out, or take --json");
+        }
+        if interval < LEAST_EVERY {
+            return wrong("looks every 50ms at most", "--watch 50ms or more");
+        }
+        if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
+            return wrong("--host waits for a host, however long that takes", "leave --count or --host out");
+        }
+        Ok(())
+    }
+
+    /// What is not told yet, and the folder of this publisher, if there is one.
+    fn outbox(&self, node: &str) -> Result<(Outbox, Option<PathBuf>), Failure> {
+        let BufferArguments { memory, disk, path } = &self.buffer;
+        let memory = usize::try_from(*memory).unwrap_or(usize::MAX);
+        if *disk == 0 {
+            return Ok((Outbox::new(memory, None), None));
+        }
+        let way = self
+            .sparkplug
+            .group
+            .as_ref()
+            .map_or_else(|| self.prefix.replace('/', "%2F"), |group| format!("spB-{group}"));
+        let usual = || Some(state()?.join("publish").join(format!("{way}-{node}")));
+        let Some(folder) = path.clone().or_else(usual) else {
+            return Err(Failure::usage("there is no folder for what memory has no room for")
+                .hint("name one with --buffer-dir, or go without: --buffer-disk 0"));
+        };
+        let spool = Spool::open(&folder, *disk).map_err(|error| {
+            if spool::is_taken(&error) {
+                return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
+                    .hint("each needs a name of its own: --node NAME, or a folder: --buffer-dir PATH");
+            }
+            Failure::io(folder.display(), &error)
+                .hint("choose another folder with --buffer-dir, or none: --buffer-disk 0")
+        })?;
+        Ok((Outbox::new(memory, Some(spool)), Some(folder)))
+    }
+
+    fn speech(&self, (node, levels): (&str, Levels), also: &Rc<[Also]>, folder: Option<&Path>) -> Box<dyn Speech> {
+        let every_ms = u64::try_from(self.every.as_millis()).unwrap_or(u64::MAX);
+        let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| self.kinds.contains(kind)).collect();
+        match &self.sparkplug.group {
+            None => Box::new(Plain::new((&self.prefix, node.to_owned(), levels), &kinds, Rc::clone(also), every_ms)),
+            Some(group) => {
+                let names =
+                    Names { group: group.clone(), node: node.to_owned(), host: self.sparkplug.host.clone(), levels };
+                let file = folder.map(|folder| folder.join("bdseq"));
+                let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
+                let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
+                let remember = Box::new(move |next: u8| {
+                    if let Some(file) = &file {
+                        // The number only has to differ from the last one; without a memory it begins with 0.
+                        let _kept = files::replace(file, next.to_string().as_bytes());
+                    }
+                });
+                Box::new(Node::new(names, (&kinds, Rc::clone(also)), every_ms, (bd_seq, remember)))
+            }
+        }
+    }
+}
+
+/// The folder for what is remembered: that of the service, or of the user.
+fn state() -> Option<PathBuf> {
+    let of_service = env::var_os("STATE_DIRECTORY").filter(|folder| !folder.is_empty());
+    of_service.and_then(|folders| env::split_paths(&folders).next()).or_else(state_folder)
+}
+
+/// The name of this machine.
+#[cfg(unix)]
+fn this_machine() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+/// The name of this machine.
+#[cfg(not(unix))]
+fn this_machine() -> String {
+    env::var("COMPUTERNAME").unwrap_or_else(|_| "armctl".to_owned())
+}
+
+/// What the poller finds, up to so many looks at each robot.
+#[derive(Debug)]
+struct Looks {
+    left: BTreeMap<RobotId, u64>,
+    is_bounded: bool,
+}
+
+impl Looks {
+    fn new(robots: &[RobotId], count: Option<u64>) -> Self {
+        let left = count.map(|count| robots.iter().map(|id| (id.clone(), count)).collect()).unwrap_or_default();
+        Self { left, is_bounded: count.is_some() }
+    }
+
+    async fn next(&mut self, events: &mut Subscription) -> Option<Event> {
+        if self.is_bounded && self.left.is_empty() {
+            return None;
+        }
+        let event = events.next().await?;
+        let looked = match &event {
+            Event::Looked(look) => Some((RobotId::of(&look.robot), 1)),
+            Event::Failed { robot, .. } => Some((RobotId::of(robot), 1)),
+            Event::Gone(robot) => Some((RobotId::of(robot), u64::MAX)),
+            Event::Appeared(_) | Event::Inventory(_) => None,
+        };
+        if let Some((id, looks)) = looked
+            && let Some(left) = self.left.get_mut(&id)
+        {
+            *left = left.saturating_sub(looks);
+            if *left == 0 {
+                self.left.remove(&id);
+            }
+        }
+        Some(event)
+    }
+}

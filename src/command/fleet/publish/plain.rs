@@ -1,0 +1,224 @@
+//! One topic a robot and kind: `PREFIX/ROBOT/status`, kept by the broker, with the envelope of `--json` as payload.
+//!
+//! Something is told when it has changed, and at the latest after a given time. What is said of a robot that does not
+//! answer is said in all of its topics, so that nobody takes the last position for where it is.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use jiff::Timestamp;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Kind;
+use super::also::Also;
+use super::outbox::Record;
+use super::speech::{Reaction, Speech};
+use super::topic::Levels;
+use super::uplink::{Message, Will};
+use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::sample::Alarm;
+use crate::command::fleet::poll::{Event, Look, RobotId};
+use crate::failure::Failure;
+use crate::output::envelope::Envelope;
+use crate::settings::Robot;
+
+/// The alarms and errors of a robot.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Alarms {
+    /// Those that are present, the latest first.
+    alarms: Vec<Present>,
+}
+
+/// One of them.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct Present {
+    /// As the controller writes it; null for one that it does not tell.
+    code: Option<String>,
+    /// What it says; empty where that is not known.
+    name: String,
+}
+
+impl From<&[Alarm]> for Alarms {
+    fn from(alarms: &[Alarm]) -> Self {
+        let present = |alarm: &Alarm| Present {
+            code: Some(alarm.code.clone()).filter(|code| code != Alarm::UNREADABLE),
+            name: alarm.text.clone(),
+        };
+        Self { alarms: alarms.iter().map(present).collect() }
+    }
+}
+
+/// Where a robot is.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Position {
+    /// In base coordinates; null where it was not asked, or the controller has none.
+    position: Option<PositionMm>,
+    /// Why it was not asked; null where it was.
+    not_asked: Option<&'static str>,
+}
+
+/// What was told last in a topic.
+#[derive(Debug)]
+struct Told {
+    /// The envelope without its time.
+    what: Vec<u8>,
+    at_ms: u64,
+}
+
+/// What is told in topics of armctl's own.
+#[derive(Debug)]
+pub struct Plain {
+    prefix: String,
+    node: String,
+    levels: Levels,
+    kinds: Vec<Kind>,
+    also: Rc<[Also]>,
+    every_ms: u64,
+    told: BTreeMap<RobotId, BTreeMap<String, Told>>,
+}
+
+impl Plain {
+    /// Of these kinds and lines, again after so long; `node` is a level of a topic.
+    pub fn new(
+        (prefix, node, levels): (&str, String, Levels),
+        kinds: &[Kind],
+        also: Rc<[Also]>,
+        every_ms: u64,
+    ) -> Self {
+        Self { prefix: prefix.to_owned(), node, levels, kinds: kinds.to_vec(), also, every_ms, told: BTreeMap::new() }
+    }
+
+    fn state(&self, state: &str) -> Message {
+        Message {
+            topic: format!("{}/{}/state", self.prefix, self.node),
+            payload: state.as_bytes().to_vec(),
+            retain: true,
+            acknowledged: true,
+        }
+    }
+
+    /// What has changed, or was told long ago.
+    fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
+        let Ok(level) = self.levels.of(robot) else { return Vec::new() };
+        let told = self.told.entry(RobotId::of(robot)).or_default();
+        let mut records = Vec::new();
+        for (kind, envelope) in envelopes {
+            let Ok(what) = serde_json::to_vec(&envelope) else { continue };
+            let is_due = told
+                .get(&kind)
+                .is_none_or(|last| last.what != what || now_ms.saturating_sub(last.at_ms) >= self.every_ms);
+            if !is_due {
+                continue;
+            }
+            let time = i64::try_from(now_ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
+            let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
+            let key = format!("{}/{level}/{kind}", self.prefix);
+            records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
+            told.insert(kind, Told { what, at_ms: now_ms });
+        }
+        records
+    }
+
+    fn looked(&mut self, look: &Look, now_ms: u64) -> Vec<Record> {
+        let robot = &look.robot;
+        let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
+        let at = (line.position, line.not_asked);
+        if self.kinds.contains(&Kind::Position) {
+            // Else each step of a motion would be told twice.
+            (line.position, line.not_asked) = (None, Some("it has a topic of its own"));
+        }
+        let mut envelopes = Vec::new();
+        for kind in &self.kinds {
+            let data = match kind {
+                Kind::Status => serde_json::to_value(&line),
+                Kind::Alarms => serde_json::to_value(Alarms::from(&look.sample.alarms[..])),
+                Kind::Position => serde_json::to_value(Position { position: at.0, not_asked: at.1 }),
+            };
+            let data = data.map_err(|error| Failure::local(format!("report as JSON: {error}")));
+            envelopes.push((kind.name().to_owned(), Envelope::of(robot, kind.id(), data)));
+        }
+        for (text, answer) in &look.extras {
+            if let Some(also) = self.also.iter().find(|also| also.text() == &**text) {
+                envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), answer.clone())));
+            }
+        }
+        self.changed(robot, envelopes, now_ms)
+    }
+
+    /// A robot that does not answer: its state says so, with all that is known of it; all else is not known.
+    fn failed(&mut self, robot: &Robot, failure: &Failure, now_ms: u64) -> Vec<Record> {
+        let mut envelopes = Vec::new();
+        for kind in &self.kinds {
+            let failed = Envelope::of(robot, kind.id(), Err(failure.clone()));
+            let silent = OverviewReport { family: robot.family.name(), ..OverviewReport::default() };
+            let data = serde_json::to_value(silent).ok().filter(|_| *kind == Kind::Status);
+            envelopes.push((kind.name().to_owned(), Envelope { data, ..failed }));
+        }
+        for also in self.also.iter().filter(|also| also.family() == robot.family) {
+            envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), Err(failure.clone()))));
+        }
+        self.changed(robot, envelopes, now_ms)
+    }
+
+    /// A robot that is no more: the broker keeps nothing of it.
+    fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
+        let told = self.told.remove(&RobotId::of(robot)).unwrap_or_default();
+        let Ok(level) = self.levels.of(robot) else { return Vec::new() };
+        let empty = |kind: String| Record {
+            kind: 0,
+            time_ms: now_ms,
+            key: format!("{}/{level}/{kind}", self.prefix),
+            body: Vec::new(),
+            epoch: 0,
+        };
+        told.into_keys().map(empty).collect()
+    }
+}
+
+impl Speech for Plain {
+    fn client_id(&self) -> String {
+        format!("armctl-{}", self.node)
+    }
+
+    fn will(&mut self, _now_ms: u64) -> Will {
+        self.state("offline")
+    }
+
+    fn topics(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn connected(&mut self, _now_ms: u64) -> Vec<Message> {
+        vec![self.state("online")]
+    }
+
+    fn lost(&mut self) {}
+
+    fn received(&mut self, message: &Message, _now_ms: u64) -> Reaction {
+        let note = format!("the broker sent something that nobody asked for, which was ignored: {}", message.topic);
+        Reaction { note: Some((1, note)), ..Reaction::default() }
+    }
+
+    fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+        match event {
+            Event::Looked(look) => self.looked(look, now_ms),
+            Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
+            Event::Gone(robot) => self.gone(robot, now_ms),
+            Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
+        }
+    }
+
+    fn is_ready(&self) -> bool {
+        true
+    }
+
+    fn told(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
+        let Record { key, body, .. } = record;
+        vec![Message { topic: key, payload: body, retain: true, acknowledged: true }]
+    }
+
+    fn farewell(&mut self, _now_ms: u64) -> Vec<Message> {
+        vec![self.state("offline")]
+    }
+}

@@ -1,0 +1,181 @@
+//! What a look at a robot found, as metrics with types and units.
+
+use serde_json::Value as Json;
+use srad_types::payload::metric::Value;
+use srad_types::payload::property_value::Value as Property;
+use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
+
+use super::super::Kind;
+use super::super::also::Also;
+use crate::command::face::sample::Alarm;
+use crate::command::fleet::poll::Look;
+
+/// Most metrics of one line of `--also`.
+const MOST: usize = 2000;
+/// Deepest list or object in its answer that has metrics of its own.
+const DEEPEST: usize = 8;
+
+/// Units by the end of a name, as reports have them.
+const UNITS: [(&str, &str); 9] = [
+    ("_mm", "mm"),
+    ("_um", "µm"),
+    ("_deg", "°"),
+    ("_percent", "%"),
+    ("_mm_s", "mm/s"),
+    ("_deg_s", "°/s"),
+    ("_ms", "ms"),
+    ("_s", "s"),
+    ("_pulses", "pulses"),
+];
+
+/// All metrics of a look, of these kinds and lines.
+pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
+    let line = &look.sample.line;
+    let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
+    let flag = |flag: Option<bool>| flag.map(Value::BooleanValue);
+    let mut metrics = Vec::new();
+    for kind in kinds {
+        match kind {
+            Kind::Status => metrics.extend([
+                metric("status/mode", DataType::String, text(line.mode)),
+                metric("status/servo_on", DataType::Boolean, flag(line.servo_on)),
+                metric("status/running", DataType::Boolean, flag(line.running)),
+                metric("status/held", DataType::Boolean, flag(line.held)),
+                metric("status/alarm", DataType::Boolean, flag(line.alarm)),
+                metric("status/error", DataType::Boolean, flag(line.error)),
+                metric("status/faulted", DataType::Boolean, flag(line.fault.faulted)),
+                metric("status/fault_code", DataType::String, text(line.fault.fault_code.as_deref())),
+                metric("status/fault_text", DataType::String, text(line.fault.fault_text.as_deref())),
+            ]),
+            Kind::Alarms => {
+                let alarms = &look.sample.alarms;
+                let count = u32::try_from(alarms.len()).unwrap_or(u32::MAX);
+                let codes = alarms.iter().map(|alarm| alarm.code.as_str()).filter(|code| *code != Alarm::UNREADABLE);
+                let codes = codes.collect::<Vec<_>>().join(",");
+                metrics.extend([
+                    metric("alarms/count", DataType::Int32, Some(Value::IntValue(count))),
+                    metric("alarms/codes", DataType::String, Some(Value::StringValue(codes))),
+                ]);
+            }
+            Kind::Position => {
+                let at = line.position;
+                let axes = [
+                    ("position/x_mm", at.map(|at| at.x_mm)),
+                    ("position/y_mm", at.map(|at| at.y_mm)),
+                    ("position/z_mm", at.map(|at| at.z_mm)),
+                ];
+                metrics.extend(axes.map(|(name, value)| metric(name, DataType::Double, value.map(Value::DoubleValue))));
+            }
+        }
+    }
+    metrics.extend([
+        metric("info/family", DataType::String, text(Some(look.robot.family.name()))),
+        metric("info/target", DataType::String, text(Some(look.robot.target.value.url()))),
+        metric("info/simulated", DataType::Boolean, flag(Some(look.robot.target.value.is_simulated()))),
+    ]);
+    for (line, answer) in &look.extras {
+        if let (Some(also), Ok(data)) = (also.iter().find(|also| also.text() == &**line), answer) {
+            let mut found = Vec::new();
+            flatten(also.level(), data, 0, &mut found);
+            metrics.extend(found);
+        }
+    }
+    metrics
+}
+
+/// A metric with its unit, where its name has one.
+fn metric(name: &str, kind: DataType, value: Option<Value>) -> Metric {
+    let mut metric = Metric::new();
+    metric.set_name(name.to_owned()).set_datatype(kind);
+    match value {
+        Some(value) => metric.set_value(value),
+        None => metric.set_null(),
+    };
+    metric.properties = unit(name).map(|unit| PropertySet {
+        keys: vec!["engUnit".to_owned()],
+        values: vec![PropertyValue {
+            r#type: Some(DataType::String as u32),
+            is_null: None,
+            value: Some(Property::StringValue(unit.to_owned())),
+        }],
+    });
+    metric
+}
+
+fn unit(name: &str) -> Option<&'static str> {
+    let found = UNITS.iter().filter(|(end, _)| name.ends_with(end));
+    found.max_by_key(|(end, _)| end.len()).map(|(_, unit)| *unit)
+}
+
+/// Every value of a report under its path; things of a list under their names, where they have some. What is null has no
+/// type that could be told.
+fn flatten(path: &str, data: &Json, depth: usize, metrics: &mut Vec<Metric>) {
+    if metrics.len() >= MOST || depth > DEEPEST {
+        return;
+    }
+    let (kind, value) = match data {
+        Json::Null => return,
+        Json::Object(fields) => {
+            return fields.iter().for_each(|(name, data)| flatten(&format!("{path}/{name}"), data, depth + 1, metrics));
+        }
+        Json::Array(items) => {
+            for (at, item) in items.iter().enumerate() {
+                let name = item.get("name").and_then(Json::as_str).filter(|name| !name.is_empty());
+                let name = name.map_or_else(|| at.to_string(), ToOwned::to_owned);
+                flatten(&format!("{path}/{name}"), item, depth + 1, metrics);
+            }
+            return;
+        }
+        Json::Bool(flag) => (DataType::Boolean, Value::BooleanValue(*flag)),
+        Json::String(text) => (DataType::String, Value::StringValue(text.clone())),
+        Json::Number(number) => match number.as_i64() {
+            Some(whole) => (DataType::Int64, Value::LongValue(whole.cast_unsigned())),
+            None => (DataType::Double, Value::DoubleValue(number.as_f64().unwrap_or(f64::NAN))),
+        },
+    };
+    metrics.push(metric(path, kind, Some(value)));
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_report_becomes_metrics_with_types_and_units() {
+        let data =
+            json!({"values": [{"name": "B0", "value": -3, "ok": true}, {"value": 1.5, "x_mm": 2.0}], "why": null});
+        let mut metrics = Vec::new();
+        flatten("parts", &data, 0, &mut metrics);
+        let told: Vec<String> = metrics
+            .iter()
+            .map(|metric| {
+                format!("{} {:?} {:?}", metric.name.clone().unwrap(), metric.datatype, metric.value.clone().unwrap())
+            })
+            .collect();
+        assert_eq!(
+            told,
+            [
+                "parts/values/B0/name Some(12) StringValue(\"B0\")",
+                "parts/values/B0/value Some(4) LongValue(18446744073709551613)",
+                "parts/values/B0/ok Some(11) BooleanValue(true)",
+                "parts/values/1/value Some(10) DoubleValue(1.5)",
+                "parts/values/1/x_mm Some(10) DoubleValue(2.0)",
+            ]
+        );
+        assert!(metrics[4].properties.as_ref().is_some_and(|set| set.keys == ["engUnit"]));
+        assert_eq!((unit("speed_mm_s"), unit("elapsed_ms"), unit("servo_on")), (Some("mm/s"), Some("ms"), None));
+    }
+
+    #[test]
+    fn a_report_without_end_has_an_end_as_metrics() {
+        let mut metrics = Vec::new();
+        flatten("a", &Json::Array(vec![json!(1); 10_000]), 0, &mut metrics);
+        assert_eq!(metrics.len(), MOST);
+        let deep = (0..100).fold(json!(1), |inner, _| json!({ "a": inner }));
+        metrics.clear();
+        flatten("a", &deep, 0, &mut metrics);
+        assert!(metrics.is_empty());
+    }
+}

@@ -1,0 +1,423 @@
+//! A Sparkplug B node (Sparkplug 3.0.0) whose devices are robots.
+//!
+//! The node is born when its connection is there and, where a primary host is named, that is online. A robot is born when
+//! it answers, and dies when it does not. What was found while nobody could be told is told later as history. Of all
+//! commands one is obeyed: to be born again. Nothing that comes from a broker reaches a robot.
+
+mod metrics;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::rc::Rc;
+
+use srad_types::constants::{BDSEQ, NODE_CONTROL_REBIRTH};
+use srad_types::payload::metric::Value;
+use srad_types::payload::{DataType, Message as _, Metric, Payload, StateBirthDeathCertificate};
+use srad_types::topic::{DeviceMessage, NodeMessage, device_topic, node_topic, state_host_topic};
+
+use super::Kind;
+use super::also::Also;
+use super::outbox::Record;
+use super::speech::{Reaction, Speech};
+use super::topic::Levels;
+use super::uplink::{Message, Will};
+use crate::command::fleet::poll::{Event, Look};
+use crate::settings::Robot;
+
+/// Least time between two births that a host asks for.
+const BIRTHS_MS: u64 = 1000;
+
+/// What records are.
+mod kind {
+    /// Values of a device that have changed.
+    pub const DATA: u8 = 1;
+    /// A device that answers, with all of its values.
+    pub const BIRTH: u8 = 2;
+    /// A device that does not.
+    pub const DEATH: u8 = 3;
+}
+
+/// A robot, as hosts see it.
+#[derive(Debug, Default)]
+struct Device {
+    /// Its metrics as they were found last, with the numbers that stand for their names.
+    metrics: BTreeMap<String, (u64, Metric)>,
+    /// Whether it answers.
+    is_up: bool,
+    /// Whether hosts believe that it is there.
+    is_born: bool,
+    /// When all of it was told last.
+    told_ms: u64,
+}
+
+/// Who the node is, and for whom.
+#[derive(Debug, Clone)]
+pub struct Names {
+    /// Its group.
+    pub group: String,
+    /// Itself.
+    pub node: String,
+    /// The host without which it tells nothing.
+    pub host: Option<String>,
+    /// Its devices.
+    pub levels: Levels,
+}
+
+/// Keeps the number of the next connection for the next process.
+pub type Remember = Box<dyn FnMut(u8)>;
+
+/// The node.
+pub struct Node {
+    names: Names,
+    kinds: Vec<Kind>,
+    also: Rc<[Also]>,
+    every_ms: u64,
+    /// The number of this connection, and of the next one.
+    bd_seq: (u8, u8),
+    remember: Remember,
+    /// The number of the next message.
+    seq: u8,
+    /// How many times it was born.
+    epoch: u64,
+    is_connected: bool,
+    is_born: bool,
+    born_ms: u64,
+    /// When the host said last whether it is there, and what.
+    host: Option<(u64, bool)>,
+    devices: BTreeMap<String, Device>,
+    next_alias: u64,
+}
+
+impl fmt::Debug for Node {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}, born {}, {} devices", self.names, self.is_born, self.devices.len())
+    }
+}
+
+impl Node {
+    /// That tells these kinds and lines, all of them again after so long. `bd_seq` is the number of its first connection.
+    pub fn new(
+        names: Names,
+        (kinds, also): (&[Kind], Rc<[Also]>),
+        every_ms: u64,
+        (bd_seq, remember): (u8, Remember),
+    ) -> Self {
+        Self {
+            names,
+            kinds: kinds.to_vec(),
+            also,
+            every_ms,
+            bd_seq: (bd_seq, bd_seq),
+            remember,
+            seq: 0,
+            epoch: 0,
+            is_connected: false,
+            is_born: false,
+            born_ms: 0,
+            host: None,
+            devices: BTreeMap::new(),
+            next_alias: 1,
+        }
+    }
+
+    fn topic(&self, message: &NodeMessage) -> String {
+        node_topic(&self.names.group, message, &self.names.node)
+    }
+
+    /// A message with the next number.
+    fn numbered(&mut self, topic: String, metrics: Vec<Metric>, now_ms: u64) -> Message {
+        let seq = self.seq;
+        self.seq = seq.wrapping_add(1);
+        let payload = Payload { timestamp: Some(now_ms), metrics, seq: Some(seq.into()), uuid: None, body: None };
+        Message { topic, payload: payload.encode_to_vec(), retain: false, acknowledged: false }
+    }
+
+    fn of_device(&mut self, message: &DeviceMessage, device: &str, metrics: Vec<Metric>, now_ms: u64) -> Message {
+        let topic = device_topic(&self.names.group, message, &self.names.node, device);
+        self.numbered(topic, metrics, now_ms)
+    }
+
+    /// The death, which has the number of its birth instead of one of its own.
+    fn death(&self, now_ms: u64) -> Message {
+        let metrics = vec![bd_seq(self.bd_seq.0, now_ms)];
+        let payload = Payload { timestamp: Some(now_ms), metrics, seq: None, uuid: None, body: None };
+        Message {
+            topic: self.topic(&NodeMessage::NDeath),
+            payload: payload.encode_to_vec(),
+            retain: false,
+            acknowledged: true,
+        }
+    }
+
+    /// The node with all devices that answer.
+    fn births(&mut self, now_ms: u64) -> Vec<Message> {
+        self.epoch += 1;
+        self.seq = 0;
+        self.is_born = true;
+        self.born_ms = now_ms;
+        let mut rebirth = named(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
+        rebirth.alias = None;
+        let software = Value::StringValue(concat!("armctl ", env!("CARGO_PKG_VERSION")).to_owned());
+        let metrics = vec![
+            bd_seq(self.bd_seq.0, now_ms),
+            rebirth,
+            named("Properties/Software", DataType::String, software, now_ms),
+        ];
+        let mut messages = vec![self.numbered(self.topic(&NodeMessage::NBirth), metrics, now_ms)];
+        let up: Vec<String> =
+            self.devices.iter().filter(|(_, device)| device.is_up).map(|(id, _)| id.clone()).collect();
+        for device in self.devices.values_mut() {
+            device.is_born = false;
+        }
+        messages.extend(up.into_iter().filter_map(|id| self.birth(&id, now_ms)));
+        messages
+    }
+
+    /// A device with all that is known of it.
+    fn birth(&mut self, id: &str, now_ms: u64) -> Option<Message> {
+        let device = self.devices.get_mut(id)?;
+        device.is_born = true;
+        let whole = |(alias, metric): &(u64, Metric)| Metric { alias: Some(*alias), ..metric.clone() };
+        let metrics = device.metrics.values().map(whole).collect();
+        Some(self.of_device(&DeviceMessage::DBirth, id, metrics, now_ms))
+    }
+
+    /// A robot was looked at.
+    fn looked(&mut self, look: &Look, now_ms: u64) -> Option<Record> {
+        let id = self.names.levels.of(&look.robot).ok()?;
+        let found = metrics::of_look(look, &self.kinds, &self.also);
+        let device = self.devices.entry(id.clone()).or_default();
+        let was_up = std::mem::replace(&mut device.is_up, true);
+        let is_due = now_ms.saturating_sub(device.told_ms) >= self.every_ms;
+        let mut has_new = !was_up;
+        let mut changed = Vec::new();
+        for mut metric in found {
+            metric.timestamp = Some(now_ms);
+            let Some(name) = metric.name.clone() else { continue };
+            if let Some((_, last)) = device.metrics.get_mut(&name) {
+                // What had a type keeps it: hosts know the metric by that.
+                if metric.datatype != last.datatype {
+                    continue;
+                }
+                if last.value != metric.value || is_due {
+                    changed.push(metric.clone());
+                }
+                *last = metric;
+            } else {
+                has_new = true;
+                changed.push(metric.clone());
+                device.metrics.insert(name, (self.next_alias, metric));
+                self.next_alias += 1;
+            }
+        }
+        let kind = if has_new { kind::BIRTH } else { kind::DATA };
+        let metrics =
+            if has_new { device.metrics.values().map(|(_, metric)| metric.clone()).collect() } else { changed };
+        if metrics.is_empty() {
+            return None;
+        }
+        if has_new || is_due {
+            device.told_ms = now_ms;
+        }
+        Some(self.record(kind, id, metrics, now_ms))
+    }
+
+    /// A robot does not answer, or is no more.
+    fn fell_silent(&mut self, robot: &Robot, now_ms: u64) -> Option<Record> {
+        let id = self.names.levels.of(robot).ok()?;
+        let device = self.devices.get_mut(&id)?;
+        std::mem::take(&mut device.is_up).then(|| self.record(kind::DEATH, id, Vec::new(), now_ms))
+    }
+
+    fn record(&self, kind: u8, key: String, metrics: Vec<Metric>, time_ms: u64) -> Record {
+        let body = Payload { timestamp: Some(time_ms), metrics, seq: None, uuid: None, body: None }.encode_to_vec();
+        Record { kind, time_ms, key, body, epoch: self.epoch }
+    }
+
+    /// Values of a device, as they are now or as they were.
+    fn data(&mut self, record: &Record, is_history: bool, now_ms: u64) -> Vec<Message> {
+        let Ok(Payload { metrics, .. }) = Payload::decode(&record.body[..]) else { return Vec::new() };
+        let id = &record.key;
+        let device = self.devices.entry(id.clone()).or_default();
+        let mut has_new = false;
+        let mut told = Vec::with_capacity(metrics.len());
+        for metric in metrics {
+            let Some(name) = metric.name.clone() else { continue };
+            let (alias, last) = device.metrics.entry(name).or_insert_with(|| {
+                has_new = true;
+                self.next_alias += 1;
+                (self.next_alias - 1, Metric { value: None, is_null: Some(true), ..metric.clone() })
+            });
+            if metric.datatype != last.datatype {
+                continue;
+            }
+            // With its type, although that may be left out (tck-id-payloads-metric-datatype-not-req): decoders that do not
+            // remember births know no value without it.
+            told.push(Metric {
+                name: None,
+                alias: Some(*alias),
+                is_historical: is_history.then_some(true),
+                properties: None,
+                ..metric
+            });
+        }
+        if told.is_empty() {
+            return Vec::new();
+        }
+        let (is_up, was_born) = (device.is_up, device.is_born);
+        let mut messages = Vec::new();
+        if has_new || !was_born {
+            messages.extend(self.birth(id, now_ms));
+        }
+        messages.push(self.of_device(&DeviceMessage::DData, id, told, now_ms));
+        // It has a past, and does not answer now.
+        if !is_up {
+            messages.extend(self.dies(id, now_ms));
+        }
+        messages
+    }
+
+    /// A device that hosts believe to be there is not.
+    fn dies(&mut self, id: &str, now_ms: u64) -> Option<Message> {
+        let device = self.devices.get_mut(id)?;
+        std::mem::take(&mut device.is_born).then(|| self.of_device(&DeviceMessage::DDeath, id, Vec::new(), now_ms))
+    }
+
+    /// A host says whether it is there.
+    fn host_says(&mut self, message: &Message, now_ms: u64) -> Reaction {
+        let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
+            return ignored("a state of the host that cannot be read");
+        };
+        if self.host.is_some_and(|(known, _)| state.timestamp < known) {
+            return ignored("a state of the host that is older than the one before");
+        }
+        self.host = Some((state.timestamp, state.online));
+        let name = self.names.host.clone().unwrap_or_default();
+        match (state.online, self.is_born) {
+            (true, false) => Reaction {
+                messages: self.births(now_ms),
+                note: Some((0, format!("the primary host {name} is online"))),
+                leaves: false,
+            },
+            // It is told of the death, and the next connection waits for it (section 5.4).
+            (false, true) => {
+                self.is_born = false;
+                Reaction {
+                    messages: vec![self.death(now_ms)],
+                    note: Some((0, format!("the primary host {name} is offline: what is found waits for it"))),
+                    leaves: true,
+                }
+            }
+            (false, false) => Reaction {
+                note: Some((0, format!("waiting for the primary host {name}, which is offline"))),
+                ..Reaction::default()
+            },
+            (true, true) => Reaction::default(),
+        }
+    }
+
+    /// A host orders something: to be born again is all that it can.
+    fn ordered(&mut self, message: &Message, now_ms: u64) -> Reaction {
+        let Ok(payload) = Payload::decode(&message.payload[..]) else {
+            return ignored("a command that cannot be read");
+        };
+        let is_rebirth = |metric: &Metric| {
+            metric.name.as_deref() == Some(NODE_CONTROL_REBIRTH) && metric.value == Some(Value::BooleanValue(true))
+        };
+        if !payload.metrics.iter().any(is_rebirth) {
+            return ignored("a command: armctl publishes, and takes no orders");
+        }
+        if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
+            return ignored("an order to be born again, right behind a birth");
+        }
+        let note = Some((1, "a host asks for the births again".to_owned()));
+        Reaction { messages: self.births(now_ms), note, leaves: false }
+    }
+}
+
+fn ignored(what: &str) -> Reaction {
+    Reaction { note: Some((1, format!("ignored from the broker: {what}"))), ..Reaction::default() }
+}
+
+fn named(name: &str, kind: DataType, value: Value, now_ms: u64) -> Metric {
+    let mut metric = Metric::new();
+    metric.set_name(name.to_owned()).set_datatype(kind).set_timestamp(now_ms).set_value(value);
+    metric
+}
+
+fn bd_seq(number: u8, now_ms: u64) -> Metric {
+    named(BDSEQ, DataType::Int64, Value::LongValue(number.into()), now_ms)
+}
+
+impl Speech for Node {
+    fn client_id(&self) -> String {
+        format!("armctl-{}-{}", self.names.group, self.names.node)
+    }
+
+    fn will(&mut self, now_ms: u64) -> Will {
+        let number = self.bd_seq.1;
+        self.bd_seq = (number, number.wrapping_add(1));
+        (self.remember)(self.bd_seq.1);
+        self.death(now_ms)
+    }
+
+    fn topics(&self) -> Vec<String> {
+        let host = self.names.host.as_deref().map(state_host_topic);
+        std::iter::once(self.topic(&NodeMessage::NCmd)).chain(host).collect()
+    }
+
+    fn connected(&mut self, now_ms: u64) -> Vec<Message> {
+        self.is_connected = true;
+        if self.names.host.is_none() { self.births(now_ms) } else { Vec::new() }
+    }
+
+    fn lost(&mut self) {
+        (self.is_connected, self.is_born) = (false, false);
+        for device in self.devices.values_mut() {
+            device.is_born = false;
+        }
+    }
+
+    fn received(&mut self, message: &Message, now_ms: u64) -> Reaction {
+        let is_state = self.names.host.as_deref().is_some_and(|host| message.topic == state_host_topic(host));
+        if !self.is_connected {
+            Reaction::default()
+        } else if is_state {
+            self.host_says(message, now_ms)
+        } else if message.topic == self.topic(&NodeMessage::NCmd) {
+            self.ordered(message, now_ms)
+        } else {
+            ignored("something that nobody asked for")
+        }
+    }
+
+    fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+        match event {
+            Event::Looked(look) => self.looked(look, now_ms).into_iter().collect(),
+            Event::Failed { robot, .. } | Event::Gone(robot) => self.fell_silent(robot, now_ms).into_iter().collect(),
+            Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
+        }
+    }
+
+    fn is_ready(&self) -> bool {
+        self.is_born
+    }
+
+    fn told(&mut self, record: Record, now_ms: u64) -> Vec<Message> {
+        let is_history = record.epoch < self.epoch;
+        match record.kind {
+            // What is over is over.
+            kind::DEATH if is_history => Vec::new(),
+            kind::DEATH => self.dies(&record.key, now_ms).into_iter().collect(),
+            kind::BIRTH if !is_history => self.birth(&record.key, now_ms).into_iter().collect(),
+            kind::BIRTH | kind::DATA => self.data(&record, is_history, now_ms),
+            _ => Vec::new(),
+        }
+    }
+
+    fn farewell(&mut self, now_ms: u64) -> Vec<Message> {
+        if self.is_born { vec![self.death(now_ms)] } else { Vec::new() }
+    }
+}

@@ -1,0 +1,374 @@
+//! The pump in virtual time, between looks that are made here and a broker that is made here.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::future::pending;
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tempfile::TempDir;
+use tokio::sync::{Notify, mpsc};
+use tokio::time::{Instant, sleep};
+
+use super::outbox::Outbox;
+use super::plain::Plain;
+use super::pump::{Broker, Counts, Pauses, Pump, Uplink};
+use super::spool::Spool;
+use super::topic::Levels;
+use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
+use super::{Also, Kind, Speech};
+use crate::command::face::overview::{OverviewReport, PositionMm};
+use crate::command::face::sample::{Alarm, Sample};
+use crate::command::fleet::poll::{Event as Found, Look};
+use crate::failure::{self, Failure};
+use crate::settings::inventory::Inventory;
+use crate::settings::{Robot, Selection, Sources};
+
+/// A robot of this name.
+pub fn robot(name: &str) -> Arc<Robot> {
+    let text = format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"sim:\"\n");
+    let inventory = Inventory::parse(&text, "robots.toml").unwrap();
+    let selection = Selection { all: true, ..Selection::default() };
+    let mut robots = Sources { selection, inventory, ..Sources::default() }.robots(None).unwrap();
+    Arc::new(robots.remove(0))
+}
+
+/// A look that found this place, and alarms with these codes.
+pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
+    let alarm = |code: &&str| Alarm { code: (*code).to_owned(), ..Alarm::default() };
+    let line = OverviewReport {
+        reachable: true,
+        mode: Some("play"),
+        servo_on: Some(true),
+        position: Some(PositionMm { x_mm, y_mm: 0.0, z_mm: 1.5 }),
+        ..OverviewReport::default()
+    };
+    let sample = Sample { line, alarms: alarms.iter().map(alarm).collect(), ..Sample::default() };
+    Found::Looked(Arc::new(Look {
+        robot: Arc::clone(robot),
+        sample,
+        took: Duration::ZERO,
+        missed: 0,
+        through_session: false,
+        extras: Vec::new(),
+        unexplained: None,
+    }))
+}
+
+pub fn silence(robot: &Arc<Robot>) -> Found {
+    let failure = Failure::new(failure::Kind::NoAnswer, "no answer");
+    Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1) }
+}
+
+/// What the broker does with those who come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mood {
+    Works,
+    Away,
+    /// Takes messages, answers pings, and acknowledges nothing.
+    Hangs,
+    Refuses(u8),
+    Distrusted,
+}
+
+/// A broker, as long as its test.
+#[derive(Debug)]
+struct Fake {
+    mood: RefCell<Mood>,
+    /// All that it has acknowledged.
+    taken: RefCell<Vec<Message>>,
+    /// When somebody came.
+    attempts: RefCell<Vec<Instant>>,
+    changed: Notify,
+    start: Instant,
+}
+
+impl Fake {
+    fn new(mood: Mood) -> Self {
+        Self {
+            mood: RefCell::new(mood),
+            taken: RefCell::default(),
+            attempts: RefCell::default(),
+            changed: Notify::new(),
+            start: Instant::now(),
+        }
+    }
+
+    fn becomes(&self, mood: Mood) {
+        self.mood.replace(mood);
+        self.changed.notify_waiters();
+    }
+
+    fn topics(&self) -> Vec<String> {
+        self.taken.borrow().iter().map(|message| message.topic.clone()).collect()
+    }
+
+    /// The places that came in the topic of this robot, in order.
+    fn places(&self, name: &str) -> Vec<f64> {
+        let topic = format!("armctl/{name}/position");
+        let taken = self.taken.borrow();
+        let envelopes = taken.iter().filter(|message| message.topic == topic && !message.payload.is_empty());
+        envelopes
+            .map(|message| serde_json::from_slice::<serde_json::Value>(&message.payload).unwrap())
+            .filter_map(|envelope| envelope["data"]["position"]["x_mm"].as_f64())
+            .collect()
+    }
+}
+
+struct Connection<'a> {
+    fake: &'a Fake,
+    events: VecDeque<Event>,
+    next: u64,
+    pings: u64,
+}
+
+impl<'a> Broker for &'a Fake {
+    type Uplink = Connection<'a>;
+
+    async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
+        assert_eq!((&will.topic[..], &will.payload[..], will.retain), ("armctl/cell7/state", &b"offline"[..], true));
+        self.attempts.borrow_mut().push(Instant::now());
+        let first = match *self.mood.borrow() {
+            Mood::Away => return Err(Loss::Closed),
+            Mood::Distrusted => return Err(Loss::Tls(TlsError::Expired)),
+            Mood::Refuses(code) => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
+            Mood::Works | Mood::Hangs => Event::Connected,
+        };
+        Ok(Connection { fake: self, events: VecDeque::from([first]), next: 1, pings: 0 })
+    }
+}
+
+impl Uplink for Connection<'_> {
+    async fn next(&mut self) -> Event {
+        loop {
+            let changed = self.fake.changed.notified();
+            if *self.fake.mood.borrow() == Mood::Away {
+                return Event::Lost(Loss::Closed);
+            }
+            if let Some(event) = self.events.pop_front() {
+                return event;
+            }
+            changed.await;
+        }
+    }
+
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
+        let id = self.next;
+        self.next += 1;
+        if *self.fake.mood.borrow() == Mood::Works {
+            self.fake.taken.borrow_mut().push(message.clone());
+            self.events.push_back(Event::Acknowledged(id, None));
+        }
+        Ok(Some(id))
+    }
+
+    fn subscribe(&mut self, _: &[String]) -> Result<(), SendError> {
+        Ok(())
+    }
+
+    fn ping(&mut self) -> u64 {
+        self.pings += 1;
+        self.events.push_back(Event::Pong(self.pings));
+        self.pings
+    }
+
+    fn room(&self) -> Option<u16> {
+        None
+    }
+
+    fn unsent(&mut self) -> usize {
+        0
+    }
+
+    async fn close(self) {}
+}
+
+const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
+
+fn plain() -> Box<dyn Speech> {
+    let also: Rc<[Also]> = Rc::from([]);
+    Box::new(Plain::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
+}
+
+/// Runs the pump while `script` hands it what is found; what was said, and what came of it.
+async fn pumped(
+    fake: &Fake,
+    outbox: Outbox,
+    script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
+) -> (Result<Counts, Failure>, Vec<String>) {
+    let said = RefCell::new(Vec::new());
+    let say = |level: u8, text: &str| {
+        if level == 0 {
+            said.borrow_mut().push(text.to_owned());
+        }
+    };
+    let url = "mqtt://broker".parse().unwrap();
+    let (tell, mut found) = mpsc::unbounded_channel();
+    let pump = Pump::new((&fake, &url), plain(), outbox, (&say, Pauses::new(7)), false);
+    let pumped = pump.run(async || found.recv().await, pending());
+    let (counts, ()) = futures_util::future::join(pumped, script(tell)).await;
+    (counts, said.into_inner())
+}
+
+const MEMORY: usize = 1 << 20;
+
+#[tokio::test(start_paused = true)]
+async fn what_changes_is_told_and_what_does_not_is_told_again_in_time() {
+    let fake = Fake::new(Mood::Works);
+    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        let press = robot("press");
+        for x_mm in [1.0, 1.0, 2.0] {
+            tell.send(look(&press, x_mm, &[])).unwrap();
+        }
+        tell.send(silence(&press)).unwrap();
+        tell.send(silence(&press)).unwrap();
+        tell.send(Found::Gone(press)).unwrap();
+    })
+    .await;
+    let kinds = |kinds: [&str; 3]| kinds.map(|kind| format!("armctl/press/{kind}"));
+    let mut expected = vec!["armctl/cell7/state".to_owned()];
+    expected.extend(kinds(["status", "alarms", "position"]));
+    expected.push("armctl/press/position".to_owned());
+    // Silence is said in all of them; of a robot that is no more the broker keeps nothing.
+    expected.extend(kinds(["status", "alarms", "position"]));
+    expected.extend(kinds(["alarms", "position", "status"]));
+    expected.push("armctl/cell7/state".to_owned());
+    assert_eq!(fake.topics(), expected);
+    assert_eq!(fake.places("press"), [1.0, 2.0]);
+    let taken = fake.taken.borrow();
+    assert!(taken.iter().all(|message| message.retain && message.acknowledged));
+    assert_eq!((&taken[0].payload[..], &taken[11].payload[..]), (&b"online"[..], &b"offline"[..]));
+    assert!(taken[8..11].iter().all(|message| message.payload.is_empty()));
+    let silent: serde_json::Value = serde_json::from_slice(&taken[5].payload).unwrap();
+    assert_eq!(
+        (&silent["ok"], &silent["data"]["reachable"], &silent["error"]["kind"]),
+        (&false.into(), &false.into(), &"no_answer".into())
+    );
+    assert_eq!(counts.unwrap(), Counts { published: 10, ..Counts::default() });
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_broker_that_is_gone_for_a_minute_loses_nothing() {
+    let fake = Fake::new(Mood::Works);
+    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        let press = robot("press");
+        for second in 0..90 {
+            match second {
+                15 => fake.becomes(Mood::Away),
+                75 => fake.becomes(Mood::Works),
+                _ => {}
+            }
+            tell.send(look(&press, f64::from(second), &[])).unwrap();
+            sleep(Duration::from_secs(1)).await;
+        }
+    })
+    .await;
+    assert_eq!(fake.places("press"), (0..90).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(counts.unwrap(), Counts { published: 92, reconnects: 1, ..Counts::default() });
+    assert!(said.iter().any(|line| line.contains("is back after") && line.contains("waited for it")), "{said:?}");
+    assert_eq!(said.iter().filter(|line| line.contains("closed the connection")).count(), 1, "{said:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_has_no_room_goes_the_oldest_first_and_is_said() {
+    let folder = TempDir::new().unwrap();
+    let spool = Spool::open(folder.path(), 16 << 10).unwrap();
+    let fake = Fake::new(Mood::Away);
+    let (counts, said) = pumped(&fake, Outbox::new(4096, Some(spool)), async |tell| {
+        let press = robot("press");
+        for second in 0..300 {
+            tell.send(look(&press, f64::from(second), &[])).unwrap();
+        }
+        sleep(Duration::from_secs(10)).await;
+        fake.becomes(Mood::Works);
+    })
+    .await;
+    let counts = counts.unwrap();
+    assert!(counts.dropped > 0 && counts.published > 20 && counts.published + counts.dropped == 302, "{counts:?}");
+    let places = fake.places("press");
+    let first = 300 - places.len();
+    assert_eq!(places, (first..300).map(|at| at as f64).collect::<Vec<_>>());
+    assert!(said.iter().any(|line| line.contains(&format!("{} messages were dropped", counts.dropped))), "{said:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn pauses_grow_up_to_a_minute_and_are_never_the_same() {
+    let fake = Fake::new(Mood::Away);
+    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        sleep(Duration::from_secs(600)).await;
+        fake.becomes(Mood::Works);
+        drop(tell);
+    })
+    .await;
+    counts.unwrap();
+    let attempts = fake.attempts.borrow();
+    let pauses: Vec<f64> = attempts.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64()).collect();
+    assert!((0.7..1.3).contains(&pauses[0]) && (1.4..2.6).contains(&pauses[1]), "{pauses:?}");
+    assert!(pauses[7..].iter().all(|pause| (44.0..76.0).contains(pause)), "{pauses:?}");
+    assert!(pauses[7..].windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-6), "{pauses:?}");
+    assert!(attempts[0] - fake.start < Duration::from_millis(10), "the first one at once");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_broker_that_acknowledges_nothing_is_left() {
+    let fake = Fake::new(Mood::Hangs);
+    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        let press = robot("press");
+        for second in 0..100 {
+            tell.send(look(&press, f64::from(second), &[])).unwrap();
+            sleep(Duration::from_secs(1)).await;
+            if second == 60 {
+                fake.becomes(Mood::Works);
+            }
+        }
+    })
+    .await;
+    assert_eq!(fake.places("press"), (0..100).map(f64::from).collect::<Vec<_>>());
+    assert!(counts.unwrap().reconnects >= 1);
+    assert!(said.iter().any(|line| line.contains("does not answer any more")), "{said:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn what_only_a_person_can_help_ends_it() {
+    for (mood, why) in [
+        (Mood::Refuses(4), "wrong user name or password"),
+        (Mood::Refuses(5), "not authorized"),
+        (Mood::Refuses(1), "this version of MQTT"),
+        (Mood::Distrusted, "expired"),
+    ] {
+        let fake = Fake::new(mood);
+        let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+            let _ = tell.send(look(&robot("press"), 1.0, &[]));
+        })
+        .await;
+        let failure = counts.unwrap_err();
+        assert!(failure.message.contains(why) && failure.hint.is_some(), "{failure:?}");
+        assert_eq!((failure.kind, fake.attempts.borrow().len()), (failure::Kind::Usage, 1));
+    }
+    // One that has taken this client before is asked a few times more.
+    let fake = Fake::new(Mood::Works);
+    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        tell.send(look(&robot("press"), 1.0, &[])).unwrap();
+        sleep(Duration::from_secs(1)).await;
+        fake.becomes(Mood::Away);
+        sleep(Duration::from_millis(10)).await;
+        fake.becomes(Mood::Refuses(5));
+        sleep(Duration::from_secs(600)).await;
+    })
+    .await;
+    assert!(counts.unwrap_err().message.contains("not authorized"));
+    assert_eq!(fake.attempts.borrow().len(), 6);
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_broker_that_is_not_available_is_waited_for() {
+    let fake = Fake::new(Mood::Refuses(3));
+    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        tell.send(look(&robot("press"), 1.0, &[])).unwrap();
+        sleep(Duration::from_secs(60)).await;
+        fake.becomes(Mood::Works);
+    })
+    .await;
+    assert_eq!((counts.unwrap().published, fake.places("press")), (3, vec![1.0]));
+}

@@ -1,0 +1,160 @@
+//! Names as levels of topics.
+//!
+//! A level is the name itself. What has a meaning in topics, or must not be in them, is written as `%` with the hex digits
+//! of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and a `$` at the beginning. So two names are never one
+//! topic, and the name can be read back.
+
+use std::collections::BTreeSet;
+
+use crate::failure::Failure;
+use crate::settings::Robot;
+
+/// The names of robots as levels of topics. Where several have one name, as simulators do, that of the family follows it.
+#[derive(Debug, Clone, Default)]
+pub struct Levels {
+    shared: BTreeSet<String>,
+}
+
+impl Levels {
+    /// Of these robots, and of those to come.
+    pub fn new(robots: &[Robot]) -> Self {
+        let (mut seen, mut shared) = (BTreeSet::new(), BTreeSet::new());
+        for robot in robots {
+            if !seen.insert(&robot.name) {
+                shared.insert(robot.name.clone());
+            }
+        }
+        Self { shared }
+    }
+
+    /// That of a robot.
+    ///
+    /// # Errors
+    /// Its name cannot be one.
+    pub fn of(&self, robot: &Robot) -> Result<String, Failure> {
+        if self.shared.contains(&robot.name) {
+            return level(&format!("{}-{}", robot.name, robot.family));
+        }
+        level(&robot.name)
+    }
+}
+
+/// Longest level, in bytes. A topic can have 65,535 of them, and many brokers take fewer.
+const LONGEST: usize = 200;
+
+/// A name as a level of a topic.
+///
+/// # Errors
+/// It is empty or too long to be one.
+pub fn level(name: &str) -> Result<String, Failure> {
+    let mut level = String::with_capacity(name.len());
+    for (at, c) in name.char_indices() {
+        if matches!(c, '+' | '#' | '/' | '%') || c.is_control() || (at == 0 && c == '$') || is_nothing(c) {
+            let mut bytes = [0; 4];
+            level.extend(c.encode_utf8(&mut bytes).bytes().map(|byte| format!("%{byte:02X}")));
+        } else {
+            level.push(c);
+        }
+    }
+    if level.is_empty() || level.len() > LONGEST {
+        let shown: String = name.chars().take(40).collect();
+        let why = if level.is_empty() { "is empty" } else { "is too long for a topic" };
+        return Err(Failure::usage(format!("the name '{shown}' {why}"))
+            .hint(format!("a name takes 1 to {LONGEST} bytes in a topic; give it another one in robots.toml")));
+    }
+    Ok(level)
+}
+
+/// Code points that are no characters; the standard wants none of them in a topic.
+fn is_nothing(c: char) -> bool {
+    matches!(c, '\u{fdd0}'..='\u{fdef}') || u32::from(c) & 0xfffe == 0xfffe
+}
+
+/// The beginning of all topics: levels with `/` between them, as they are.
+pub fn prefix(text: &str) -> Result<String, String> {
+    if text.is_empty() || text.len() > LONGEST {
+        return Err(format!("a prefix takes 1 to {LONGEST} bytes"));
+    }
+    if text.starts_with('$') {
+        return Err("topics that begin with $ are the broker's own".to_owned());
+    }
+    if text.split('/').any(str::is_empty) {
+        return Err("each level needs a name: armctl, plant/line1".to_owned());
+    }
+    if text.chars().any(|c| matches!(c, '+' | '#') || c.is_control() || is_nothing(c)) {
+        return Err("a prefix has no +, no # and no control characters".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+/// An identifier of Sparkplug: no `+`, no `#`, no `/`.
+pub fn identifier(text: &str) -> Result<String, String> {
+    if text.is_empty() || text.len() > LONGEST {
+        return Err(format!("an identifier takes 1 to {LONGEST} bytes"));
+    }
+    if text.chars().any(|c| matches!(c, '+' | '#' | '/') || c.is_control() || is_nothing(c)) {
+        return Err("an identifier has no +, no #, no / and no control characters".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn odd_names_are_written_so_that_they_can_be_read_back() {
+        for (name, expected) in [
+            ("cell3", "cell3"),
+            ("日本-1.b_c", "日本-1.b_c"),
+            ("/dev/ttyUSB0", "%2Fdev%2FttyUSB0"),
+            ("a+b#c", "a%2Bb%23c"),
+            ("100%", "100%25"),
+            ("$SYS", "%24SYS"),
+            ("a$b", "a$b"),
+            ("a\0\n", "a%00%0A"),
+            ("\u{ffff}", "%EF%BF%BF"),
+        ] {
+            assert_eq!(level(name).unwrap(), expected);
+        }
+        assert!(level("").is_err() && level(&"x".repeat(201)).is_err() && level(&"/".repeat(67)).is_err());
+    }
+
+    #[test]
+    fn prefixes_and_identifiers_are_checked() {
+        assert_eq!(prefix("plant/line 1"), Ok("plant/line 1".to_owned()));
+        for wrong in ["", "/", "a/", "/a", "a//b", "a/+", "#", "$SYS/x", "a\0"] {
+            assert!(prefix(wrong).is_err(), "{wrong:?}");
+        }
+        assert!(identifier("Plant 1").is_ok());
+        for wrong in ["", "a/b", "a+", "#", "a\n"] {
+            assert!(identifier(wrong).is_err(), "{wrong:?}");
+        }
+    }
+
+    /// A level, read back.
+    fn name(level: &str) -> String {
+        let mut bytes = Vec::new();
+        let mut rest = level.bytes();
+        while let Some(byte) = rest.next() {
+            if byte == b'%' {
+                let digits = [rest.next().unwrap(), rest.next().unwrap()];
+                bytes.push(u8::from_str_radix(std::str::from_utf8(&digits).unwrap(), 16).unwrap());
+            } else {
+                bytes.push(byte);
+            }
+        }
+        String::from_utf8(bytes).unwrap()
+    }
+
+    proptest! {
+        #[test]
+        fn no_two_names_are_one_level(text in "\\PC{1,20}|[+#/%$\0-\x1f]{1,9}") {
+            let level = level(&text).unwrap();
+            prop_assert_eq!(name(&level), text);
+            prop_assert!(!level.contains(['+', '#', '/', '\0']) && !level.starts_with('$'));
+        }
+    }
+}

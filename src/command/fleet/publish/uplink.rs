@@ -1,0 +1,51 @@
+//! The connection to a broker: the one place here that sees the transport.
+
+use std::time::Duration;
+
+use super::broker::Broker;
+use super::pump;
+use crate::transport::mqtt::Client;
+pub use crate::transport::mqtt::{
+    Endpoint, Event, Hello, Identity, Loss, Message, Refusal, SendError, Tls, TlsError, Trust, Version, Will,
+};
+
+/// How long a broker has for all of it: connection, certificates, answer.
+const WITHIN: Duration = Duration::from_secs(10);
+
+impl pump::Broker for Broker {
+    type Uplink = Client;
+
+    async fn open(&self, client_id: String, will: Will) -> Result<Client, Loss> {
+        Client::open(&self.endpoint, &self.hello(client_id, will), WITHIN).await
+    }
+}
+
+impl pump::Uplink for Client {
+    async fn next(&mut self) -> Event {
+        Self::next(self).await
+    }
+
+    fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
+        Self::publish(self, message)
+    }
+
+    fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
+        Self::subscribe(self, topics)
+    }
+
+    fn ping(&mut self) -> u64 {
+        Self::ping(self)
+    }
+
+    fn room(&self) -> Option<u16> {
+        Self::room(self)
+    }
+
+    fn unsent(&mut self) -> usize {
+        Self::unsent(self)
+    }
+
+    async fn close(self) {
+        Self::close(self).await;
+    }
+}

@@ -1,0 +1,178 @@
+//! Moves what a session wants moved, over TCP or TLS.
+
+use std::future::poll_fn;
+use std::io;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, ready};
+use std::time::Duration;
+
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::time::{Instant, timeout_at};
+
+use super::super::tcp::{self, ConnectError};
+use super::tls::{Tls, TlsError};
+use super::{Event, Hello, Loss, Message, SendError, Session};
+
+/// Bytes that are read at a time.
+const CHUNK: usize = 16 * 1024;
+/// How long a goodbye may take.
+const GOODBYE: Duration = Duration::from_secs(2);
+
+/// Where a broker is.
+#[derive(Debug, Clone)]
+pub struct Endpoint {
+    /// Name or address.
+    pub host: String,
+    /// Its port.
+    pub port: u16,
+    /// How it is trusted; `None` without TLS.
+    pub tls: Option<Arc<Tls>>,
+}
+
+/// What bytes are moved over.
+trait Duplex: AsyncRead + AsyncWrite + Unpin {}
+
+impl<T: AsyncRead + AsyncWrite + Unpin> Duplex for T {}
+
+/// A connection to a broker.
+pub struct Client {
+    stream: Box<dyn Duplex>,
+    session: Session,
+    buffer: Vec<u8>,
+    is_flushed: bool,
+}
+
+impl Client {
+    /// Connects, and says hello; whether the broker takes the client is the first event. All of it has `within`.
+    ///
+    /// # Errors
+    /// If nobody is reached, or cannot be trusted.
+    pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
+        let by = Instant::now() + within;
+        let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
+        let invalid = |error: SendError| Loss::Io(format!("what is to be said to it: {error}"));
+        let session = Session::new(hello, Instant::now(), by).map_err(invalid)?;
+        Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true })
+    }
+
+    /// Waits for what happens next. It may be dropped at any time. After [`Event::Lost`] nothing happens any more.
+    pub async fn next(&mut self) -> Event {
+        loop {
+            if let Some(event) = self.session.next_event() {
+                return event;
+            }
+            let due = self.session.due();
+            let moved = poll_fn(|cx| self.turn(cx));
+            let moved = match due {
+                Some(due) => timeout_at(due, moved).await,
+                None => Ok(moved.await),
+            };
+            match moved {
+                Ok(Ok(len)) => self.session.handle(Instant::now(), &self.buffer[..len]),
+                Ok(Err(loss)) => self.session.lose(loss),
+                Err(_) => self.session.poll(Instant::now()),
+            }
+        }
+    }
+
+    /// See [`Session::publish`].
+    ///
+    /// # Errors
+    /// Nothing was sent then.
+    pub fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
+        self.session.publish(Instant::now(), message)
+    }
+
+    /// See [`Session::subscribe`].
+    ///
+    /// # Errors
+    /// If a topic is none.
+    pub fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
+        self.session.subscribe(Instant::now(), topics)
+    }
+
+    /// See [`Session::ping`].
+    pub fn ping(&mut self) -> u64 {
+        self.session.ping(Instant::now())
+    }
+
+    /// See [`Session::room`].
+    pub fn room(&self) -> Option<u16> {
+        self.session.room()
+    }
+
+    /// Bytes that the line has not taken yet.
+    pub fn unsent(&mut self) -> usize {
+        self.session.outgoing().len()
+    }
+
+    /// Says goodbye, so that the broker keeps the will to itself, and closes the connection.
+    pub async fn close(mut self) {
+        self.session.disconnect(Instant::now());
+        let gone = poll_fn(|cx| {
+            ready!(self.flush(cx))?;
+            Pin::new(&mut *self.stream).poll_shutdown(cx)
+        });
+        // Nobody waits for a broker that does not listen.
+        let _closed = timeout_at(Instant::now() + GOODBYE, gone).await;
+    }
+
+    /// Writes what is to be written, and reads.
+    fn turn(&mut self, cx: &mut Context<'_>) -> Poll<Result<usize, Loss>> {
+        if let Poll::Ready(Err(error)) = self.flush(cx) {
+            // What the broker said before it closed tells more than that it has.
+            return match self.read(cx) {
+                Poll::Ready(Ok(len)) => Poll::Ready(Ok(len)),
+                _ => Poll::Ready(Err(loss(&error))),
+            };
+        }
+        self.read(cx)
+    }
+
+    fn read(&mut self, cx: &mut Context<'_>) -> Poll<Result<usize, Loss>> {
+        let mut buffer = ReadBuf::new(&mut self.buffer);
+        Poll::Ready(match ready!(Pin::new(&mut *self.stream).poll_read(cx, &mut buffer)) {
+            Ok(()) if buffer.filled().is_empty() => Err(Loss::Closed),
+            Ok(()) => Ok(buffer.filled().len()),
+            Err(error) => Err(loss(&error)),
+        })
+    }
+
+    fn flush(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+        while !self.session.outgoing().is_empty() {
+            self.is_flushed = false;
+            let sent = ready!(Pin::new(&mut *self.stream).poll_write(cx, self.session.outgoing()))?;
+            if sent == 0 {
+                return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
+            }
+            self.session.outgoing().drain(..sent);
+        }
+        if !self.is_flushed {
+            ready!(Pin::new(&mut *self.stream).poll_flush(cx))?;
+            self.is_flushed = true;
+        }
+        Poll::Ready(Ok(()))
+    }
+}
+
+async fn stream(endpoint: &Endpoint) -> Result<Box<dyn Duplex>, Loss> {
+    let stream = tcp::connect(&endpoint.host, endpoint.port).await?;
+    stream.set_nodelay(true).map_err(|error| loss(&error))?;
+    match &endpoint.tls {
+        None => Ok(Box::new(stream)),
+        Some(tls) => Ok(Box::new(tls.connect(stream).await.map_err(Loss::Tls)?)),
+    }
+}
+
+fn loss(error: &io::Error) -> Loss {
+    use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, UnexpectedEof};
+
+    match TlsError::of(error) {
+        Some(error) => Loss::Tls(error),
+        None if matches!(error.kind(), BrokenPipe | ConnectionAborted | ConnectionReset | UnexpectedEof) => {
+            Loss::Closed
+        }
+        None => Loss::Io(super::super::plain(error)),
+    }
+}

@@ -1,0 +1,637 @@
+//! The protocol: time and bytes in, bytes and events out. The packets are those of `mqtt-protocol-core`.
+
+use std::collections::{HashMap, VecDeque};
+use std::fmt;
+use std::time::Duration;
+
+use mqtt_protocol_core::mqtt::common::Cursor;
+use mqtt_protocol_core::mqtt::connection::{self, ConnectionOptions, TimerKind};
+use mqtt_protocol_core::mqtt::packet::{Packet, Properties, Property, Qos, SubEntry, SubOpts, v3_1_1, v5_0};
+use mqtt_protocol_core::mqtt::prelude::*;
+use mqtt_protocol_core::mqtt::result_code::MqttError;
+use mqtt_protocol_core::mqtt::{Connection, Version as Spoken, role};
+use thiserror::Error;
+use tokio::time::Instant;
+
+use super::Loss;
+
+/// Largest packet that is taken from a broker, in bytes: commands and states take a few hundred.
+pub const LARGEST: u32 = 256 * 1024;
+/// Messages with an acknowledgement that a broker may send at a time.
+const RECEIVE_MAXIMUM: u16 = 16;
+/// How long a broker has to answer a ping.
+const PONG_WITHIN: Duration = Duration::from_secs(10);
+/// What a broker begins with (3.1.1, section 3.2.1; 5 the same).
+const CONNACK: u8 = 0x20;
+/// Longest text of a broker that is passed on, in characters.
+const LONGEST_TEXT: usize = 200;
+
+/// Which MQTT.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Version {
+    /// 3.1.1.
+    V3,
+    /// 5.
+    V5,
+}
+
+/// A message.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Its topic.
+    pub topic: String,
+    /// What it says.
+    pub payload: Vec<u8>,
+    /// Whether the broker keeps it for those who come later.
+    pub retain: bool,
+    /// Whether the broker acknowledges it (`QoS` 1), or not (`QoS` 0).
+    pub acknowledged: bool,
+}
+
+impl fmt::Debug for Message {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { topic, payload, retain, acknowledged } = self;
+        write!(f, "{topic}: {} bytes, retain {retain}, acknowledged {acknowledged}", payload.len())
+    }
+}
+
+/// What a broker says for a client that is gone: a message with an acknowledgement.
+pub type Will = Message;
+
+/// What a client says of itself.
+#[derive(Clone)]
+pub struct Hello {
+    /// Which MQTT.
+    pub version: Version,
+    /// Its name, unique at the broker.
+    pub client_id: String,
+    /// Whom the broker knows it as.
+    pub user: Option<String>,
+    /// That it is.
+    pub password: Option<Vec<u8>>,
+    /// Longest silence.
+    pub keep_alive: Duration,
+    /// What the broker says when it is gone.
+    pub will: Option<Will>,
+}
+
+/// Without the password.
+impl fmt::Debug for Hello {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { version, client_id, user, keep_alive, will, .. } = self;
+        write!(f, "{version:?} {client_id}, user {user:?}, keep-alive {keep_alive:?}, will {will:?}")
+    }
+}
+
+/// Why a broker does not take a client.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal {
+    /// Whose codes these are.
+    pub version: Version,
+    /// The return code (3.1.1, section 3.2.2.3) or reason code (5, section 3.2.2.2).
+    pub code: u8,
+    /// What it says about it.
+    pub reason: Option<String>,
+    /// Where to go instead.
+    pub server: Option<String>,
+}
+
+/// What happened.
+#[derive(Debug)]
+pub enum Event {
+    /// The broker took the client.
+    Connected,
+    /// It did not.
+    Refused(Refusal),
+    /// The message of this number is the broker's. Or it does not take it, and this is the code.
+    Acknowledged(u64, Option<u8>),
+    /// A subscription is there, or it is refused.
+    Subscribed(bool),
+    /// The broker answered the ping of this number: all that went before that has arrived.
+    Pong(u64),
+    /// A message came.
+    Message(Message),
+    /// The connection is at its end.
+    Lost(Loss),
+}
+
+/// Why a message does not leave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum SendError {
+    /// The broker takes no packets of this size.
+    #[error("the broker takes no message of this size")]
+    TooLarge,
+    /// It cannot be said in MQTT: a topic that is none.
+    #[error("it cannot be said in MQTT")]
+    Invalid,
+}
+
+impl From<MqttError> for SendError {
+    fn from(error: MqttError) -> Self {
+        if error == MqttError::PacketTooLarge { Self::TooLarge } else { Self::Invalid }
+    }
+}
+
+/// A connection, from CONNECT to its end. It is not used again.
+pub struct Session {
+    inner: Connection<role::Client>,
+    version: Version,
+    outgoing: Vec<u8>,
+    events: VecDeque<Event>,
+    timers: Vec<(TimerKind, Instant)>,
+    /// Messages under way by their packet identifiers, with numbers of their own: an identifier is used again as soon as it
+    /// is acknowledged, and events may wait to be taken.
+    under_way: HashMap<u16, u64>,
+    published: u64,
+    answer_by: Option<Instant>,
+    /// How many pings have left, and were answered.
+    pings: u64,
+    pongs: u64,
+    has_heard: bool,
+    is_over: bool,
+}
+
+impl Session {
+    /// Says hello; the broker has to answer until `answer_by`.
+    ///
+    /// # Errors
+    /// If what it says is none in MQTT: a name of more than 65,535 bytes, or with NUL.
+    pub fn new(hello: &Hello, now: Instant, answer_by: Instant) -> Result<Self, SendError> {
+        let spoken = match hello.version {
+            Version::V3 => Spoken::V3_1_1,
+            Version::V5 => Spoken::V5_0,
+        };
+        let options = ConnectionOptions::new().maximum_packet_size_recv(LARGEST).receive_maximum(RECEIVE_MAXIMUM);
+        let mut inner = Connection::with_options(spoken, options);
+        inner.set_auto_pub_response(true);
+        inner.set_pingresp_recv_timeout(u64::try_from(PONG_WITHIN.as_millis()).unwrap_or(u64::MAX));
+        let mut session = Self {
+            inner,
+            version: hello.version,
+            outgoing: Vec::new(),
+            events: VecDeque::new(),
+            timers: Vec::new(),
+            under_way: HashMap::new(),
+            published: 0,
+            answer_by: Some(answer_by),
+            pings: 0,
+            pongs: 0,
+            has_heard: false,
+            is_over: false,
+        };
+        session.send(now, connect(hello)?)?;
+        Ok(session)
+    }
+
+    /// What happened next.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front()
+    }
+
+    /// What is to be sent; whoever has sent some of it takes that away.
+    pub fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.outgoing
+    }
+
+    /// When it wants to be polled next.
+    pub fn due(&self) -> Option<Instant> {
+        self.timers.iter().map(|(_, at)| *at).chain(self.answer_by).min()
+    }
+
+    /// Does what is due.
+    pub fn poll(&mut self, now: Instant) {
+        if self.answer_by.is_some_and(|by| by <= now) {
+            self.lose(Loss::Unanswered);
+        }
+        while let Some(at) = self.timers.iter().position(|(_, at)| *at <= now).filter(|_| !self.is_over) {
+            let (kind, _) = self.timers.swap_remove(at);
+            if matches!(kind, TimerKind::PingrespRecv | TimerKind::PingreqRecv) {
+                self.lose(Loss::Silent);
+            } else {
+                let events = self.inner.notify_timer_fired(kind);
+                self.take(now, events);
+            }
+        }
+    }
+
+    /// Takes bytes from the broker.
+    pub fn handle(&mut self, now: Instant, bytes: &[u8]) {
+        // Whoever speaks something else is waited for in vain.
+        if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
+            && *first != CONNACK
+        {
+            return self.lose(Loss::Garbage(format!("it begins with 0x{first:02X}")));
+        }
+        let mut cursor = Cursor::new(bytes);
+        let end = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
+        while !self.is_over && cursor.position() < end {
+            let before = cursor.position();
+            let events = self.inner.recv(&mut cursor);
+            self.take(now, events);
+            if cursor.position() == before {
+                break;
+            }
+        }
+    }
+
+    /// The connection is gone.
+    pub fn lose(&mut self, loss: Loss) {
+        if !std::mem::replace(&mut self.is_over, true) {
+            self.timers.clear();
+            self.answer_by = None;
+            self.events.push_back(Event::Lost(loss));
+        }
+    }
+
+    /// How many more messages with an acknowledgement the broker takes at present, if it has said so.
+    pub fn room(&self) -> Option<u16> {
+        self.inner.get_receive_maximum_vacancy_for_send()
+    }
+
+    /// Sends a message; says the number that its acknowledgement will have, if it gets one.
+    ///
+    /// # Errors
+    /// Nothing was sent then.
+    pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u64>, SendError> {
+        let Message { topic, payload, retain, acknowledged } = message;
+        // The standard forbids it (section 1.5.4), and some brokers end the connection.
+        if topic.is_empty() || topic.contains('\0') {
+            return Err(SendError::Invalid);
+        }
+        let id = if *acknowledged { Some(self.inner.acquire_packet_id()?) } else { None };
+        let qos = if *acknowledged { Qos::AtLeastOnce } else { Qos::AtMostOnce };
+        let built: Result<Packet, MqttError> = match self.version {
+            Version::V3 => v3_1_1::Publish::builder().topic_name(topic.as_str()).and_then(|builder| {
+                let packet = builder.qos(qos).retain(*retain).packet_id(id).payload(payload.as_slice()).build()?;
+                Ok(packet.into())
+            }),
+            Version::V5 => v5_0::Publish::builder().topic_name(topic.as_str()).and_then(|builder| {
+                let packet = builder.qos(qos).retain(*retain).packet_id(id).payload(payload.as_slice()).build()?;
+                Ok(packet.into())
+            }),
+        };
+        let sent = built.map_err(SendError::from).and_then(|packet| self.send(now, packet));
+        if sent.is_err()
+            && let Some(id) = id
+        {
+            let events = self.inner.release_packet_id(id);
+            self.take(now, events);
+        }
+        sent?;
+        Ok(id.map(|id| {
+            self.published += 1;
+            self.under_way.insert(id, self.published);
+            self.published
+        }))
+    }
+
+    /// Wants the messages of these topics.
+    ///
+    /// # Errors
+    /// If one is none.
+    pub fn subscribe(&mut self, now: Instant, topics: &[String]) -> Result<(), SendError> {
+        let entry = |topic: &String| SubEntry::new(topic.as_str(), SubOpts::new().set_qos(Qos::AtLeastOnce));
+        let entries = topics.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
+        let id = self.inner.acquire_packet_id()?;
+        let packet: Packet = match self.version {
+            Version::V3 => v3_1_1::Subscribe::builder().packet_id(id).entries(entries).build()?.into(),
+            Version::V5 => v5_0::Subscribe::builder().packet_id(id).entries(entries).build()?.into(),
+        };
+        self.send(now, packet)
+    }
+
+    /// Asks whether all has arrived so far; says the number of the ping.
+    pub fn ping(&mut self, now: Instant) -> u64 {
+        let packet: Result<Packet, MqttError> = match self.version {
+            Version::V3 => v3_1_1::Pingreq::builder().build().map(Into::into),
+            Version::V5 => v5_0::Pingreq::builder().build().map(Into::into),
+        };
+        // A ping has nothing in it that could be wrong, and what has no room is no ping.
+        let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
+        self.pings
+    }
+
+    /// Says goodbye: the broker keeps the will to itself.
+    pub fn disconnect(&mut self, now: Instant) {
+        let packet: Result<Packet, MqttError> = match self.version {
+            Version::V3 => v3_1_1::Disconnect::builder().build().map(Into::into),
+            Version::V5 => v5_0::Disconnect::builder().build().map(Into::into),
+        };
+        // As with a ping; the end of the connection follows in any case.
+        let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
+        self.timers.clear();
+    }
+
+    fn send(&mut self, now: Instant, packet: Packet) -> Result<(), SendError> {
+        let events = self.inner.send(packet);
+        let refused = events.iter().find_map(|event| match event {
+            connection::Event::NotifyError(error) => Some(SendError::from(*error)),
+            _ => None,
+        });
+        let events = events.into_iter().filter(|event| !matches!(event, connection::Event::NotifyError(_)));
+        self.take(now, events.collect());
+        refused.map_or(Ok(()), Err)
+    }
+
+    fn take(&mut self, now: Instant, events: Vec<connection::Event>) {
+        let mut closes = false;
+        for event in events {
+            match event {
+                connection::Event::RequestSendPacket { packet, .. } => {
+                    if matches!(packet, Packet::V3_1_1Pingreq(_) | Packet::V5_0Pingreq(_)) {
+                        self.pings += 1;
+                    }
+                    self.outgoing.extend(packet.to_continuous_buffer());
+                }
+                connection::Event::NotifyPacketReceived(packet) => self.receive(packet),
+                connection::Event::RequestTimerReset { kind, duration_ms } => {
+                    self.timers.retain(|(other, _)| *other != kind);
+                    self.timers.push((kind, now + Duration::from_millis(duration_ms)));
+                }
+                connection::Event::RequestTimerCancel(kind) => self.timers.retain(|(other, _)| *other != kind),
+                connection::Event::NotifyError(MqttError::PacketTooLarge) => self.lose(Loss::TooLarge),
+                connection::Event::NotifyError(error) => self.lose(Loss::Garbage(error.to_string())),
+                connection::Event::RequestClose => closes = true,
+                connection::Event::NotifyPacketIdReleased(_) => {}
+            }
+        }
+        // Why comes behind it, where there is a why.
+        if closes {
+            self.lose(Loss::Garbage("it breaks the protocol".to_owned()));
+        }
+    }
+
+    fn receive(&mut self, packet: Packet) {
+        let event = match packet {
+            Packet::V3_1_1Connack(connack) => {
+                self.answer_by = None;
+                match connack.return_code() as u8 {
+                    0 => Event::Connected,
+                    code => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
+                }
+            }
+            Packet::V5_0Connack(connack) => {
+                self.answer_by = None;
+                match connack.reason_code() as u8 {
+                    0 => Event::Connected,
+                    code => {
+                        let (reason, server) = texts(connack.props());
+                        Event::Refused(Refusal { version: Version::V5, code, reason, server })
+                    }
+                }
+            }
+            Packet::V3_1_1Puback(puback) => match self.under_way.remove(&puback.packet_id()) {
+                Some(number) => Event::Acknowledged(number, None),
+                None => return,
+            },
+            Packet::V5_0Puback(puback) => {
+                let code = puback.reason_code().map_or(0, |code| code as u8);
+                match self.under_way.remove(&puback.packet_id()) {
+                    Some(number) => Event::Acknowledged(number, (code >= 0x80).then_some(code)),
+                    None => return,
+                }
+            }
+            Packet::V3_1_1Suback(suback) => {
+                Event::Subscribed(suback.return_codes().iter().all(|code| (*code as u8) < 0x80))
+            }
+            Packet::V5_0Suback(suback) => {
+                Event::Subscribed(suback.reason_codes().iter().all(|code| (*code as u8) < 0x80))
+            }
+            Packet::V3_1_1Publish(publish) => Event::Message(Message {
+                topic: publish.topic_name().to_owned(),
+                payload: publish.payload().as_slice().to_vec(),
+                retain: publish.retain(),
+                acknowledged: publish.qos() != Qos::AtMostOnce,
+            }),
+            Packet::V5_0Publish(publish) => Event::Message(Message {
+                topic: publish.topic_name().to_owned(),
+                payload: publish.payload().as_slice().to_vec(),
+                retain: publish.retain(),
+                acknowledged: publish.qos() != Qos::AtMostOnce,
+            }),
+            Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => {
+                // One that answers no ping says nothing.
+                self.pongs = self.pings.min(self.pongs + 1);
+                Event::Pong(self.pongs)
+            }
+            Packet::V5_0Disconnect(disconnect) => {
+                let code = disconnect.reason_code().map_or(0, |code| code as u8);
+                let reason = disconnect.props().as_ref().and_then(|props| texts(props).0);
+                return self.lose(Loss::Goodbye { code, reason });
+            }
+            // Answers to what is never sent from here.
+            _ => return,
+        };
+        self.events.push_back(event);
+    }
+}
+
+fn connect(hello: &Hello) -> Result<Packet, MqttError> {
+    let Hello { version, client_id, user, password, keep_alive, will } = hello;
+    let seconds = u16::try_from(keep_alive.as_secs()).unwrap_or(u16::MAX);
+    // Both kinds of packets have the same builder, of different types.
+    macro_rules! build {
+        ($connect:path) => {{
+            let mut builder =
+                <$connect>::builder().client_id(client_id.as_str())?.clean_start(true).keep_alive(seconds);
+            if let Some(Message { topic, payload, retain, .. }) = will {
+                builder = builder.will_message(topic.as_str(), payload.clone(), Qos::AtLeastOnce, *retain)?;
+            }
+            if let Some(user) = user {
+                builder = builder.user_name(user.as_str())?;
+            }
+            if let Some(password) = password {
+                builder = builder.password(password.clone())?;
+            }
+            builder.build()?.into()
+        }};
+    }
+    Ok(match version {
+        Version::V3 => build!(v3_1_1::Connect),
+        Version::V5 => build!(v5_0::Connect),
+    })
+}
+
+/// What a broker says in words, and where it sends clients.
+fn texts(properties: &Properties) -> (Option<String>, Option<String>) {
+    let mut found = (None, None);
+    for property in properties {
+        match property {
+            Property::ReasonString(reason) => found.0 = Some(cut(reason.val())),
+            Property::ServerReference(server) => found.1 = Some(cut(server.val())),
+            _ => {}
+        }
+    }
+    found
+}
+
+fn cut(text: &str) -> String {
+    text.chars().take(LONGEST_TEXT).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn hello(version: Version) -> Hello {
+        Hello {
+            version,
+            client_id: "cell7".to_owned(),
+            user: Some("plant".to_owned()),
+            password: Some(b"secret".to_vec()),
+            keep_alive: Duration::from_secs(30),
+            will: Some(Message {
+                topic: "armctl/cell7/state".to_owned(),
+                payload: b"offline".to_vec(),
+                retain: true,
+                acknowledged: true,
+            }),
+        }
+    }
+
+    fn started(version: Version) -> (Session, Instant) {
+        let now = Instant::now();
+        (Session::new(&hello(version), now, now + Duration::from_secs(10)).unwrap(), now)
+    }
+
+    fn connected(version: Version) -> (Session, Instant) {
+        let (mut session, now) = started(version);
+        session.outgoing().clear();
+        session.handle(now, if version == Version::V3 { &[0x20, 2, 0, 0] } else { &[0x20, 3, 0, 0, 0] });
+        assert!(matches!(session.next_event(), Some(Event::Connected)));
+        (session, now)
+    }
+
+    fn message(acknowledged: bool) -> Message {
+        Message { topic: "a/b".to_owned(), payload: b"x".to_vec(), retain: true, acknowledged }
+    }
+
+    #[test]
+    fn hello_is_as_the_standard_has_it() {
+        // MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 kept, user name and password.
+        let (mut session, _) = started(Version::V3);
+        let fields = [&b"cell7"[..], b"armctl/cell7/state", b"offline", b"plant", b"secret"];
+        let mut expected = vec![0x10, 0, 0, 4];
+        expected.extend(b"MQTT");
+        expected.extend([4, 0b1110_1110, 0, 30]);
+        for field in fields {
+            expected.extend(u16::try_from(field.len()).unwrap().to_be_bytes());
+            expected.extend(field);
+        }
+        expected[1] = u8::try_from(expected.len() - 2).unwrap();
+        assert_eq!(*session.outgoing(), expected);
+        let shown = format!("{:?}", hello(Version::V5));
+        assert!(!shown.contains("secret") && shown.contains("plant"), "{shown}");
+    }
+
+    #[test]
+    fn a_message_is_acknowledged_by_its_number() {
+        for version in [Version::V3, Version::V5] {
+            let (mut session, now) = connected(version);
+            let numbers = [(); 2].map(|()| session.publish(now, &message(true)).unwrap().unwrap());
+            assert_eq!(session.outgoing()[0], 0x33, "PUBLISH with QoS 1, kept");
+            // Both at once; their identifiers are free again before anybody has taken the events.
+            session.handle(now, &[0x40, 2, 0, 1, 0x40, 2, 0, 2]);
+            let third = session.publish(now, &message(true)).unwrap().unwrap();
+            let mut acknowledged = Vec::new();
+            while let Some(Event::Acknowledged(number, None)) = session.next_event() {
+                acknowledged.push(number);
+            }
+            assert_eq!(acknowledged, numbers);
+            assert!(!numbers.contains(&third));
+            assert_eq!(session.publish(now, &message(false)), Ok(None));
+        }
+        // MQTT 5 can say no: not authorized. And that nobody listens, which is no refusal.
+        let (mut session, now) = connected(Version::V5);
+        session.publish(now, &message(true)).unwrap();
+        session.handle(now, &[0x40, 3, 0, 1, 0x87]);
+        assert!(matches!(session.next_event(), Some(Event::Acknowledged(1, Some(0x87)))));
+        session.publish(now, &message(true)).unwrap();
+        session.handle(now, &[0x40, 3, 0, 1, 0x10]);
+        assert!(matches!(session.next_event(), Some(Event::Acknowledged(2, None))));
+    }
+
+    #[test]
+    fn a_refusal_has_its_code_and_its_words() {
+        let (mut session, now) = started(Version::V3);
+        session.handle(now, &[0x20, 2, 0, 5]);
+        assert!(matches!(session.next_event(), Some(Event::Refused(Refusal { code: 5, .. }))));
+        let (mut session, now) = started(Version::V5);
+        session.handle(now, &[0x20, 8, 0, 0x87, 5, 0x1f, 0, 2, b'n', b'o']);
+        let Some(Event::Refused(refusal)) = session.next_event() else { panic!("no refusal") };
+        assert_eq!((refusal.code, refusal.reason.as_deref()), (0x87, Some("no")));
+    }
+
+    #[test]
+    fn a_broker_that_hangs_is_noticed() {
+        let (mut session, now) = started(Version::V5);
+        assert_eq!(session.due(), Some(now + Duration::from_secs(10)));
+        session.poll(now + Duration::from_secs(10));
+        assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Unanswered))));
+        let (mut session, now) = connected(Version::V3);
+        let ping = session.due().expect("a ping is due");
+        assert!(ping <= now + Duration::from_secs(30));
+        session.poll(ping);
+        assert!(session.outgoing().ends_with(&[0xc0, 0]), "{:?}", session.outgoing());
+        session.poll(ping + PONG_WITHIN);
+        assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Silent))));
+    }
+
+    #[test]
+    fn what_is_too_large_or_makes_no_sense_ends_it() {
+        let (mut session, now) = connected(Version::V3);
+        // A PUBLISH that announces 256 MB.
+        session.handle(now, &[0x30, 0xff, 0xff, 0xff, 0x7f, 1, 2, 3]);
+        assert!(matches!(session.next_event(), Some(Event::Lost(Loss::TooLarge))));
+        let (mut session, now) = started(Version::V5);
+        session.handle(now, b"HTTP/1.1 400 Bad Request\r\n\r\n");
+        assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Garbage(_)))));
+        let (mut session, now) = connected(Version::V5);
+        session.handle(now, &[0xe0, 1, 0x8e]);
+        let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
+        assert!(loss.is_takeover() && loss.to_string().contains("another client"), "{loss}");
+    }
+
+    #[test]
+    fn topics_that_are_none_do_not_leave() {
+        let (mut session, now) = connected(Version::V5);
+        session.outgoing().clear();
+        for topic in ["", "a/+/b", "a/#", "a\0b"] {
+            let message = Message { topic: topic.to_owned(), ..message(true) };
+            assert_eq!(session.publish(now, &message), Err(SendError::Invalid), "{topic:?}");
+        }
+        assert!(session.outgoing().is_empty() && session.next_event().is_none());
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(chunks in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..64), 0..8), is_five: bool, is_open: bool) {
+            let version = if is_five { Version::V5 } else { Version::V3 };
+            let (mut session, now) = if is_open { connected(version) } else { started(version) };
+            if is_open {
+                session.publish(now, &message(true)).unwrap();
+            }
+            for chunk in chunks {
+                session.handle(now, &chunk);
+                while session.next_event().is_some() {}
+            }
+        }
+
+        #[test]
+        fn no_packets_make_it_panic(kind in 0_u8..16, flags in 0_u8..16, body in prop::collection::vec(any::<u8>(), 0..127), is_five: bool, is_open: bool) {
+            let version = if is_five { Version::V5 } else { Version::V3 };
+            let (mut session, now) = if is_open { connected(version) } else { started(version) };
+            if is_open {
+                session.publish(now, &message(true)).unwrap();
+                session.subscribe(now, &["a/#".to_owned()]).unwrap();
+            }
+            let mut packet = vec![kind << 4 | flags, u8::try_from(body.len()).unwrap()];
+            packet.extend(body);
+            session.handle(now, &packet);
+            session.handle(now, &packet);
+            session.poll(now + Duration::from_secs(3600));
+        }
+    }
+}

@@ -1,0 +1,350 @@
+//! `armctl publish` against a real broker, and against brokers that are none. What is waited for is a condition, never a
+//! time.
+#![cfg(all(unix, feature = "plant"))]
+
+mod broker;
+mod sparkplug;
+mod tls;
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Child, ChildStderr, Command, Output, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use self::broker::{ABSENT, Mosquitto, hostile};
+use crate::support::schemas;
+
+/// A user with an inventory.
+pub struct Desk {
+    pub folder: TempDir,
+}
+
+impl Desk {
+    pub fn new(robots: &[(&str, &str, &str)]) -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        desk.write(robots);
+        desk
+    }
+
+    pub fn write(&self, robots: &[(&str, &str, &str)]) {
+        let entry = |(name, family, target): &(&str, &str, &str)| {
+            format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
+        };
+        std::fs::write(self.folder.path().join("robots.toml"), robots.iter().map(entry).collect::<String>()).unwrap();
+    }
+
+    pub fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path());
+        command.env("ARMCTL_CONFIG", self.folder.path().join("robots.toml")).stdin(Stdio::null()).args(words);
+        command
+    }
+
+    pub fn run(&self, words: &[&str]) -> Output {
+        self.command(words).output().unwrap()
+    }
+}
+
+pub fn fleet() -> Desk {
+    Desk::new(&[("press", "yerc", "sim:"), ("loader", "toyo", "sim:"), ("picker", "yrcx", "sim:")])
+}
+
+/// A publisher, as long as it is wanted.
+pub struct Publisher {
+    process: Child,
+    stderr: BufReader<ChildStderr>,
+}
+
+impl Publisher {
+    pub fn start(mut command: Command) -> Self {
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let stderr = BufReader::new(process.stderr.take().unwrap());
+        Self { process, stderr }
+    }
+
+    /// Waits until it has said this.
+    pub fn says(&mut self, part: &str) {
+        let mut line = String::new();
+        while !line.contains(part) {
+            line.clear();
+            assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{part}'");
+        }
+    }
+
+    pub fn signal(&self, signal: &str) {
+        assert!(Command::new("kill").args([signal, &self.process.id().to_string()]).status().unwrap().success());
+    }
+
+    /// Waits for its end: its exit code, and its report.
+    pub fn end(mut self) -> (Option<i32>, Value) {
+        let (mut report, mut said) = (String::new(), String::new());
+        self.process.stdout.take().unwrap().read_to_string(&mut report).unwrap();
+        self.stderr.read_to_string(&mut said).unwrap();
+        let code = self.process.wait().unwrap().code();
+        (code, serde_json::from_str(&report).unwrap_or_default())
+    }
+}
+
+impl Drop for Publisher {
+    fn drop(&mut self) {
+        self.process.kill().unwrap_or_default();
+        let _ended = self.process.wait();
+    }
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn every_robot_has_a_topic_for_each_kind_with_an_envelope() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::start();
+    for protocol in ["5", "3.1.1"] {
+        let prefix = format!("plant/{}", protocol.replace('.', "-"));
+        let also = ["--also", "parts=yerc var get B0..B2", "--also", "toyo counter get 1"];
+        let words = ["publish", &broker.url(), "--count", "1", "--json", "--node", "cell7", "--prefix", &prefix];
+        let output = fleet().run(&[&words[..], &also, &["--protocol", protocol]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        schemas::check(&report).unwrap();
+        let counts =
+            ["robots", "published", "refused", "dropped", "undelivered"].map(|name| report["data"][name].as_u64());
+        assert_eq!(counts, [Some(3), Some(11), Some(0), Some(0), Some(0)]);
+        let mut listener = broker.listen(&format!("{prefix}/#"));
+        let mut topics = Vec::new();
+        for _ in 0..12 {
+            let heard = listener.next();
+            assert!(heard.is_kept, "{heard:?}");
+            topics.push(heard.topic.strip_prefix(&format!("{prefix}/")).unwrap().to_owned());
+            if heard.topic.ends_with("/state") {
+                assert_eq!(heard.payload, "offline");
+                continue;
+            }
+            let envelope: Value = serde_json::from_str(&heard.payload).unwrap();
+            schemas::check(&envelope).unwrap_or_else(|why| panic!("{why}: {envelope}"));
+            assert!(envelope["ok"] == true && envelope["time"].is_string() && envelope["simulated"] == true);
+        }
+        topics.sort();
+        let expected = [
+            "cell7/state",
+            "loader/alarms",
+            "loader/counter-get-1",
+            "loader/position",
+            "loader/status",
+            "picker/alarms",
+            "picker/position",
+            "picker/status",
+            "press/alarms",
+            "press/parts",
+            "press/position",
+            "press/status",
+        ];
+        assert_eq!(topics, expected);
+    }
+}
+
+#[test]
+fn the_last_will_tells_of_every_way_out() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::start();
+    let (desk, url) = (fleet(), broker.url());
+    let mut listener = broker.listen("armctl/cell7/state");
+    for (signal, code) in [("-TERM", Some(0)), ("-INT", Some(0)), ("-KILL", None)] {
+        let publisher = Publisher::start(desk.command(&["publish", &url, "--node", "cell7", "--json"]));
+        listener.until("armctl/cell7/state", |state| state == "online");
+        publisher.signal(signal);
+        listener.until("armctl/cell7/state", |state| state == "offline");
+        assert_eq!(publisher.end().0, code, "{signal}");
+    }
+}
+
+#[test]
+fn a_broker_that_comes_back_is_told_what_it_missed_in_order() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let mut broker = Mosquitto::start();
+    let (desk, url) = (fleet(), broker.url());
+    // What does not change is told at every look.
+    let words =
+        ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
+    let mut publisher = Publisher::start(desk.command(&words));
+    publisher.says("connected to");
+    broker.listen("armctl/press/status").next();
+    let time = |payload: &str| {
+        let envelope: Value = serde_json::from_str(payload).unwrap();
+        envelope["time"].as_str().unwrap().parse::<jiff::Timestamp>().unwrap()
+    };
+    loop {
+        broker.kill();
+        publisher.says("trying again");
+        broker.start_again();
+        let mut listener = broker.listen("armctl/press/status");
+        let back = jiff::Timestamp::now();
+        publisher.says("is back after");
+        let mut times = vec![time(&listener.next().payload)];
+        while times.last().is_none_or(|last| *last < back) {
+            times.push(time(&listener.next().payload));
+        }
+        assert!(times.is_sorted(), "{times:?}");
+        // Where the publisher was there before who listens, what waited has passed.
+        if times.iter().filter(|time| **time < back).count() > 1 {
+            break;
+        }
+    }
+    publisher.signal("-TERM");
+    let (code, report) = publisher.end();
+    let data = &report["data"];
+    assert_eq!((code, &data["dropped"], &data["undelivered"]), (Some(0), &0.into(), &0.into()), "{report}");
+    assert!(data["reconnects"].as_u64() >= Some(1), "{report}");
+}
+
+#[test]
+fn what_waits_outlives_the_process() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let mut broker = Mosquitto::start();
+    let (desk, url) = (fleet(), broker.url());
+    broker.kill();
+    let words =
+        ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
+    let mut publisher = Publisher::start(desk.command(&[&words[..], &["-v"]].concat()));
+    publisher.says("trying again");
+    // A second later there are looks.
+    publisher.says("trying again");
+    publisher.signal("-TERM");
+    publisher.says("kept on disk");
+    let (code, report) = publisher.end();
+    assert_eq!((code, &report["data"]["published"]), (Some(0), &0.into()));
+    let ended = jiff::Timestamp::now();
+    broker.start_again();
+    let mut listener = broker.listen("armctl/+/status");
+    let output = desk.run(&["publish", &url, "--node", "cell7", "--count", "1", "--kinds", "status"]);
+    assert!(stderr(&output).contains("on disk waited for it"), "{}", stderr(&output));
+    let envelope: Value = serde_json::from_str(&listener.next().payload).unwrap();
+    assert!(envelope["time"].as_str().unwrap().parse::<jiff::Timestamp>().unwrap() < ended);
+}
+
+#[test]
+fn a_robot_that_goes_is_forgotten_by_the_broker() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::start();
+    let desk = fleet();
+    let mut listener = broker.listen("armctl/+/status");
+    let publisher = Publisher::start(desk.command(&["publish", &broker.url(), "--watch", "50ms"]));
+    listener.until("armctl/press/status", |payload| !payload.is_empty());
+    desk.write(&[("loader", "toyo", "sim:")]);
+    listener.until("armctl/press/status", str::is_empty);
+    drop(publisher);
+}
+
+#[test]
+fn odd_names_are_levels_of_topics() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::start();
+    let desk = Desk::new(&[]);
+    // Nobody is there; the name is that of the port.
+    let words = [
+        "-t",
+        "serial:///dev/no+such#port",
+        "publish",
+        &broker.url(),
+        "--count",
+        "1",
+        "--node",
+        "a/b#c",
+        "--kinds",
+        "status",
+    ];
+    let output = desk.run(&words);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let mut listener = broker.listen("armctl/#");
+    let mut topics = [listener.next().topic, listener.next().topic];
+    topics.sort();
+    assert_eq!(topics, ["armctl/a%2Fb%23c/state", "armctl/no%2Bsuch%23port/status"]);
+}
+
+#[test]
+fn a_user_needs_the_right_password_and_nobody_sees_it() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::with("allow_anonymous false\npassword_file FOLDER/passwords\n", |folder| {
+        let file = folder.join("passwords");
+        let mut command = Command::new("mosquitto_passwd");
+        command.args(["-b", "-c"]).arg(&file).args(["plant", "hunter2"]).stderr(Stdio::null());
+        assert!(command.status().unwrap().success());
+    });
+    let (desk, url) = (fleet(), broker.url());
+    let publish = ["publish", &url[..], "--user", "plant", "--count", "1", "-vvv", "--kinds", "status"];
+    for protocol in ["5", "3.1.1"] {
+        let words = [&publish[..], &["--protocol", protocol]].concat();
+        let mut right = desk.command(&words);
+        let right = right.env("ARMCTL_MQTT_PASSWORD", "hunter2").output().unwrap();
+        assert!(right.status.success(), "{}", stderr(&right));
+        let mut wrong = desk.command(&words);
+        let wrong = wrong.env("ARMCTL_MQTT_PASSWORD", "hunter3").output().unwrap();
+        assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
+        assert!(stderr(&wrong).contains("check --user and the password"), "{}", stderr(&wrong));
+        for output in [&right, &wrong] {
+            assert!(!stderr(output).contains("hunter") && !String::from_utf8_lossy(&output.stdout).contains("hunter"));
+        }
+    }
+    let file = desk.folder.path().join("password");
+    std::fs::write(&file, "hunter2\n").unwrap();
+    let words = [&publish[..], &["--password-file", file.to_str().unwrap()]].concat();
+    assert!(desk.run(&words).status.success());
+    // A password in the URL would be there for everybody to see.
+    let output = desk.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(said.contains("--password-file") && said.matches("hunter2").count() <= 1, "{said}");
+}
+
+#[test]
+fn brokers_that_are_none_are_told_in_words() {
+    let desk = fleet();
+    for (answer, closes, code, why) in [
+        (&[0x20, 2, 0, 5][..], false, 2, "not authorized to connect"),
+        (&[0x20, 2, 0, 2], false, 2, "does not accept the name of this client"),
+        (&[0x20, 2, 0, 3], false, 4, "not available at present"),
+        (&[0x20, 2, 0, 77], false, 4, "not MQTT"),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", false, 4, "not MQTT"),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", true, 4, "not MQTT"),
+        (&[0x30, 3, 0, 1, b'a'], false, 4, "not MQTT"),
+        (&[0x20, 0xff, 0xff, 0xff, 0x7f, 0, 0], false, 4, "packet of more than"),
+        (&[0x20, 2, 0, 0, 0x30, 0xff, 0xff, 0xff, 0x7f], false, 4, "packet of more than"),
+        (&[], true, 4, "closed the connection"),
+    ] {
+        let url = hostile(answer, closes);
+        let output = desk.run(&["publish", &url, "--count", "1", "--protocol", "3.1.1", "--kinds", "status"]);
+        let said = stderr(&output);
+        assert!(said.contains(why) && said.contains("hint:"), "{why}: {said}");
+        assert_eq!(output.status.code(), Some(code), "{why}: {said}");
+    }
+}
+
+#[test]
+fn two_publishers_of_one_name_are_told_apart_at_once() {
+    if !broker::is_there() {
+        return eprintln!("{ABSENT}");
+    }
+    let broker = Mosquitto::start();
+    let (desk, url) = (fleet(), broker.url());
+    let mut first = Publisher::start(desk.command(&["publish", &url, "--node", "cell7"]));
+    first.says("connected to");
+    let output = desk.run(&["publish", &url, "--node", "cell7", "--count", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("another armctl publishes as 'cell7'"), "{}", stderr(&output));
+}

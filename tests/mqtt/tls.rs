@@ -1,0 +1,92 @@
+//! TLS with certificates that are right, and with those that are wrong. `openssl` makes them.
+#![cfg(feature = "plant-tls")]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::broker::{self, ABSENT, Mosquitto};
+use super::{Desk, fleet, stderr};
+
+fn has_openssl() -> bool {
+    Command::new("openssl").arg("version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
+}
+
+/// An authority, and certificates that it signed: of the broker, of a client, of a broker elsewhere.
+fn certificates(folder: &Path) {
+    let script = r#"
+set -e
+request() { openssl req -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -subj "/CN=$1" "${@:2}"; }
+authority() { request "$1" -x509 -days 3 -keyout "$1.key" -out "$1.pem"; }
+signed() {
+    request "$1" -keyout "$1.key" -out "$1.csr"
+    printf 'subjectAltName=%s\nextendedKeyUsage=serverAuth,clientAuth\n' "$2" > "$1.ext"
+    openssl x509 -req -in "$1.csr" -CA ca.pem -CAkey ca.key -CAcreateserial -days 3 -extfile "$1.ext" -out "$1.pem"
+}
+authority ca
+authority stranger
+signed broker IP:127.0.0.1
+signed elsewhere DNS:elsewhere.example
+signed client DNS:client.example
+"#;
+    let mut command = Command::new("bash");
+    command.args(["-c", script]).current_dir(folder).stdout(Stdio::null()).stderr(Stdio::null());
+    assert!(command.status().unwrap().success(), "the certificates are made");
+}
+
+fn publish(desk: &Desk, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, String) {
+    let url = broker.url().replace("mqtt:", "mqtts:");
+    let files: Vec<String> = more
+        .iter()
+        .map(|word| match word.split_once('.') {
+            Some(_) => broker.folder().join(word).display().to_string(),
+            None => (*word).to_owned(),
+        })
+        .collect();
+    let mut words = vec!["publish", &url, "--count", "1", "--kinds", "status"];
+    words.extend(files.iter().map(String::as_str));
+    let output = desk.run(&words);
+    (output.status.code(), stderr(&output))
+}
+
+#[test]
+fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
+    if !broker::is_there() || !has_openssl() {
+        return eprintln!("{ABSENT}, or there is no openssl");
+    }
+    let settings = |name: &str, more: &str| {
+        format!(
+            "allow_anonymous true\ncafile FOLDER/ca.pem\ncertfile FOLDER/{name}.pem\nkeyfile FOLDER/{name}.key\n{more}"
+        )
+    };
+    let desk = fleet();
+    let broker = Mosquitto::with(&settings("broker", ""), certificates);
+    let (code, said) = publish(&desk, &broker, &["--ca", "ca.pem"]);
+    assert_eq!(code, Some(0), "{said}");
+    for (words, why) in [
+        (&["--ca", "stranger.pem"][..], "issued by nobody who is trusted here"),
+        (&[], "issued by nobody who is trusted here"),
+        (&["--ca", "ca.key"], "not a certificate in PEM"),
+        (&["--ca", "ca.pem", "--cert", "client.pem", "--key", "ca.pem"], "not a private key in PEM"),
+    ] {
+        let (code, said) = publish(&desk, &broker, words);
+        assert!(code == Some(2) && said.contains(why) && said.contains("hint:"), "{words:?}: {code:?} {said}");
+    }
+
+    let elsewhere = Mosquitto::with(&settings("elsewhere", ""), certificates);
+    let (code, said) = publish(&desk, &elsewhere, &["--ca", "ca.pem"]);
+    assert!(code == Some(2) && said.contains("for another name"), "{said}");
+
+    let strict = Mosquitto::with(&settings("broker", "require_certificate true\n"), certificates);
+    let client = ["--ca", "ca.pem", "--cert", "client.pem", "--key", "client.key"];
+    let (code, said) = publish(&desk, &strict, &client);
+    assert_eq!(code, Some(0), "{said}");
+    let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
+    assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
+
+    // A port without TLS, and one with it that is talked to without.
+    let plain = Mosquitto::start();
+    let (code, said) = publish(&desk, &plain, &[]);
+    assert!(code == Some(2) && said.contains("does not speak TLS"), "{code:?} {said}");
+    let output = desk.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
+    assert!(output.status.code() == Some(4) && stderr(&output).contains("mqtts://"), "{}", stderr(&output));
+}
