@@ -49,13 +49,16 @@ fn main() -> anyhow::Result<()> {
 /// When each controller was held, or released, and when the broker was told.
 #[derive(Default)]
 struct Book {
-    made: HashMap<(usize, bool), Vec<Instant>>,
-    told: HashMap<(usize, bool), Vec<Instant>>,
+    made: Moments,
+    told: Moments,
 }
+
+/// By controller, and whether it was held or released.
+type Moments = HashMap<(usize, bool), Vec<Instant>>;
 
 type Shared = Arc<Mutex<Book>>;
 
-fn note(book: &Shared, of: fn(&mut Book) -> &mut HashMap<(usize, bool), Vec<Instant>>, key: (usize, bool)) {
+fn note(book: &Shared, of: fn(&mut Book) -> &mut Moments, key: (usize, bool)) {
     let mut book = book.lock().unwrap_or_else(PoisonError::into_inner);
     of(&mut book).entry(key).or_default().push(Instant::now());
 }
@@ -186,7 +189,7 @@ async fn controller(
     while !*go.borrow_and_update() {
         tokio::select! {
             turned = server.turn(&mut controller) => turned?,
-            changed = go.changed() => changed?,
+            begun = go.changed() => begun?,
         }
     }
     // At moments that have nothing to do with each other, nor with the looks.

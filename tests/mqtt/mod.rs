@@ -1,5 +1,6 @@
 //! `armctl publish` against a real broker, and against brokers that are none. What is waited for is a condition, never a
 //! time.
+#![allow(clippy::unwrap_used, reason = "what fails in here fails the test that wants it")]
 #![cfg(all(unix, feature = "plant"))]
 
 mod broker;

@@ -287,8 +287,8 @@ async fn what_has_no_room_goes_the_oldest_first_and_is_said() {
     let counts = counts.unwrap();
     assert!(counts.dropped > 0 && counts.published > 20 && counts.published + counts.dropped == 302, "{counts:?}");
     let places = fake.places("press");
-    let first = 300 - places.len();
-    assert_eq!(places, (first..300).map(|at| at as f64).collect::<Vec<_>>());
+    let first = 300 - u32::try_from(places.len()).unwrap();
+    assert_eq!(places, (first..300).map(f64::from).collect::<Vec<_>>());
     assert!(said.iter().any(|line| line.contains(&format!("{} messages were dropped", counts.dropped))), "{said:?}");
 }
 
