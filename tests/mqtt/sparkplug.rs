@@ -1,7 +1,7 @@
 //! Sparkplug through a real broker, read by a decoder that others wrote.
 
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
@@ -16,7 +16,7 @@ fn peers() -> Option<PathBuf> {
 const NO_FOLDER: &str = "skipped: ARMCTL_SPARKPLUG_PEERS does not name a folder of tests/mqtt/peers/install";
 
 /// Payloads as sparkplug-payload reads them.
-fn decoded(folder: &PathBuf, heard: &[Heard]) -> Vec<Value> {
+fn decoded(folder: &Path, heard: &[Heard]) -> Vec<Value> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mqtt/peers/decode.js");
     let mut command = Command::new("node");
     command.arg(script).env("NODE_PATH", folder.join("node_modules")).stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -40,21 +40,24 @@ pub fn augment<C: CommandSet + Subcommand>(command: Command, about: &'static str
     command.about(about).long_about(None).add(Headings(C::headings))
 }
 
-/// Most characters of the verbs that stand behind what a noun is.
-const VERBS: usize = 44;
+/// Most characters of what a noun is and of its verbs: the help has a line of 80 for it.
+const ABOUT: usize = 55;
 
 /// A noun is told with its verbs: `Jobs: show, list, select`.
 fn with_verbs(noun: Command) -> Command {
+    let Some(about) = noun.get_about().map(ToString::to_string) else { return noun };
     let mut verbs = String::new();
     for verb in noun.get_subcommands().map(Command::get_name) {
-        if verbs.len() + verb.len() > VERBS {
+        if about.len() + verbs.len() + verb.len() > ABOUT {
             verbs.push_str(", …");
             break;
         }
         verbs.push_str(if verbs.is_empty() { "" } else { ", " });
         verbs.push_str(verb);
     }
-    let Some(about) = noun.get_about().filter(|_| !verbs.is_empty()).map(ToString::to_string) else { return noun };
+    if verbs.is_empty() {
+        return noun;
+    }
     noun.about(format!("{about}: {verbs}")).mut_subcommands(with_verbs)
 }
 

@@ -62,7 +62,7 @@ commands! {
         Io(Subcommands<io::Io>),
         /// Registers
         Register(Subcommands<register::Register>),
-        /// Names of signals, variables and registers: get, list, forget
+        /// Names of signals, variables and registers
         Names(Subcommands<names::Names>),
         "Link":
         /// Send any request and decode the answer

@@ -46,7 +46,9 @@ fn port(text: &str) -> Option<(Kind, String)> {
         None => rest.split_once('.').map_or((rest, None), |(port, bit)| (port, Some(bit))),
     };
     let digit = |text: &str| unsigned::<u8>(text).filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
-    let port = digit(if port.is_empty() { "0" } else { port }).filter(|port| port % 10 < 8 && *port <= 27)?;
+    // Of `DO(1)` the port is not written.
+    let is_first = port.is_empty() && rest.starts_with('(');
+    let port = digit(if is_first { "0" } else { port }).filter(|port| port % 10 < 8 && *port <= 27)?;
     let written = match bit {
         Some(bit) => format!("{letters}{port}.{}", digit(bit).filter(|bit| *bit < 8)?),
         None => format!("{letters}{port}"),

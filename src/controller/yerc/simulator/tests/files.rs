@@ -11,7 +11,7 @@ fn files_come_back_as_they_went() {
         assert_eq!(bench.fetch(0x16, b"ANY.DAT"), Ok(any[..len].to_vec()));
     }
     let list = bench.fetch(0x32, b"*.DAT").unwrap();
-    assert!(list.starts_with(b"ANY.DAT\r\n") && list.ends_with(b"VAR.DAT\r\n"));
+    assert!(list.starts_with(b"ANY.DAT\r\n") && list.ends_with(b"VARNAME.DAT\r\n"));
     assert_eq!(bench.file_one(false, 0x09, 0, b"ANY.DAT").0, Status::OK);
     assert_eq!(bench.file_one(false, 0x09, 0, b"ANY.DAT").0, refused(0xE2B3));
     assert_eq!(bench.file_one(false, 0x09, 0, b"VAR.DAT").0, refused(0xE2AF));
