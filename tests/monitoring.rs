@@ -245,8 +245,9 @@ fn a_prometheus_reads_it_and_its_alerts_come_and_go() {
     until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
     let rate = "histogram_quantile(0.99, sum by (robot, le) (rate(armctl_poll_duration_seconds_bucket[1m])))";
     until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
+    // In OpenMetrics a counter's family has no `_total`.
     until("its type is known", || {
-        let told = get(prometheus, "/api/v1/metadata?metric=armctl_polls_total", "*/*").1;
+        let told = get(prometheus, "/api/v1/metadata?metric=armctl_polls", "*/*").1;
         told.contains("\"counter\"").then_some(())
     });
     let pending = "ALERTS{alertname=\"RobotDown\"}";
