@@ -29,7 +29,7 @@ robot "$MAC@pc0?$M" 'yrcx io get servo-on'
 robot "$MAC@pc0?$M" '--yes session open'
 robot "other@pc0?$M" '--yes yrcx info system'
 robot "yrcx-sim@pc0?$M" 'session close'
-"$ARMCTL" robots add line3 "profinet://yrcx-sim@pc0?$M" --read-only
+"$ARMCTL" robots add line3 "profinet://yrcx-sim@pc0?$M" --read-only > /dev/null
 robot "$MAC@pc0?$M" '--yes yrcx recover'
 robot "$MAC@pc0?$M" 'yrcx profinet identify'
 robot "$MAC@pc0?$M" 'session open'
