@@ -1,7 +1,7 @@
 //! Hands out a few texts over HTTP/1.1, and no more than that: one request a connection, no bodies, everything bounded.
 //!
-//! A peer gets nothing for being slow or greedy: a connection has [`WITHIN`] for all of it, a request [`HEAD`] bytes, and
-//! no more than [`MOST`] connections are served at the same time; others wait with the system.
+//! A peer gets nothing for being slow or greedy: a connection has `WITHIN` for all of it, a request `HEAD` bytes, and
+//! no more than `MOST` connections are served at the same time; others wait with the system.
 
 use std::io;
 use std::net::SocketAddr;
