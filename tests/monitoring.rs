@@ -1,5 +1,5 @@
-//! `armctl serve metrics` as a service: what `promtool` and a real Prometheus say of its pages and of what is in
-//! `docs/monitoring/`, what it tells a service manager and the journal, and how it ends. What needs a program that is
+//! `armctl serve metrics` and `armctl publish` as services: what `promtool` and a real Prometheus say of pages and of what
+//! is in `docs/monitoring/`, what a service manager and the journal are told, and how services end. What needs a program that is
 //! not installed is skipped, and says so.
 
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -315,56 +315,83 @@ fn robots_come_and_go_while_it_runs() {
     assert!(page(at).contains("armctl_inventory_last_reload_successful 1\n"));
 }
 
-#[test]
-fn a_service_manager_is_told_and_sigterm_ends_it_well() {
+/// Runs as a service among robots of which one answers; sees that the manager is told so, with what this service says
+/// besides, and that SIGTERM ends it.
+fn is_managed(words: &[&str], besides: &str) {
     let folder = plant(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
     let path = folder.path().join("notify");
     let manager = UnixDatagram::bind(&path).expect("a socket");
     let mut command = armctl(folder.path());
-    command.env("NOTIFY_SOCKET", &path).env("WATCHDOG_USEC", "200000").stderr(Stdio::null());
-    let (mut service, _) = serve(command);
+    command.args(words).args(["--watch", "100ms"]).env("NOTIFY_SOCKET", &path).env("WATCHDOG_USEC", "200000");
+    let mut service = Service { process: command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("starts") };
     let heard = || {
         let mut text = [0; 200];
         let length = manager.recv(&mut text).expect("it is told");
         String::from_utf8_lossy(&text[..length]).into_owned()
     };
     assert_eq!(heard(), "READY=1\nSTATUS=2 robots");
-    while heard() != "WATCHDOG=1\nSTATUS=2 robots, 1 answers" {}
+    while heard() != format!("WATCHDOG=1\nSTATUS=2 robots, 1 answers{besides}") {}
     service.signal("TERM");
     while heard() != "STOPPING=1" {}
     assert_eq!(service.end().code(), Some(0));
 }
 
 #[test]
-fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
-    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
-    let log = folder.path().join("log");
-    let file = std::fs::File::create(&log).expect("a file");
-    let stat = file.metadata().expect("it is there");
-    let mut command = armctl(folder.path());
-    command.env("JOURNAL_STREAM", format!("{}:{}", stat.dev(), stat.ino())).stderr(file);
-    let (_service, _) = serve(command);
-    let has = |wanted: &[&str]| {
+fn a_service_manager_is_told_and_sigterm_ends_it_well() {
+    is_managed(&["serve", "metrics", "--listen", "127.0.0.1:0"], "");
+    // A broker that is not there holds up nobody who waits for the service.
+    is_managed(&["publish", "mqtt://127.0.0.1:1"], "; not connected to mqtt://127.0.0.1:1");
+}
+
+/// The log of a service, as a journal if it is one, until it has a line with all of these.
+struct Log {
+    path: PathBuf,
+    _service: Service,
+}
+
+impl Log {
+    fn start(mut command: Command, folder: &Path, is_journal: bool) -> Self {
+        let path = folder.join("log");
+        let file = std::fs::File::create(&path).expect("a file");
+        let stat = file.metadata().expect("it is there");
+        // A variable that a terminal has passed on is not the journal.
+        let inode = if is_journal { stat.ino() } else { stat.ino() + 1 };
+        command.env("JOURNAL_STREAM", format!("{}:{inode}", stat.dev())).stderr(file).stdout(Stdio::null());
+        Self { path, _service: Service { process: command.spawn().expect("it starts") } }
+    }
+
+    fn has(&self, wanted: &[&str]) -> String {
         until("a line of the log", || {
-            let text = std::fs::read_to_string(&log).expect("it is there");
+            let text = std::fs::read_to_string(&self.path).expect("it is there");
             text.lines().find(|line| wanted.iter().all(|part| line.contains(part))).map(str::to_owned)
         })
-    };
-    let line = has(&["<4>gone (tcp://127.0.0.1:1)", "robot=gone family=toyo kind=no_answer"]);
-    assert!(line.starts_with("<4>"), "{line}");
-    std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
-    has(&["<4>", "robots.toml:1:", "the robots stay as they were", "kind=usage"]);
-    write(folder.path(), &[("cell3", "yerc", "sim:")]);
-    has(&["<5>gone (tcp://127.0.0.1:1): is looked at no more robot=gone family=toyo"]);
-    has(&["<5>cell3 (sim:): is looked at from now on robot=cell3 family=yerc"]);
-    // A variable that a terminal has passed on is not the journal.
+    }
+}
+
+#[test]
+fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
+    let metrics = ["serve", "metrics", "--listen", "127.0.0.1:0"];
+    for words in [&metrics[..], &["publish", "mqtt://127.0.0.1:1"]] {
+        let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+        let mut command = armctl(folder.path());
+        command.args(words).args(["--watch", "100ms"]);
+        let log = Log::start(command, folder.path(), true);
+        let line = log.has(&["<4>gone (tcp://127.0.0.1:1)", "robot=gone family=toyo kind=no_answer"]);
+        assert!(line.starts_with("<4>"), "{line}");
+        std::fs::write(folder.path().join("robots.toml"), "[[robot]\n").expect("written");
+        log.has(&["<4>", "robots.toml:1:", "the robots stay as they were", "kind=usage"]);
+        write(folder.path(), &[("cell3", "yerc", "sim:")]);
+        log.has(&["<5>gone (tcp://127.0.0.1:1): is looked at no more robot=gone family=toyo"]);
+        log.has(&["<5>cell3 (sim:): is looked at from now on robot=cell3 family=yerc"]);
+        if words[0] == "publish" {
+            log.has(&["<4>mqtt://127.0.0.1:1: nobody listens there", "trying again", " broker=mqtt://127.0.0.1:1"]);
+        }
+    }
     let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
-    let log = folder.path().join("log");
     let mut command = armctl(folder.path());
-    command.env("JOURNAL_STREAM", "1:2").stderr(std::fs::File::create(&log).expect("a file"));
-    let (_service, _) = serve(command);
-    let text = until("a line", || std::fs::read_to_string(&log).ok().filter(|text| text.contains('\n')));
-    assert!(text.starts_with("warning: gone (tcp://127.0.0.1:1)") && !text.contains("kind="), "{text}");
+    command.args(metrics);
+    let line = Log::start(command, folder.path(), false).has(&["gone (tcp://127.0.0.1:1)"]);
+    assert!(line.starts_with("warning: gone (tcp://127.0.0.1:1)") && !line.contains("kind="), "{line}");
 }
 
 #[test]
@@ -399,18 +426,23 @@ fn a_port_in_use_is_refused() {
 }
 
 #[test]
-fn the_unit_is_one_that_systemd_takes() {
-    let text = std::fs::read_to_string(docs("armctl-metrics.service")).expect("it is there");
-    // Ready, watched, started anew, and its command line is one.
-    for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
-        assert!(text.contains(wanted), "{wanted}");
-    }
-    if !is_there("systemd-analyze") {
-        return;
-    }
+fn units_are_such_as_systemd_takes() {
     let folder = tempfile::tempdir().expect("a folder");
-    let unit = folder.path().join("armctl-metrics.service");
-    std::fs::write(&unit, text.replace("/usr/local/bin/armctl", env!("CARGO_BIN_EXE_armctl"))).expect("written");
-    let mut verify = Command::new("systemd-analyze");
-    succeeded(&verify.args(["verify", "--man=no"]).arg(&unit).output().expect("it runs"));
+    let hardening = ["armctl-metrics.service", "armctl-publish.service"].map(|name| {
+        let text = std::fs::read_to_string(docs(name)).expect("it is there");
+        // Ready, watched, started anew, and its command line is one.
+        for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
+            assert!(text.contains(wanted), "{name}: {wanted}");
+        }
+        if is_there("systemd-analyze") {
+            let unit = folder.path().join(name);
+            std::fs::write(&unit, text.replace("/usr/local/bin/armctl", env!("CARGO_BIN_EXE_armctl")))
+                .expect("written");
+            let mut verify = Command::new("systemd-analyze");
+            succeeded(&verify.args(["verify", "--man=no"]).arg(&unit).output().expect("it runs"));
+        }
+        let own = text.lines().skip_while(|line| *line != "DynamicUser=yes").filter(|line| !line.starts_with('#'));
+        own.map(str::to_owned).collect::<Vec<_>>()
+    });
+    assert!(hardening[0] == hardening[1] && hardening[0].len() > 20, "one may do no more than the other");
 }

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each benchmark uses its part")]
 
+pub mod controllers;
+pub mod process;
 pub mod table;
 
 use std::time::{Duration, Instant};

@@ -9,24 +9,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-use std::future::Future;
-use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::mpsc;
 
 use anyhow::{Context as _, ensure};
-use armctl::command::{toyo, yerc, yrcx};
-use armctl::controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
-use armctl::transport::eip::adapter::server::Listen;
-use armctl::transport::fault::Faults;
-use armctl::transport::line::Pace;
-use armctl::transport::server::Server;
-use armctl::transport::stream_server::StreamServer;
-use tokio::task::LocalSet;
 
+use common::controllers::{Delays, FAMILIES, serve};
 use common::table::{Goal, Row, Table};
-use common::{in_turn, median, ratio, run, runtime};
+use common::{in_turn, median, ratio, run};
 
 /// How many controllers of yerc, toyo and yrcx there are, and how often the command runs.
 struct Effort {
@@ -36,9 +26,6 @@ struct Effort {
 
 const FULL: Effort = Effort { fleet: [140, 40, 20], rounds: 21 };
 const QUICK: Effort = Effort { fleet: [4, 2, 2], rounds: 1 };
-
-/// The names of the families, in the order of a fleet.
-const FAMILIES: [&str; 3] = ["yerc", "toyo", "yrcx"];
 
 /// The comparisons, by the word that chooses one.
 const COMPARISONS: [(&str, common::Compare<Effort>); 2] = [("lines", lines), ("at-once", at_once)];
@@ -50,22 +37,13 @@ fn main() -> anyhow::Result<()> {
 /// Controllers as they are: a Yaskawa takes some milliseconds for an answer, a Toyo is at the end of 9600 baud.
 fn lines(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers on lines as they are", total(effort)));
-    compare(table, effort, Some(Goal::AtMost(2.0, "x")), Delays { answer: "2..8ms", baud: Some(9600) })
+    compare(table, effort, Some(Goal::AtMost(2.0, "x")), Delays { answer: Some("2..8ms"), baud: Some(9600) })
 }
 
 /// Controllers that answer at once: what is left is the work of this machine, for both ends.
 fn at_once(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers that answer at once", total(effort)));
-    compare(table, effort, None, Delays { answer: "0ms", baud: None })
-}
-
-/// How slow the controllers are.
-#[derive(Clone, Copy)]
-struct Delays {
-    /// Of a datagram, as `--fault delay=` takes it.
-    answer: &'static str,
-    /// Of a serial line.
-    baud: Option<u32>,
+    compare(table, effort, None, Delays::default())
 }
 
 fn total(effort: &Effort) -> usize {
@@ -75,7 +53,7 @@ fn total(effort: &Effort) -> usize {
 fn compare(mut table: Table, effort: &Effort, goal: Option<Goal>, delays: Delays) -> anyhow::Result<Table> {
     let folder = tempfile::tempdir()?;
     let inventory = folder.path().join("robots.toml");
-    std::fs::write(&inventory, serve(effort.fleet, delays)?)?;
+    std::fs::write(&inventory, serve(effort.fleet, delays, 1)?)?;
     let ask = |who: &'static str| {
         let mut command = status(&inventory, folder.path(), who);
         move || {
@@ -105,69 +83,4 @@ fn status(inventory: &Path, home: &Path, who: &str) -> Command {
     command.arg("--config").arg(inventory).args(["-r", who, "status", "--json"]);
     command.env_clear().env("HOME", home).stdin(Stdio::null()).stdout(Stdio::null());
     command
-}
-
-/// Serves a fleet until the process ends, and gives its inventory.
-fn serve(fleet: [usize; 3], delays: Delays) -> anyhow::Result<String> {
-    let (tell, told) = mpsc::channel();
-    std::thread::spawn(move || {
-        let local = LocalSet::new();
-        for (family, count) in FAMILIES.into_iter().zip(fleet) {
-            for number in 0..count {
-                let tell = tell.clone();
-                let tell = move |target: String| {
-                    let entry = format!("[[robot]]\nname = \"{family}{number}\"\ntarget = \"{target}\"\n");
-                    tell.send(entry).map_err(|_| anyhow::anyhow!("nobody wants to know where they are"))
-                };
-                match family {
-                    "yerc" => drop(local.spawn_local(until_it_fails(yerc(tell, delays)))),
-                    "toyo" => drop(local.spawn_local(until_it_fails(toyo(tell, delays)))),
-                    _ => drop(local.spawn_local(until_it_fails(yrcx(tell)))),
-                }
-            }
-        }
-        // Where one fails to start, the list below is short of it.
-        drop(tell);
-        runtime().map(|runtime| runtime.block_on(local))
-    });
-    let entries: Vec<String> = told.iter().take(fleet.iter().sum()).collect();
-    ensure!(entries.len() == fleet.iter().sum::<usize>(), "not every controller could be served");
-    Ok(entries.concat())
-}
-
-async fn until_it_fails(served: impl Future<Output = anyhow::Result<()>>) {
-    if let Err(error) = served.await {
-        println!("a simulated controller ended: {error:#}");
-    }
-}
-
-const ANY: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
-
-async fn yerc(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {
-    let faults = format!("delay={}", delays.answer).parse().map_err(anyhow::Error::msg)?;
-    let mut server = Server::bind([ANY, ANY], Some(Faults::pair(faults))).await?;
-    tell(format!("udp://{}?file_port={}", server.local(0)?, server.local(1)?.port()))?;
-    let start = yerc::simulated::start(None, yerc_controller::Model::Dx200, None)?;
-    let mut controller = yerc::simulated::Simulated(yerc_controller::simulator::Simulator::new(start));
-    loop {
-        server.turn(&mut controller).await?;
-    }
-}
-
-async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {
-    let pace = delays.baud.map(|baud| Pace::new(baud, 11));
-    let (mut server, address) = StreamServer::tcp(ANY, pace, None).await?;
-    tell(format!("tcp://{address}"))?;
-    let mut controller = toyo::simulated::Simulated::new(toyo_controller::simulator::Start::default());
-    loop {
-        server.turn(&mut controller).await?;
-    }
-}
-
-async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
-    let start = yrcx_controller::simulator::Start::default();
-    // It has threads of its own.
-    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
-    tell(format!("eip://{}", server.address()))?;
-    std::future::pending().await
 }

@@ -12,7 +12,7 @@ mod common;
 
 use std::collections::HashMap;
 use std::io::{Read as _, Write as _};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::net::{TcpListener, TcpStream};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
@@ -24,6 +24,7 @@ use armctl::transport::server::Server;
 use tokio::task::LocalSet;
 use tokio::time::interval_at;
 
+use common::controllers::{ANY, until_it_fails};
 use common::table::{Goal, Row, Table};
 use common::{run, runtime};
 
@@ -148,8 +149,6 @@ fn until(book: &Shared, within: Duration, is_so: impl Fn(&Book) -> bool) -> anyh
     Ok(())
 }
 
-const ANY: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
-
 /// Serves controllers until the process ends, and gives their inventory.
 fn serve(effort: &Effort, book: &Shared, go: &tokio::sync::watch::Receiver<bool>) -> anyhow::Result<String> {
     let (tell, told) = mpsc::channel();
@@ -160,9 +159,7 @@ fn serve(effort: &Effort, book: &Shared, go: &tokio::sync::watch::Receiver<bool>
         for number in 0..robots {
             let (tell, book, go) = (tell.clone(), Arc::clone(&book), go.clone());
             local.spawn_local(async move {
-                if let Err(error) = controller(number, changes, tell, book, go).await {
-                    println!("a simulated controller ended: {error:#}");
-                }
+                until_it_fails(controller(number, changes, tell, book, go)).await;
             });
         }
         drop(tell);

@@ -112,6 +112,11 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     if values.len() < 2 {
         return None;
     }
+    // A range is no part of a text.
+    if let Some(range) = values.iter().find(|value| value.contains("..")) {
+        let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
+        return has_flag.then(|| format!("a range belongs to its flag: --ranges {range}"));
+    }
     Some(if values.iter().all(is_number) {
         format!("write numbers with commas and without blanks: {}", values.join(","))
     } else {
@@ -406,6 +411,7 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "--output is the format; the folder is --dir"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
+            ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }

@@ -14,6 +14,8 @@ pub enum Level {
     Warning,
     /// Something that happens now and then.
     Notice,
+    /// Something that only who looks for a reason wants to read: from `-v` on.
+    Detail,
 }
 
 impl Level {
@@ -23,6 +25,7 @@ impl Level {
             Self::Error => 3,
             Self::Warning => 4,
             Self::Notice => 5,
+            Self::Detail => 6,
         }
     }
 
@@ -30,7 +33,7 @@ impl Level {
         match self {
             Self::Error => "error: ",
             Self::Warning => "warning: ",
-            Self::Notice => "",
+            Self::Notice | Self::Detail => "",
         }
     }
 }
@@ -41,7 +44,12 @@ const LONGEST: usize = 200;
 impl Screen {
     /// Says what happens in a service, with fields for the journal.
     pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        if self.quiet && level == Level::Notice {
+        let is_wanted = match level {
+            Level::Error | Level::Warning => true,
+            Level::Notice => !self.quiet,
+            Level::Detail => self.verbosity > 0,
+        };
+        if !is_wanted {
             return;
         }
         let text = escape::line(text);

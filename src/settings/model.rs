@@ -119,9 +119,20 @@ impl ToldModels {
         state_folder().map(|folder| Self { path: folder.join("models.json") })
     }
 
+    /// Those of a file.
+    #[cfg(test)]
+    pub fn at(path: PathBuf) -> Self {
+        Self { path }
+    }
+
     /// What the controller at an address told last.
     pub fn find(&self, address: &Address) -> Option<ToldModel> {
-        self.read().remove(&address.key()?)
+        self.find_by_key(&address.key()?)
+    }
+
+    /// The same, by the key of the address.
+    pub fn find_by_key(&self, key: &str) -> Option<ToldModel> {
+        self.read().remove(key)
     }
 
     /// Keeps what it told.
@@ -186,7 +197,7 @@ mod tests {
     #[test]
     fn what_was_told_is_kept_by_address() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ToldModels { path: folder.path().join("new").join("models.json") };
+        let store = ToldModels::at(folder.path().join("new").join("models.json"));
         let [one, other] = ["udp://192.0.2.1", "udp://192.0.2.2"].map(address);
         assert_eq!(store.find(&one), None);
         let told = ToldModel::now(Model::Yrc1000, "YAS2.02".to_owned());
@@ -204,7 +215,7 @@ mod tests {
     #[test]
     fn a_damaged_file_is_as_none() {
         let folder = tempfile::tempdir().unwrap();
-        let store = ToldModels { path: folder.path().join("models.json") };
+        let store = ToldModels::at(folder.path().join("models.json"));
         let one = address("udp://192.0.2.1");
         for text in ["", "{", "[]", "{\"udp 192.0.2.1 10040\": {\"model\": \"x\", \"software\": \"\", \"at\": 1}}"] {
             std::fs::write(&store.path, text).unwrap();

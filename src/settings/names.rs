@@ -1,8 +1,9 @@
 //! The names of a robot: those of its entry in the inventory, and those that were read from its controller and kept.
 //!
 //! What a controller says is kept in the state folder of the user, by the address of the controller: a file each, with
-//! when it was read and the hashes of what was read. A simulator of this process keeps nothing: its names are those that
-//! its files begin with.
+//! when it was read and the hashes of what was read. Another controller may have that address by now: names that were read
+//! of one with other software are not used. A simulator of this process keeps nothing: its names are those that its files
+//! begin with.
 
 use std::fmt::Write as _;
 use std::io::ErrorKind;
@@ -14,6 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
+use super::model::ToldModels;
 use super::target::{Address, Family};
 use crate::controller::names::{Grammar, Name, Names, Source};
 use crate::controller::text::Encoding;
@@ -41,6 +43,7 @@ pub fn grammar(family: Family) -> Grammar {
 pub struct RobotNames {
     own: Arc<[Name]>,
     kept: Option<Place>,
+    models: Option<ToldModels>,
     is_simulated: bool,
     all: Arc<OnceLock<AllNames>>,
 }
@@ -68,8 +71,9 @@ impl RobotNames {
     pub fn new(own: Arc<[Name]>, family: Family, address: &Address) -> Self {
         let is_yerc = family == Family::Yerc;
         let kept = if is_yerc { Place::of(address) } else { None };
+        let models = kept.as_ref().and_then(|_| ToldModels::of_user());
         let is_simulated = is_yerc && *address == Address::Simulated;
-        Self { own, kept, is_simulated, all: Arc::default() }
+        Self { own, kept, models, is_simulated, all: Arc::default() }
     }
 
     /// Where those of the controller are kept, if it is one whose names can be.
@@ -77,13 +81,22 @@ impl RobotNames {
         self.kept.as_ref()
     }
 
+    /// What is kept, unless the controller has told of other software since.
+    fn read(&self, place: &Place) -> Result<Option<Kept>, Failure> {
+        let kept = place.read()?;
+        let told = self.models.as_ref().and_then(|models| models.find_by_key(&place.address));
+        if let (Some(kept), Some(told)) = (&kept, told) {
+            kept.check(told.software())?;
+        }
+        Ok(kept)
+    }
+
     /// All of them.
     pub fn all(&self) -> &AllNames {
         self.all.get_or_init(|| {
-            let (kept, damage) = match self.kept.as_ref().map(Place::read) {
-                Some(Ok(kept)) => (kept, None),
-                Some(Err(failure)) => (None, Some(failure)),
-                None => (None, None),
+            let (kept, damage) = match self.kept.as_ref().map_or(Ok(None), |place| self.read(place)) {
+                Ok(kept) => (kept, None),
+                Err(failure) => (None, Some(failure)),
             };
             let of_controller = kept.iter().flat_map(Kept::names);
             let simulated = if self.is_simulated { simulated() } else { Vec::new() };
@@ -118,6 +131,9 @@ pub struct Kept {
     pub read_at: Timestamp,
     /// In which encoding.
     pub encoding: String,
+    /// The system software of the controller then, if it told.
+    #[serde(default)]
+    software: Option<String>,
     /// The files they were in.
     pub files: Vec<KeptFile>,
     names: Vec<KeptName>,
@@ -156,8 +172,13 @@ impl KeptFile {
 }
 
 impl Kept {
-    /// What was read just now.
-    pub fn new(place: &Place, encoding: Encoding, files: Vec<KeptFile>, names: &[Name]) -> Self {
+    /// What was read just now, of a controller with this software.
+    pub fn new(
+        place: &Place,
+        encoding: Encoding,
+        software: Option<String>,
+        (files, names): (Vec<KeptFile>, &[Name]),
+    ) -> Self {
         let now = Timestamp::now();
         let kept = |name: &Name| KeptName {
             address: name.address.clone(),
@@ -170,8 +191,25 @@ impl Kept {
             address: place.address.clone(),
             read_at: now.round(jiff::Unit::Second).unwrap_or(now),
             encoding: encoding.label().to_owned(),
+            software,
             files,
             names: names.iter().map(kept).collect(),
+        }
+    }
+
+    /// How many names there are.
+    pub fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Refuses names of a controller that had other software.
+    pub fn check(&self, software: &str) -> Result<(), Failure> {
+        match self.software.as_deref().filter(|then| *then != software) {
+            None => Ok(()),
+            Some(then) => Err(Failure::local(format!(
+                "the names kept for this address are of a controller with software {then}; this one has {software}"
+            ))
+            .hint("`armctl yerc names get` reads those of this one, `armctl yerc names forget` removes the others")),
         }
     }
 
@@ -236,6 +274,9 @@ impl Place {
 mod tests {
     use super::*;
     use crate::controller::names::{Found, Kind};
+    use crate::controller::yerc::Model;
+    use crate::settings::model::ToldModel;
+    use crate::settings::target::Target;
 
     #[test]
     fn what_is_kept_comes_back_and_what_is_damaged_says_so() {
@@ -250,7 +291,7 @@ mod tests {
             source: Source::File("IONAME.DAT".to_owned()),
         };
         let names = [name("#00010", Kind::Signal), name("B5", Kind::Variable)];
-        let kept = Kept::new(&place, Encoding::ShiftJis, vec![KeptFile::new("IONAME.DAT", b"x", 2)], &names);
+        let kept = Kept::new(&place, Encoding::ShiftJis, None, (vec![KeptFile::new("IONAME.DAT", b"x", 2)], &names));
         place.write(&kept).unwrap();
         let read = place.read().unwrap().unwrap();
         assert_eq!(read, kept);
@@ -262,6 +303,23 @@ mod tests {
         let robot = RobotNames { kept: Some(place.clone()), ..RobotNames::default() };
         assert!(robot.all().damage.is_some() && robot.all().names.is_empty());
         assert!(place.forget().unwrap());
+    }
+
+    #[test]
+    fn names_of_another_controller_at_the_same_address_are_not_used() {
+        let folder = tempfile::tempdir().unwrap();
+        let address = "udp://192.0.2.1".parse::<Target>().unwrap().address();
+        let place = Place { path: folder.path().join("a.json"), address: address.key().unwrap() };
+        let models = ToldModels::at(folder.path().join("models.json"));
+        let robot = || RobotNames { kept: Some(place.clone()), models: Some(models.clone()), ..RobotNames::default() };
+        let software = "YAS2.80.00A(EN)-00".to_owned();
+        place.write(&Kept::new(&place, Encoding::ShiftJis, Some(software.clone()), (Vec::new(), &[]))).unwrap();
+        assert!(robot().all().damage.is_none(), "nobody knows better");
+        models.keep(&address, ToldModel::now(Model::Yrc1000, software)).unwrap();
+        assert!(robot().all().damage.is_none());
+        models.keep(&address, ToldModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
+        let damage = robot().all().damage.clone().unwrap();
+        assert!(damage.message.contains("YAS2.80") && damage.message.contains("this one has DN2.07"), "{damage}");
     }
 
     #[test]

@@ -336,6 +336,34 @@ fn brokers_that_are_none_are_told_in_words() {
     }
 }
 
+/// In a namespace of its own, where a disk can be as small as is wanted.
+#[test]
+fn a_disk_that_is_full_is_said_and_ends_nothing() {
+    let alone = Command::new("unshare").args(["-Urm", "true"]).output();
+    if !alone.is_ok_and(|output| output.status.success()) {
+        return eprintln!("skipped: there are no user namespaces here");
+    }
+    let names: Vec<String> = (0..20).map(|number| format!("cell{number}")).collect();
+    let robots: Vec<(&str, &str, &str)> = names.iter().map(|name| (&name[..], "yerc", "sim:")).collect();
+    let desk = Desk::new(&robots);
+    let full = desk.folder.path().join("disk");
+    std::fs::create_dir(&full).unwrap();
+    let words = ["publish", "mqtt://127.0.0.1:1", "--watch", "50ms", "--every", "1ms", "--kinds", "status", "--json"];
+    let buffer = ["--buffer-memory", "64K", "--buffer-disk", "16M", "--buffer-dir", full.to_str().unwrap()];
+    let publish = desk.command(&[&words[..], &buffer].concat());
+    let mut command = Command::new("unshare");
+    command.args(["-Urm", "sh", "-c", "mount -t tmpfs -o size=128k none \"$0\" && exec \"$@\""]).arg(&full);
+    command.arg(publish.get_program()).args(publish.get_args()).stdin(Stdio::null());
+    command.envs(publish.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    let mut publisher = Publisher::start(command);
+    publisher.says("the disk takes no messages (no space left");
+    publisher.signal("-TERM");
+    let (code, report) = publisher.end();
+    assert_eq!(code, Some(0));
+    let lost = ["dropped", "undelivered"].map(|name| report["data"][name].as_u64().unwrap());
+    assert!(lost.iter().sum::<u64>() > 0, "{report}");
+}
+
 #[test]
 fn two_publishers_of_one_name_are_told_apart_at_once() {
     if !broker::is_there() {

@@ -306,11 +306,16 @@ impl Client {
         self.ask_now(&Request::bare(Command::Mpst)).await?.map_err(|_| Error::Mute)
     }
 
+    /// What the line was like so far.
+    pub fn totals(&self) -> Totals {
+        Totals { counters: self.session.counters(), waited: self.waited }
+    }
+
     /// Puts everything back as it was found and ends the connection. What the line was like is told in any case.
     pub async fn close(mut self) -> (Totals, Result<(), Error>) {
         let put_back = self.put_back().await;
         let given_back = put_back.and(self.give_back().await);
-        let totals = Totals { counters: self.session.counters(), waited: self.waited };
+        let totals = self.totals();
         if let Some(line) = self.into_line() {
             line.leave().await;
         }

@@ -122,6 +122,8 @@ pub struct Totals {
     pub waited: Duration,
     /// Exchanges and transfers that ended.
     pub exchanges: u32,
+    /// How often something came or went otherwise than it should: [`Counters`].
+    pub disturbances: u64,
 }
 
 /// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
@@ -337,6 +339,11 @@ impl Client {
         }
     }
 
+    /// What it was like so far.
+    pub fn totals(&self) -> Totals {
+        self.totals
+    }
+
     /// Ends the connection, and says what it was like.
     pub async fn close(mut self) -> Result<Totals, Error> {
         self.linger().await?;
@@ -481,6 +488,7 @@ impl Client {
     /// Counts an exchange or transfer that has ended, and tells what else was on the line.
     fn exchanged(&mut self, counters: Counters) {
         self.totals.exchanges += 1;
+        self.totals.disturbances += counters.total();
         if counters != Counters::default() {
             self.watcher.event(Event::Disturbed(counters));
         }

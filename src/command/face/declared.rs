@@ -10,7 +10,7 @@ use super::explain::{Explain, Recorded};
 use super::layers::Layer;
 use super::overview::OverviewReport;
 use super::panel::Panel;
-use super::sample::{Detail, Sample};
+use super::sample::{Detail, Sample, Traffic};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
 use super::{Face, HeldLink, Watch};
@@ -79,7 +79,8 @@ pub trait Declaration: Backups {
     fn read_arguments(_matches: &mut ArgMatches) -> Result<Own, clap::Error> {
         Ok(Own::default())
     }
-
+    /// What was counted on a link so far.
+    fn traffic(link: &Self::Link) -> Traffic;
     /// A line for `status`.
     async fn overview(link: &mut Self::Link) -> Result<OverviewReport, Failure>;
     /// What `robots check` finds.
@@ -92,7 +93,7 @@ pub trait Declaration: Backups {
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Poller: Sized + 'static {
     /// The family of the robot.
-    type Family: connection::Family;
+    type Family: Declaration;
 
     /// Connects.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure>;
@@ -254,6 +255,10 @@ impl<E: Poller> Watch for E {
             command.run(AnyContext { robot, connection: &mut lent, screen, several: false, authority }).await
         }
         .boxed_local()
+    }
+
+    fn traffic(&mut self) -> Traffic {
+        E::Family::traffic(self.link())
     }
 
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {

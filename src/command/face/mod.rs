@@ -15,7 +15,7 @@ use futures_util::future::LocalBoxFuture;
 use self::layers::Layer;
 use self::overview::OverviewReport;
 use self::panel::Panel;
-use self::sample::{Detail, Sample};
+use self::sample::{Detail, Sample, Traffic};
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
@@ -114,6 +114,8 @@ pub trait Watch {
         robot: &'a Robot,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Outcome>;
+    /// What was counted on the connection so far.
+    fn traffic(&mut self) -> Traffic;
     /// Closes the connection.
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
 }

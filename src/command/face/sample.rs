@@ -19,6 +19,42 @@ pub enum Detail {
     Full,
 }
 
+/// What was counted on a link since it was opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Traffic {
+    /// Frames, blocks or images that left.
+    pub sent: u64,
+    /// Those that came.
+    pub received: u64,
+    /// How often something went otherwise than it should: was late, doubled, garbled, lost or sent again.
+    pub disturbances: u64,
+}
+
+impl Traffic {
+    /// What was counted since that.
+    #[must_use]
+    pub fn since(self, before: Self) -> Self {
+        Self {
+            sent: self.sent.saturating_sub(before.sent),
+            received: self.received.saturating_sub(before.received),
+            disturbances: self.disturbances.saturating_sub(before.disturbances),
+        }
+    }
+
+    /// With what was counted besides.
+    pub fn add(&mut self, more: Self) {
+        self.sent += more.sent;
+        self.received += more.received;
+        self.disturbances += more.disturbances;
+    }
+}
+
+/// What was counted, in words, without what was not; nothing if that is all of it.
+pub fn counted(counts: &[(u64, &str)]) -> Option<String> {
+    let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
+    Some(counted.collect::<Vec<_>>().join(", ")).filter(|counted| !counted.is_empty())
+}
+
 /// What a look found.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sample {

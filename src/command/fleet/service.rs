@@ -1,6 +1,8 @@
 //! What those have in common that run as services: what they say of robots as they run, and to the service manager.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::io;
 use std::time::Duration;
 
 use tokio::time::sleep;
@@ -12,9 +14,74 @@ use crate::output::log::Level;
 use crate::settings::Robot;
 use crate::transport::supervisor::Supervisor;
 
+/// A service as it runs: what it says, and who is told how it is.
+#[derive(Debug)]
+pub struct Service {
+    screen: Screen,
+    supervisor: Supervisor,
+    journal: RefCell<Journal>,
+}
+
+impl Service {
+    /// Finds the service manager that the environment names, and room for a socket each robot.
+    pub fn begin(screen: Screen) -> Result<Self, Failure> {
+        make_room();
+        let supervisor = Supervisor::find().map_err(|error| unreached(&error))?;
+        Ok(Self { screen, supervisor, journal: RefCell::new(Journal::new(screen)) })
+    }
+
+    /// Notes what was told of a poll.
+    pub fn note(&self, event: &Event) {
+        self.journal.borrow_mut().note(event);
+    }
+
+    /// Says what happens, with fields for the journal.
+    pub fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+        self.screen.log(level, text, fields);
+    }
+
+    /// How the robots are, in a line: `3 robots, 2 answer`.
+    pub fn robots(&self) -> String {
+        self.journal.borrow().status()
+    }
+
+    /// Tells the service manager that so many robots are looked at from now on.
+    pub fn ready(&self, robots: usize) -> Result<(), Failure> {
+        let plural = if robots == 1 { "" } else { "s" };
+        self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreached(&error))
+    }
+
+    /// Tells it again and again that this process is alive, and how: as long as it is, this is polled. Does not end.
+    pub async fn pulses(&self, status: impl Fn() -> String) {
+        /// How often the status is told where nobody waits for it.
+        const STATUS: Duration = Duration::from_secs(30);
+
+        let every = self.supervisor.pulse().unwrap_or(STATUS);
+        let mut told = true;
+        loop {
+            sleep(every).await;
+            let now = self.supervisor.alive(&status());
+            if let (Err(error), true) = (&now, told) {
+                self.say(Level::Error, &format!("the service manager is not reached: {error}"), &[]);
+            }
+            told = now.is_ok();
+        }
+    }
+
+    /// Tells it that this comes to its end.
+    pub fn stopping(&self) {
+        // Nobody is left to be told that this cannot be told.
+        let _told = self.supervisor.stopping();
+    }
+}
+
+fn unreached(error: &io::Error) -> Failure {
+    Failure::io("NOTIFY_SOCKET", error)
+}
+
 /// Says once when something begins or ends, however often it is seen.
 #[derive(Debug)]
-pub struct Journal {
+struct Journal {
     screen: Screen,
     /// Whether each robot answers; nothing where that is not known yet.
     answers: BTreeMap<RobotId, Option<bool>>,
@@ -25,13 +92,11 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Of a service that says it there.
-    pub fn new(screen: Screen) -> Self {
+    fn new(screen: Screen) -> Self {
         Self { screen, answers: BTreeMap::new(), unread: [None, None], has_begun: false }
     }
 
-    /// Notes what was told of a poll.
-    pub fn note(&mut self, event: &Event) {
+    fn note(&mut self, event: &Event) {
         match event {
             Event::Appeared(robot) => {
                 self.answers.insert(RobotId::of(robot), None);
@@ -64,8 +129,7 @@ impl Journal {
         }
     }
 
-    /// In a line: `3 robots, 2 answer`.
-    pub fn status(&self) -> String {
+    fn status(&self) -> String {
         let answer = self.answers.values().filter(|answers| **answers == Some(true)).count();
         let robots = self.answers.len();
         let (plural, verb) = (if robots == 1 { "" } else { "s" }, if answer == 1 { "answers" } else { "answer" });
@@ -110,11 +174,6 @@ pub fn kind(failure: &Failure) -> String {
     name.as_ref().and_then(serde_json::Value::as_str).unwrap_or("other").to_owned()
 }
 
-/// The service manager that the environment names.
-pub fn supervisor() -> Result<Supervisor, Failure> {
-    Supervisor::find().map_err(|error| Failure::io("NOTIFY_SOCKET", &error))
-}
-
 /// Lets this process have as many files and sockets open as it may: there is one for each robot, and what a process
 /// begins with is meant for less.
 pub fn make_room() {
@@ -125,27 +184,5 @@ pub fn make_room() {
         let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
         // Where that cannot be, a robot that finds no room says so.
         let _refused = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
-    }
-}
-
-/// Tells the service manager that all is set up.
-pub fn ready(supervisor: &Supervisor, status: &str) -> Result<(), Failure> {
-    supervisor.ready(status).map_err(|error| Failure::io("NOTIFY_SOCKET", &error))
-}
-
-/// Tells it again and again that this process is alive: as long as it is, this is polled. Does not end.
-pub async fn pulses(supervisor: &Supervisor, screen: &Screen, status: impl Fn() -> String) {
-    /// How often the status is told where nobody waits for it.
-    const STATUS: Duration = Duration::from_secs(30);
-
-    let every = supervisor.pulse().unwrap_or(STATUS);
-    let mut told = true;
-    loop {
-        sleep(every).await;
-        let now = supervisor.alive(&status());
-        if let (Err(error), true) = (&now, told) {
-            screen.log(Level::Error, &format!("the service manager is not reached: {error}"), &[]);
-        }
-        told = now.is_ok();
     }
 }

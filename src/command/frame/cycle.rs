@@ -34,9 +34,74 @@ impl Repeat {
     }
 }
 
+/// Repeated runs, as one ends after the other.
+#[derive(Debug)]
+pub struct Runs {
+    repeat: Repeat,
+    times_ms: Vec<u64>,
+}
+
+impl Runs {
+    /// None has ended yet.
+    pub const fn new(repeat: Repeat) -> Self {
+        Self { repeat, times_ms: Vec::new() }
+    }
+
+    /// One has ended, after so long.
+    pub fn ended(&mut self, elapsed_ms: u64) {
+        self.times_ms.push(elapsed_ms);
+    }
+
+    /// Whether as many as are wanted have ended.
+    pub fn are_over(&self) -> bool {
+        self.times_ms.len() >= usize::try_from(self.repeat.count()).unwrap_or(usize::MAX)
+    }
+
+    /// How long the last one took.
+    pub fn last_ms(&self) -> Option<u64> {
+        self.times_ms.last().copied()
+    }
+
+    /// How the one that is next is told while it runs: `run 2 of 20`; nothing where it is the only one.
+    pub fn next(&self) -> Option<String> {
+        self.repeat.repeat.map(|count| format!("run {} of {count}", self.times_ms.len() + 1))
+    }
+
+    /// The failure that ends them, with how many had ended before it.
+    pub fn early(&self, failure: Failure) -> Failure {
+        let Some(run) = self.next() else { return failure };
+        let took = CycleTimes::new(&self.times_ms).map(|times| format!("; {}", times.in_a_line())).unwrap_or_default();
+        let (done, why) = (self.times_ms.len(), failure.message.trim_end_matches('.'));
+        Failure { message: format!("{run}: {why}; {done} ended before it{took}"), ..failure }
+    }
+
+    /// What a report says of them.
+    pub fn cycle(self) -> Cycle {
+        let Self { repeat, times_ms } = self;
+        let cycle = if repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
+        Cycle { cycle, with_stats: repeat.stats }
+    }
+}
+
+/// The part of a report that tells of repeated runs.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct Cycle {
+    /// What the runs took; null unless there were several.
+    cycle: Option<CycleTimes>,
+    #[serde(skip)]
+    with_stats: bool,
+}
+
+impl Cycle {
+    /// Its rows, if they are wanted.
+    pub fn rows(&self) -> Vec<(&'static str, Cell)> {
+        self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
+    }
+}
+
 /// What the runs took.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct CycleTimes {
+struct CycleTimes {
     /// Runs that ended.
     n: usize,
     min_ms: u64,
@@ -51,7 +116,7 @@ pub struct CycleTimes {
 
 impl CycleTimes {
     /// Of the times of runs; nothing where there was none.
-    pub fn new(times_ms: &[u64]) -> Option<Self> {
+    fn new(times_ms: &[u64]) -> Option<Self> {
         let mut sorted = times_ms.to_vec();
         sorted.sort_unstable();
         // The smallest time that so many of a hundred runs do not exceed.
@@ -66,9 +131,8 @@ impl CycleTimes {
         })
     }
 
-    /// Rows of a report.
-    pub fn rows(&self) -> Vec<(&'static str, Cell)> {
-        vec![
+    fn rows(&self) -> [(&'static str, Cell); 5] {
+        [
             ("runs", self.n.into()),
             ("minimum (ms)", self.min_ms.into()),
             ("median (ms)", self.median_ms.into()),
@@ -81,16 +145,6 @@ impl CycleTimes {
         let Self { min_ms, median_ms, p95_ms, max_ms, .. } = self;
         format!("they took {min_ms} ms at least, {median_ms} in the middle, {p95_ms} for 95 %, {max_ms} at most")
     }
-}
-
-/// The failure that ended repeated runs, with how many had ended before it.
-pub fn ended_early(failure: Failure, repeat: Repeat, times_ms: &[u64]) -> Failure {
-    let Some(count) = repeat.repeat else { return failure };
-    let took = CycleTimes::new(times_ms).map(|times| format!("; {}", times.in_a_line())).unwrap_or_default();
-    let (done, run) = (times_ms.len(), times_ms.len() + 1);
-    let message =
-        format!("run {run} of {count}: {}; {done} ended before it{took}", failure.message.trim_end_matches('.'));
-    Failure { message, ..failure }
 }
 
 #[cfg(test)]
@@ -109,8 +163,10 @@ mod tests {
 
     #[test]
     fn a_failure_tells_the_runs_before_it() {
-        let repeat = Repeat { repeat: Some(20), stats: true };
-        let failure = ended_early(Failure::new(Kind::ConditionNotMet, "an alarm came up."), repeat, &[5, 7]);
+        let mut runs = Runs::new(Repeat { repeat: Some(20), stats: true });
+        runs.ended(5);
+        runs.ended(7);
+        let failure = runs.early(Failure::new(Kind::ConditionNotMet, "an alarm came up."));
         assert!(
             failure.message.starts_with("run 3 of 20: an alarm came up; 2 ended before it; they took 5 ms"),
             "{failure}"

@@ -1,15 +1,12 @@
 //! What the tests of every family need.
 
-use std::any::Any;
-
 use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use serde_json::Value;
 
 use super::authority::Authority;
 use super::command::{AnyCommand, AnyContext, Context};
-use super::connection::{self, Access, ConnectMode, Connection, Family};
-use super::dry_run::{DryRun, Plan, is_end};
+use super::connection::{self, Access, ConnectMode, Family, Lent};
+use super::dry_run::{DryRun, is_end};
 use super::orders::BEFORE;
 use super::report::{AnyReport as _, Outcome};
 use crate::controller::Risk;
@@ -38,31 +35,6 @@ pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -
     let Context { robot, link, screen, several, authority } = context;
     let mut lent = Lent::<F>(link);
     command.run(AnyContext { robot, connection: &mut lent, screen, several, authority }).await
-}
-
-/// A link that stays the test's.
-struct Lent<'a, F: Family>(&'a mut F::Link);
-
-impl<F: Family> Connection for Lent<'_, F> {
-    fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>> {
-        F::halt(self.0).boxed_local()
-    }
-
-    fn must_halt(&self) -> bool {
-        F::must_halt(self.0)
-    }
-
-    fn planned(&mut self) -> Plan {
-        F::planned(self.0)
-    }
-
-    fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
-        async { Ok(()) }.boxed_local()
-    }
-
-    fn as_any(&mut self) -> &mut dyn Any {
-        self.0
-    }
 }
 
 /// The report of a dry run, as it is written.

@@ -16,6 +16,7 @@ use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
+use crate::command::face::sample::Traffic;
 use crate::command::{Access, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::{errors, passing, simulator};
@@ -54,6 +55,10 @@ impl Declaration for Toyo {
 
     fn codes() -> Vec<(String, String)> {
         errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string())).collect()
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
     }
 
     async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {

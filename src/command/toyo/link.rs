@@ -19,6 +19,7 @@ use super::trace::Trace;
 use super::write_log::WriteLog;
 use crate::client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
 pub use crate::client::toyo::{Moving, Refusal, jog};
+use crate::command::face::sample::{Traffic, counted};
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
@@ -84,13 +85,10 @@ impl Family for Toyo {
         let (totals, closed) = client.close().await;
         // What goes on now was told.
         locked(&onlooker).debts.moving(None);
-        let Counters { sent, received, noise, garbled, foreign, echoes } = totals.counters;
+        let Counters { sent, received, .. } = totals.counters;
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
-        let odd = [(noise, "stray characters"), (garbled, "garbled"), (foreign, "foreign or late"), (echoes, "echoes")];
-        let odd: Vec<String> =
-            odd.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-        if !odd.is_empty() {
-            screen.detail(1, &format!("on the line: {}", odd.join(", ")));
+        if let Some(odd) = counted(&odd(&totals.counters)) {
+            screen.detail(1, &format!("on the line: {odd}"));
         }
         if let Err(error) = write_log.keep() {
             screen.detail(1, &format!("what was written to the EEPROM was not noted: {error}"));
@@ -99,7 +97,26 @@ impl Family for Toyo {
     }
 }
 
+/// What went otherwise than it should.
+fn odd(counters: &Counters) -> [(u64, &'static str); 5] {
+    let Counters { sent: _, received: _, noise, garbled, foreign, echoes, repeats } = *counters;
+    [
+        (noise.into(), "stray characters"),
+        (garbled.into(), "garbled"),
+        (foreign.into(), "foreign or late"),
+        (echoes.into(), "echoes"),
+        (repeats.into(), "repeated"),
+    ]
+}
+
 impl Link {
+    /// What was counted on the line so far.
+    pub(super) fn traffic(&self) -> Traffic {
+        let Counters { sent, received, .. } = self.client.totals().counters;
+        let disturbances = odd(&self.client.totals().counters).iter().map(|(count, _)| count).sum();
+        Traffic { sent: sent.into(), received: received.into(), disturbances }
+    }
+
     /// Of a client.
     pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
         let (target, label) = (robot.target.value.to_string(), robot.label());

@@ -9,7 +9,7 @@ use super::numbers::small;
 use super::position::{Coordinates, titled};
 use super::program::steps;
 use super::waiting::{Accepted, End, Work, step};
-use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
+use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -230,15 +230,14 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
 /// Starts, and unless told otherwise waits for the end. Another run begins only after an end that was seen.
 async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: Repeat) -> Result<Ran, Failure> {
     let Context { link, screen, .. } = context;
-    let mut times_ms = Vec::new();
+    let mut runs = Runs::new(repeat);
     loop {
-        link.ask(start).await.map_err(|failure| ended_early(failure, repeat, &times_ms))?;
+        link.ask(start).await.map_err(|failure| runs.early(failure))?;
         if no_wait {
             return Ok(Ran { accepted: true, ..Ran::default() });
         }
         let ran = wait(link, screen, start.command()).await;
-        let ran =
-            ran.map_err(|failure| if link.is_dry() { failure } else { ended_early(failure, repeat, &times_ms) })?;
+        let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(ran);
         }
@@ -246,11 +245,11 @@ async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: 
             let failure =
                 Failure::new(Kind::ConditionNotMet, "it stands at a stop, or after a step, and has not ended")
                     .hint("start it without a step or program to go on there");
-            return Err(ended_early(failure, repeat, &times_ms));
+            return Err(runs.early(failure));
         }
-        times_ms.push(ran.elapsed_ms.unwrap_or(0));
-        if times_ms.len() >= usize::try_from(repeat.count()).unwrap_or(usize::MAX) {
-            return Ok(Ran { cycle: CycleTimes::new(&times_ms), with_stats: repeat.stats, ..ran });
+        runs.ended(ran.elapsed_ms.unwrap_or(0));
+        if runs.are_over() {
+            return Ok(Ran { cycle: runs.cycle(), ..ran });
         }
     }
 }
@@ -325,10 +324,8 @@ pub struct Ran {
     position: Option<Coordinates>,
     /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
     elapsed_ms: Option<u64>,
-    /// What the runs took; null unless there were several.
-    cycle: Option<CycleTimes>,
-    #[serde(skip)]
-    with_stats: bool,
+    #[serde(flatten)]
+    cycle: Cycle,
 }
 
 impl Report for Ran {
@@ -348,7 +345,7 @@ impl Report for Ran {
             ("at (mm)", place.in_a_line().into()),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ];
-        fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
+        fields.extend(self.cycle.rows());
         View { sections: vec![Section::Fields(fields)] }
     }
 }

@@ -22,6 +22,7 @@ pub struct Serve {
     /// Address to listen on, with the TCP port; port 0 lets the system choose
     #[arg(
         long,
+        alias = "listen",
         value_name = "ADDRESS[:PORT]",
         default_value = "127.0.0.1:4001",
         value_parser = |text: &str| address(text, PORT)

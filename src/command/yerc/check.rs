@@ -13,6 +13,7 @@ use crate::controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
+use crate::settings::names::Place;
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
@@ -41,6 +42,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         Err(failure) => layers.warn("software", failure.message, failure.hint.unwrap_or_default()),
     }
     model(robot, link, layers);
+    names(robot, link, layers);
     let is_teach = status.has(StatusBit::Teach);
     layers.judge(
         "mode",
@@ -98,7 +100,17 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     }
 }
 
-async fn software(link: &mut Link) -> Result<String, Failure> {
+/// Names that were read of the controller, where some are kept: whether they may be of another one.
+fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
+    let Some(Ok(Some(kept))) = robot.names.place().map(Place::read) else { return };
+    match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {
+        Ok(()) => layers.ok("names", format!("{} kept, read on {}", kept.count(), kept.read_at.strftime("%Y-%m-%d"))),
+        Err(failure) => layers.warn("names", failure.message, failure.hint.unwrap_or_default()),
+    }
+}
+
+/// Asks for the version of the system software, and the name of the system.
+pub(super) async fn software(link: &mut Link) -> Result<String, Failure> {
     let question = link.by_model(|model| ReadSystemInfo::new(model, SystemPart::Group(Group::R1))).await?;
     let encoding = link.encoding;
     let info = link.ask(&question).await?;

@@ -16,6 +16,7 @@ use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
+use crate::command::face::sample::Traffic;
 use crate::command::{Access, Command as _, Context};
 use crate::controller::yerc::{passing, simulator, status};
 use crate::failure::Failure;
@@ -50,6 +51,10 @@ impl Declaration for Yerc {
     fn codes() -> Vec<(String, String)> {
         let statuses = status::all_statuses().map(|row| (format!("0x{:02X}", row.code), row.name.to_owned()));
         statuses.chain(status::all_added().map(|row| (format!("0x{:04X}", row.code), row.name.to_owned()))).collect()
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
     }
 
     async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {

@@ -13,7 +13,8 @@ use super::told::Told;
 use super::trace::Trace;
 use crate::client::Watcher;
 pub use crate::client::yerc::{Asked, Error, Refusal};
-use crate::client::yerc::{Cause, Client, Event, TransferError};
+use crate::client::yerc::{Cause, Client, Event, Totals, TransferError};
+use crate::command::face::sample::Traffic;
 use crate::command::frame::dry_run::{Known as _, Plan};
 use crate::command::frame::orders::{BEFORE, unwritten};
 use crate::command::frame::trace::locked;
@@ -96,6 +97,12 @@ impl Family for Yerc {
 }
 
 impl Link {
+    /// What was counted on the network so far.
+    pub(super) fn traffic(&self) -> Traffic {
+        let Totals { sent, received, disturbances, .. } = self.client.totals();
+        Traffic { sent, received, disturbances }
+    }
+
     /// Pulses of a degree of each axis of a group, as far as they are known.
     pub fn pulses_per_degree(&self, group: Group) -> &[f64] {
         if group == Group::R1 { &self.pulses_per_degree } else { &[] }
@@ -124,10 +131,14 @@ impl Link {
         make(model).map_err(usage)
     }
 
+    /// The version of the system software, if the controller has told it on this connection.
+    pub fn told_software(&self) -> Option<String> {
+        self.client.identity().map(|identity| self.encoding.decode(identity.software.as_bytes()))
+    }
+
     /// Keeps what the controller told of its model, if it is news.
     fn keep_model(&mut self) {
-        if let Some(identity) = self.client.identity() {
-            let software = self.encoding.decode(identity.software.as_bytes());
+        if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
             let news = identity.model.map(|model| ToldModel::now(model, software));
             self.told.keep(news, &self.screen, &self.label);
         }

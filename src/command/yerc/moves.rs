@@ -53,6 +53,14 @@ commands! {
     }
 }
 
+/// How a motion goes, in the words of a question.
+fn way(kind: MoveKind) -> &'static str {
+    match kind {
+        MoveKind::Link => "by its joints",
+        MoveKind::Straight | MoveKind::Incremental => "in a straight line",
+    }
+}
+
 /// A cartesian target with everything that goes with it.
 #[derive(Debug, Args)]
 struct Target {
@@ -73,12 +81,12 @@ struct Target {
 }
 
 impl Target {
-    fn question(&self, way: &str, speed: Speed) -> Question<'_> {
+    fn question(&self, kind: MoveKind, speed: Speed) -> Question<'_> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let robot = to.coordinates();
         let name = to.destination().map(|destination| format!(" to {destination}")).unwrap_or_default();
         Question {
-            what: format!("move {} {way}{name}", mover.group),
+            what: format!("move {} {}{name}", mover.group, way(kind)),
             preposition: "to",
             kind: frame.kind(),
             how: robot.map(|_| format!("in {}, {}", frame.describe(), forms.describe())).unwrap_or_default(),
@@ -90,16 +98,10 @@ impl Target {
     }
 
     /// Moves to the coordinates that were typed, to those of a variable, or by degrees.
-    async fn run(
-        &self,
-        context: Context<'_, Yerc>,
-        kind: MoveKind,
-        way: &'static str,
-        speed: Speed,
-    ) -> Result<MotionReport, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
         match self.to.destination() {
-            Some(destination) => Motion { target: self, kind, way, speed }.run(context, &destination).await,
-            None => self.going(context.link, kind, speed).await?.run(context, &self.question(way, speed)).await,
+            Some(destination) => Motion { target: self, kind, speed }.run(context, &destination).await,
+            None => self.going(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await,
         }
     }
 
@@ -221,8 +223,8 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: Target
     }, "yerc.move.joint",
-    |this, context| this.target.question("by its joints", this.speed),
-    this.target.run(context, MoveKind::Link, "by its joints", this.speed)
+    |this, context| this.target.question(MoveKind::Link, this.speed),
+    this.target.run(context, MoveKind::Link, this.speed)
 }
 motion! {
     /// Moves to a position in a straight line (0x8A, instance 2).
@@ -230,8 +232,8 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: Target
     }, "yerc.move.linear",
-    |this, context| this.target.question("in a straight line", this.speed),
-    this.target.run(context, MoveKind::Straight, "in a straight line", this.speed)
+    |this, context| this.target.question(MoveKind::Straight, this.speed),
+    this.target.run(context, MoveKind::Straight, this.speed)
 }
 motion! {
     /// Moves by a distance in a straight line (0x8A, instance 3).
@@ -248,8 +250,8 @@ motion! {
         /// Percent of maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
     }, "yerc.move.pulse.joint",
-    |this, context| this.target.question("by its joints", this.speed),
-    this.target.run(context, MoveKind::Link, "by its joints", this.speed)
+    |this, context| this.target.question(MoveKind::Link, this.speed),
+    this.target.run(context, MoveKind::Link, this.speed)
 }
 motion! {
     /// Moves to pulses in a straight line (0x8B, instance 2).
@@ -257,8 +259,8 @@ motion! {
         /// Speed along the path or of the rotation, such as 100mm/s or 20deg/s
         speed: Speed::path, target: PulseTarget
     }, "yerc.move.pulse.linear",
-    |this, context| this.target.question("in a straight line", this.speed),
-    this.target.run(context, MoveKind::Straight, "in a straight line", this.speed)
+    |this, context| this.target.question(MoveKind::Straight, this.speed),
+    this.target.run(context, MoveKind::Straight, this.speed)
 }
 
 /// A distance with everything that goes with it.
@@ -289,7 +291,7 @@ impl Distance {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let robot = self.robot();
         Question {
-            what: format!("move {} in a straight line", mover.group),
+            what: format!("move {} {}", mover.group, way(MoveKind::Incremental)),
             preposition: "by",
             kind: frame.kind(),
             how: robot.map(|_| format!("in {}", frame.describe())).unwrap_or_default(),
@@ -347,10 +349,10 @@ struct PulseTarget {
 }
 
 impl PulseTarget {
-    fn question(&self, way: &str, speed: Speed) -> Question<'_> {
+    fn question(&self, kind: MoveKind, speed: Speed) -> Question<'_> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         Question {
-            what: format!("move {} {way}", mover.group),
+            what: format!("move {} {}", mover.group, way(kind)),
             preposition: "to",
             kind: PositionKind::Pulse,
             how: format!("in pulses, tool {tool},"),
@@ -361,14 +363,8 @@ impl PulseTarget {
         }
     }
 
-    async fn run(
-        &self,
-        context: Context<'_, Yerc>,
-        kind: MoveKind,
-        way: &'static str,
-        speed: Speed,
-    ) -> Result<MotionReport, Failure> {
-        self.going(context.link, kind, speed).await?.run(context, &self.question(way, speed)).await
+    async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
+        self.going(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
     }
 
     async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Going<MovePulse>, Failure> {

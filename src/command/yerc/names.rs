@@ -5,8 +5,9 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::check::software;
 use super::file::{FileReading, read_files};
-use super::link::Yerc;
+use super::link::{Link, Yerc};
 use crate::command::frame::items::{self, ItemError};
 use crate::command::frame::names::{Listing, list};
 use crate::command::{Command, Context, Report, commands};
@@ -89,7 +90,7 @@ impl Command for Get {
         if report.failure().is_none()
             && let Some(place) = robot.names.place()
         {
-            let kept = Kept::new(place, link.encoding, kept, &names);
+            let kept = Kept::new(place, link.encoding, told_software(link).await, (kept, &names));
             place.write(&kept)?;
             (report.kept, report.read_at) = (true, Some(kept.read_at));
         }
@@ -98,6 +99,15 @@ impl Command for Get {
         }
         Ok(report)
     }
+}
+
+/// The software of the controller; nothing where it does not tell.
+async fn told_software(link: &mut Link) -> Option<String> {
+    if link.told_software().is_none() {
+        // Names without it are names all the same.
+        let _refused = software(link).await;
+    }
+    link.told_software()
 }
 
 /// A file of names has some ten thousand lines.

@@ -25,6 +25,7 @@ pub struct Serve {
     /// Address to listen on, with the port of the robot server; port 0 lets the system choose
     #[arg(
         long,
+        alias = "listen",
         value_name = "ADDRESS[:PORT]",
         default_value = "127.0.0.1:10040",
         value_parser = |text: &str| address(text, ROBOT_PORT)

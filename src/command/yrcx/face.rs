@@ -20,6 +20,7 @@ use crate::command::face::declared::Declaration;
 use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
+use crate::command::face::sample::Traffic;
 use crate::command::{Access, Context, Own};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
@@ -63,6 +64,10 @@ impl Declaration for Yrcx {
 
     fn read_arguments(matches: &mut ArgMatches) -> Result<Own, clap::Error> {
         Unit::from_arg_matches_mut(matches).map(Own::of)
+    }
+
+    fn traffic(link: &Link) -> Traffic {
+        link.traffic()
     }
 
     async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {

@@ -21,6 +21,7 @@ use super::unit::Unit;
 use crate::client::yrcx;
 pub use crate::client::yrcx::hex;
 use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
+use crate::command::face::sample::{Traffic, counted};
 use crate::command::frame::attach::{attach, is_held};
 use crate::command::frame::dry_run::Plan;
 use crate::command::frame::interrupt::abandoned;
@@ -38,7 +39,7 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target;
-use crate::transport::image::{ImageLink, Traffic};
+use crate::transport::image::{self, ImageLink};
 
 /// The yrcx family.
 #[derive(Debug)]
@@ -179,25 +180,30 @@ fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
 fn tell_statistics(client: &Client, screen: &Screen) {
     let Totals { commands, waited, losses } = client.totals();
     screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from sending to their ends"));
-    let Some(Traffic { sent, received, intervals, mut odd }) = client.traffic() else { return };
+    let Some(image::Traffic { sent, received, intervals, mut odd }) = client.traffic() else { return };
     let every = intervals.map(|(to, from)| format!(" every {to:?} and {from:?}")).unwrap_or_default();
     screen.detail(1, &format!("{sent} images sent, {received} received{every}"));
     odd.push((losses.into(), "losses of the link"));
-    let odd: Vec<String> =
-        odd.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-    if !odd.is_empty() {
-        screen.detail(1, &format!("on the way: {}", odd.join(", ")));
+    if let Some(odd) = counted(&odd) {
+        screen.detail(1, &format!("on the way: {odd}"));
     }
 }
 
 impl Link {
+    /// What was counted on its own connection so far; one that a session holds is counted there.
+    pub(super) fn traffic(&self) -> Traffic {
+        let image::Traffic { sent, received, odd, .. } = self.client.traffic().unwrap_or_default();
+        let odd: u64 = odd.iter().map(|(count, _)| count).sum();
+        Traffic { sent, received, disturbances: odd + u64::from(self.client.totals().losses) }
+    }
+
     /// A link to a peer in this process.
     #[cfg(test)]
     pub(super) async fn to_peer(
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-        peer: Box<dyn crate::transport::image::ImagePeer>,
+        peer: Box<dyn image::ImagePeer>,
     ) -> Result<Self, Failure> {
         let options = options(robot, &connect::endpoint(robot)?, access);
         let client = Client::over(ImageLink::in_process(peer), options);

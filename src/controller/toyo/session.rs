@@ -37,6 +37,8 @@ pub struct Counters {
     pub foreign: u32,
     /// Requests that came back as they were, and are no answer.
     pub echoes: u32,
+    /// Requests that were sent again after silence.
+    pub repeats: u32,
 }
 
 /// How an exchange ends.
@@ -203,6 +205,7 @@ impl LineSession {
         self.owed_until = deadline + self.policy.timeout;
         if exchange.repetitions > 0 {
             exchange.repetitions -= 1;
+            self.counters.repeats += 1;
             self.state = State::Settling(exchange);
             // A repetition asks the same again: whichever answer comes is an answer to it.
             return self.send(deadline);

@@ -2,18 +2,21 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `message` | what is said, whichever MQTT they speak |
 //! | `session` | the protocol between CONNECT and DISCONNECT: time and bytes in, bytes and events out |
 //! | `client` | moves what the session wants moved, over TCP or TLS |
 //! | `tls` | whom to trust, who one is, and what is wrong with a certificate |
 
 mod client;
+mod message;
 mod session;
 mod tls;
 
 use thiserror::Error;
 
 pub use self::client::{Client, Endpoint};
-pub use self::session::{Event, Hello, LARGEST, Message, Refusal, SendError, Session, Version, Will};
+pub use self::message::{Event, Hello, Message, Refusal, SendError, Version, Will};
+pub use self::session::{LARGEST, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::page::labels;
 use crate::command::face::overview::OverviewReport;
-use crate::command::face::sample::Axis;
+use crate::command::face::sample::{Axis, Traffic};
 use crate::command::fleet::poll::{Event, Look, RobotId};
 use crate::command::fleet::service::kind;
 
@@ -45,6 +45,8 @@ pub struct Seen {
     pub pause: Option<Duration>,
     /// How long looks took.
     pub times: Times,
+    /// What went over its link.
+    pub traffic: Traffic,
 }
 
 /// Counts of times, by range.
@@ -90,17 +92,19 @@ impl Board {
                 seen.polls += 1;
                 seen.missed += look.missed;
                 seen.times.add(look.took);
+                seen.traffic.add(look.traffic);
                 seen.answered = Some(now);
                 seen.pause = None;
                 seen.look = Some(Arc::clone(look));
             }
-            Event::Failed { robot, failure, pause } => {
+            Event::Failed { robot, failure, pause, traffic } => {
                 let Some(seen) = self.robots.get_mut(&RobotId::of(robot)) else { return };
                 seen.is_known = true;
                 seen.polls += 1;
                 *seen.failures.entry(kind(failure)).or_default() += 1;
                 seen.backoffs += u64::from(seen.pause.is_some_and(|last| *pause > last));
                 seen.pause = Some(*pause);
+                seen.traffic.add(*traffic);
                 seen.look = None;
             }
             Event::Inventory(read) => self.is_inventory_broken = read.is_err(),

@@ -83,6 +83,13 @@ pub const METRICS: &[Metric] = &[
         |board, samples| each(board, samples, |seen| Some(seen.backoffs))),
     metric("armctl_poll_pause_seconds", Gauge, "seconds", "The pause before the next try; 0 while the robot answers.",
         |board, samples| each(board, samples, |seen| Some(seen.pause.unwrap_or_default().as_secs_f64()))),
+    metric("armctl_link_sent", Counter, "", "Frames, blocks or images that were sent to the robot.",
+        |board, samples| each(board, samples, |seen| Some(seen.traffic.sent))),
+    metric("armctl_link_received", Counter, "", "Frames, blocks or images that came from the robot.",
+        |board, samples| each(board, samples, |seen| Some(seen.traffic.received))),
+    metric("armctl_link_disturbances", Counter, "",
+        "What was late, doubled, garbled, lost or sent again on the way to the robot and back.",
+        |board, samples| each(board, samples, |seen| Some(seen.traffic.disturbances))),
 ];
 
 /// All metrics as text.

@@ -24,13 +24,12 @@ use serde::Serialize;
 use self::board::Board;
 use self::page::Form;
 use super::poll::{Poll, Subscription, Wish};
-use super::service::{self, Journal};
+use super::service::Service;
 use crate::command::Report;
 use crate::command::face::sample::Detail;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::{Failure, Kind, plain};
-use crate::output::Screen;
 use crate::output::log::Level;
 use crate::output::view::View;
 use crate::transport::http::{Answer, Request, Server, Status};
@@ -45,7 +44,7 @@ use crate::transport::http::{Answer, Request, Server, Status};
 )]
 pub struct Metrics {
     /// Where to listen
-    #[arg(long, value_name = "ADDRESS", default_value_t = USUAL, value_parser = address)]
+    #[arg(long, alias = "bind", value_name = "ADDRESS", default_value_t = USUAL, value_parser = address)]
     listen: SocketAddr,
 }
 
@@ -78,13 +77,12 @@ impl Metrics {
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
-        service::make_room();
+        let service = Service::begin(run.screen)?;
         // What links have to say is told where it is news, and not by each of them.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let robots = poll.robots().len();
         let server = Server::bind(self.listen).await.map_err(|error| cannot_listen(self.listen, &error))?;
         let local = server.local().map_err(|error| Failure::io("listen", &error))?;
-        let supervisor = service::supervisor()?;
         catch_interrupts();
         let listening = Listening {
             url: format!("http://{local}/metrics"),
@@ -92,24 +90,23 @@ impl Metrics {
             every_ms: u64::try_from(every.as_millis()).unwrap_or(u64::MAX),
         };
         run.local("serve.metrics", &listening)?;
-        self.warn(&run.screen);
+        self.warn(&service);
         let mut events = poll.subscribe(Wish { detail: Detail::Axes, ..Wish::every(every) });
         let mut polled = Box::pin(poll.run());
-        let (journal, board) = (RefCell::new(Journal::new(run.screen)), RefCell::new(Board::default()));
-        service::ready(&supervisor, &format!("{robots} robots"))?;
+        let board = RefCell::new(Board::default());
+        service.ready(robots)?;
         let ended = interruptible(async {
             tokio::select! {
                 () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
-                () = listen(&mut events, &journal, &board) => Err(Failure::local("nobody tells of the robots any more")),
+                () = listen(&mut events, &service, &board) => Err(Failure::local("nobody tells of the robots any more")),
                 ended = server.run(|request| answer(request, &board)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
                 }
-                () = service::pulses(&supervisor, &run.screen, || journal.borrow().status()) => Ok(()),
+                () = service.pulses(|| service.robots()) => Ok(()),
             }
         })
         .await;
-        // Nobody is left to be told that this cannot be told.
-        let _told = supervisor.stopping();
+        service.stopping();
         drop(events);
         polled.await;
         match ended {
@@ -120,19 +117,19 @@ impl Metrics {
     }
 
     /// Says what a port means that others reach.
-    fn warn(&self, screen: &Screen) {
+    fn warn(&self, service: &Service) {
         if !self.listen.ip().is_loopback() {
             let text = "others on the network can read where these robots are and what is wrong with them; there is no \
                         password";
-            screen.log(Level::Warning, text, &[("listen", &self.listen.to_string())]);
+            service.say(Level::Warning, text, &[("listen", &self.listen.to_string())]);
         }
     }
 }
 
 /// Takes what is told of the robots.
-async fn listen(events: &mut Subscription, journal: &RefCell<Journal>, board: &RefCell<Board>) {
+async fn listen(events: &mut Subscription, service: &Service, board: &RefCell<Board>) {
     while let Some(event) = events.next().await {
-        journal.borrow_mut().note(&event);
+        service.note(&event);
         board.borrow_mut().take(&event, now());
     }
 }

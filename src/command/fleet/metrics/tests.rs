@@ -7,25 +7,20 @@ use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
 use crate::command::face::overview::Fault;
-use crate::command::face::sample::{Alarm, Sample};
+use crate::command::face::sample::{Alarm, Sample, Traffic};
 use crate::command::fleet::poll::{Event, Look};
 use crate::command::fleet::top::testing::{alarmed, fleet, sample, silence};
 use crate::settings::Robot;
 
 fn looked(robot: &Arc<Robot>, sample: Sample) -> Event {
-    Event::Looked(Arc::new(Look {
-        robot: Arc::clone(robot),
-        sample,
-        took: Duration::from_millis(30),
-        missed: 2,
-        through_session: false,
-        extras: Vec::new(),
-        unexplained: None,
-    }))
+    let traffic = Traffic { sent: 5, received: 4, disturbances: 1 };
+    let look = Look::new(Arc::clone(robot), sample);
+    Event::Looked(Arc::new(Look { took: Duration::from_millis(30), missed: 2, traffic, ..look }))
 }
 
 fn failed(robot: &Arc<Robot>, pause: u64) -> Event {
-    Event::Failed { robot: Arc::clone(robot), failure: silence(), pause: Duration::from_secs(pause) }
+    let traffic = Traffic { sent: 3, received: 0, disturbances: 2 };
+    Event::Failed { robot: Arc::clone(robot), failure: silence(), pause: Duration::from_secs(pause), traffic }
 }
 
 fn robots(count: usize) -> Vec<Arc<Robot>> {
@@ -106,6 +101,16 @@ fn pauses_failures_and_times_are_counted() {
 }
 
 #[test]
+fn what_goes_over_a_link_adds_up_whether_the_robot_answers_or_not() {
+    let robots = robots(1);
+    let appeared = Event::Appeared(Arc::clone(&robots[0]));
+    let board = told(&[appeared, looked(&robots[0], sample(0.0)), failed(&robots[0], 1)]);
+    for (name, sum) in [("sent", 8), ("received", 4), ("disturbances", 3)] {
+        assert_eq!(samples(&board, &format!("armctl_link_{name}_total")), [format!("{{{CELL1}}} {sum}")]);
+    }
+}
+
+#[test]
 fn a_fault_has_its_code_and_a_text_that_spoils_nothing() {
     let robots = robots(2);
     let mut evil = alarmed();
@@ -149,7 +154,7 @@ fn a_robot_has_no_more_series_than_is_promised() {
     let board = told(&appeared.chain(looks).collect::<Vec<_>>());
     let page = page(&board, Form::Text);
     let without_axes = page.lines().filter(|line| line.contains("robot=\"cell1\"") && !line.contains("axis="));
-    assert!(without_axes.count() <= 32);
+    assert!(without_axes.count() <= 35);
 }
 
 #[test]

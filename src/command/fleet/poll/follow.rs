@@ -10,6 +10,7 @@ use tokio::time::{Instant, sleep_until, timeout};
 use super::wish::Wants;
 use super::{Event, Extra, LEAVE_WITHIN, Look, RobotId, Teller, over};
 use crate::command::face::Watch;
+use crate::command::face::sample::Traffic;
 use crate::command::families;
 use crate::command::frame::attach::is_held;
 use crate::command::{Access, ConnectMode, Entry};
@@ -40,7 +41,7 @@ enum Ended {
     /// A session holds the link to the robot by now, and the looks shall go through it.
     Session,
     /// No answer, or none that makes sense.
-    Failed(Failure),
+    Failed(Failure, Traffic),
 }
 
 /// Looks at a robot until it is over.
@@ -58,11 +59,11 @@ pub(super) async fn follow(mut follower: Follower) {
                 let is_shared = is_held(robot);
                 let access = Access::reading(ConnectMode::Monitor);
                 let watch = families::of(robot.family).watch(robot, access, screen).await?;
-                Ok(Link { watch, is_shared })
+                Ok(Link { watch, is_shared, counted: Traffic::default() })
             } => opened,
         };
         let ended = match opened {
-            Err(failure) => Ended::Failed(failure),
+            Err(failure) => Ended::Failed(failure, Traffic::default()),
             Ok(mut link) => {
                 let ended = follower.look_on(&mut link, &mut pauses).await;
                 // Nothing was changed: how the end of it went is nobody's concern.
@@ -73,14 +74,15 @@ pub(super) async fn follow(mut follower: Follower) {
         match ended {
             Ended::Over => return,
             Ended::Session => start = Instant::now(),
-            Ended::Failed(failure) => {
+            Ended::Failed(failure, traffic) => {
                 let (every, longest) = {
                     let wants = follower.wants.borrow();
                     (wants.every, wants.longest_pause)
                 };
                 let pause = pauses.next(every, longest);
                 start = Instant::now() + pause;
-                follower.tell.tell(Event::Failed { robot: Arc::clone(&follower.robot), failure, pause }).await;
+                let robot = Arc::clone(&follower.robot);
+                follower.tell.tell(Event::Failed { robot, failure, pause, traffic }).await;
             }
         }
     }
@@ -90,6 +92,16 @@ pub(super) async fn follow(mut follower: Follower) {
 struct Link {
     watch: Box<dyn Watch>,
     is_shared: bool,
+    /// What was told of what was counted on it.
+    counted: Traffic,
+}
+
+impl Link {
+    /// What was counted since this was asked last.
+    fn traffic(&mut self) -> Traffic {
+        let now = self.watch.traffic();
+        now.since(std::mem::replace(&mut self.counted, now))
+    }
 }
 
 impl Follower {
@@ -111,10 +123,10 @@ impl Follower {
             match looked {
                 Ok(look) => {
                     pauses.begin_anew();
-                    let look = Look { took: began.elapsed(), missed, ..look };
+                    let look = Look { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
                     self.tell.tell(Event::Looked(Arc::new(look))).await;
                 }
-                Err(failure) => return Ended::Failed(failure),
+                Err(failure) => return Ended::Failed(failure, link.traffic()),
             }
             let now = Instant::now();
             if !link.is_shared && now >= sessions {
@@ -166,15 +178,7 @@ impl Follower {
             }
         }
         let through_session = link.is_shared;
-        Ok(Look {
-            robot: Arc::clone(robot),
-            sample,
-            took: Duration::ZERO,
-            missed: 0,
-            through_session,
-            extras,
-            unexplained,
-        })
+        Ok(Look { through_session, extras, unexplained, ..Look::new(Arc::clone(robot), sample) })
     }
 
     /// Asks what a command line asks, unless that takes a connection which the controller would miss.

@@ -40,7 +40,7 @@ use self::follow::{Follower, follow};
 use self::roster::Roster;
 use self::wish::Wants;
 pub use self::wish::Wish;
-use crate::command::face::sample::Sample;
+use crate::command::face::sample::{Sample, Traffic};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::target::Family;
@@ -78,6 +78,8 @@ pub enum Event {
         failure: Failure,
         /// How long it is left alone now.
         pause: Duration,
+        /// What was counted on its link since it was told of last.
+        traffic: Traffic,
     },
     /// It is looked at no more: the inventory has it no more, or has it changed. Nothing follows about it.
     Gone(Arc<Robot>),
@@ -99,10 +101,28 @@ pub struct Look {
     pub missed: u64,
     /// Whether it went through a session.
     pub through_session: bool,
+    /// What was counted on its link since it was told of last.
+    pub traffic: Traffic,
     /// What the command lines that were wished for this family told, with each its text as it was wished.
     pub extras: Vec<(Arc<str>, Result<Value, Failure>)>,
     /// Why the fault could not be explained with `alarms.toml`, where that is so.
     pub unexplained: Option<Failure>,
+}
+
+impl Look {
+    /// One that found this, and nothing besides.
+    pub fn new(robot: Arc<Robot>, sample: Sample) -> Self {
+        Self {
+            robot,
+            sample,
+            took: Duration::ZERO,
+            missed: 0,
+            through_session: false,
+            traffic: Traffic::default(),
+            extras: Vec::new(),
+            unexplained: None,
+        }
+    }
 }
 
 /// What a consumer holds of a [`Poll`]. When all of them are dropped, the poll ends.

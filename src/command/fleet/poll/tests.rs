@@ -11,7 +11,7 @@ use tempfile::TempDir;
 use tokio::time::Instant;
 
 use super::{Event, Extra, Poll, RobotId, Subscription, Wish};
-use crate::command::face::sample::{Detail, Sample};
+use crate::command::face::sample::{Detail, Sample, Traffic};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::inventory::{Inventory, Location};
@@ -141,9 +141,16 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
         let mut counts = BTreeMap::new();
         loop {
             match events.next().await.expect("it goes on") {
-                Event::Looked(look) => *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1,
-                Event::Failed { robot, failure, .. } => {
+                Event::Looked(look) => {
+                    *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1;
+                    // A YRCX in this process has no network.
+                    let Traffic { sent, received, disturbances } = look.traffic;
+                    assert!((sent > 0 && sent == received) || look.robot.name == "b", "{look:?}");
+                    assert_eq!(disturbances, 0, "{look:?}");
+                }
+                Event::Failed { robot, failure, traffic, .. } => {
                     assert_eq!((robot.name.as_str(), failure.kind), ("d", Kind::NoAnswer));
+                    assert_eq!((traffic.sent, traffic.received), (1, 0));
                     return counts;
                 }
                 _ => {}

@@ -13,10 +13,12 @@
 //! | `spool` | the same on disk |
 //! | `pump` | between poller and broker |
 //! | `uplink` | the connection |
+//! | `log` | what is said of it, and to the service manager |
 //! | `words` | what brokers refuse, in words |
 
 mod also;
 mod broker;
+mod log;
 mod outbox;
 mod plain;
 mod pump;
@@ -42,6 +44,7 @@ use serde::Serialize;
 
 use self::also::Also;
 use self::broker::{Broker, Login, Url};
+use self::log::Log;
 use self::outbox::Outbox;
 use self::plain::{Alarms, Plain, Position};
 use self::pump::{Counts, Pauses, Pump};
@@ -50,6 +53,7 @@ use self::speech::Speech;
 use self::spool::Spool;
 use self::topic::Levels;
 use crate::command::fleet::poll::{Event, Poll, RobotId, Subscription, Wish};
+use crate::command::fleet::service::Service;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::local::state_folder;
 use crate::command::frame::run::{Run, RunError};
@@ -256,27 +260,33 @@ impl Publish {
             levels.of(robot)?;
         }
         let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::of).collect();
+        let service = Service::begin(run.screen)?;
         let (outbox, folder) = self.outbox(&node)?;
         let speech = self.speech((&node, levels), &also, folder.as_deref());
-        let screen = run.screen;
-        let say = |level: u8, text: &str| {
-            if level == 0 { screen.note(text) } else { screen.detail(level, text) }
-        };
+        let log = Log::new(&service, broker.url.to_string());
         catch_interrupts();
         let extras = also.iter().map(Also::extra).collect();
         let mut events = poll.subscribe(Wish { extras, ..Wish::every(interval) });
         let mut polled = Box::pin(poll.run());
         let pauses = Pauses::new(fastrand::u64(..));
-        let pump = Pump::new((&broker, &broker.url), speech, outbox, (&say, pauses), run.repeat.count.is_some());
+        let pump = Pump::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
         let mut looks = Looks::new(&robots, run.repeat.count);
+        // A broker that is away for now holds up nobody who waits for this service.
+        service.ready(robots.len())?;
         let counts = {
-            let found = async || looks.next(&mut events).await;
+            let found = async || {
+                let event = looks.next(&mut events).await?;
+                service.note(&event);
+                Some(event)
+            };
             let stop = async {
                 let _asked = interruptible(pending::<()>()).await;
+                service.stopping();
             };
             tokio::select! {
                 counts = pump.run(found, stop) => counts,
                 () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+                () = service.pulses(|| log.status()) => Err(Failure::local("nobody tells how it is any more")),
             }
         };
         drop(events);

@@ -21,6 +21,7 @@ use crate::command::face::sample::Alarm;
 use crate::command::fleet::poll::{Event, Look, RobotId};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
+use crate::output::log::Level;
 use crate::settings::Robot;
 
 /// The alarms and errors of a robot.
@@ -197,7 +198,7 @@ impl Speech for Plain {
 
     fn received(&mut self, message: &Message, _now_ms: u64) -> Reaction {
         let note = format!("the broker sent something that nobody asked for, which was ignored: {}", message.topic);
-        Reaction { note: Some((1, note)), ..Reaction::default() }
+        Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
     }
 
     fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {

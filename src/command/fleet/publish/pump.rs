@@ -17,7 +17,8 @@ use super::speech::{Reaction, Speech};
 use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
 use super::words;
 use crate::command::fleet::poll::Event as Found;
-use crate::failure::Failure;
+use crate::failure::{Failure, plain};
+use crate::output::log::Level;
 use crate::settings::duration;
 
 /// Messages that are on their way at a time: with an acknowledgement, and without.
@@ -90,8 +91,13 @@ impl Pauses {
     }
 }
 
-/// Says what happens: always, or from a level of `-v` on.
-pub type Say<'a> = &'a dyn Fn(u8, &str);
+/// Who is told what happens with the broker.
+pub trait Listener {
+    /// Something happened.
+    fn say(&self, level: Level, text: &str);
+    /// The broker has taken this client, or is gone.
+    fn reached(&self, is_there: bool);
+}
 
 /// What came of it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -164,7 +170,7 @@ pub struct Pump<'a, B: Broker> {
     url: &'a Url,
     speech: Box<dyn Speech>,
     outbox: Outbox,
-    say: Say<'a>,
+    listener: &'a dyn Listener,
     line: Line<'a, B>,
     pauses: Pauses,
     counts: Counts,
@@ -178,8 +184,6 @@ pub struct Pump<'a, B: Broker> {
     ends_without_broker: bool,
     /// Messages that the broker refused.
     forbidden: u32,
-    /// Why alarms are not explained, as it was said last.
-    unexplained: Option<String>,
 }
 
 impl<'a, B: Broker + 'a> Pump<'a, B> {
@@ -188,7 +192,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         (broker, url): (&'a B, &'a Url),
         speech: Box<dyn Speech>,
         outbox: Outbox,
-        (say, pauses): (Say<'a>, Pauses),
+        (listener, pauses): (&'a dyn Listener, Pauses),
         ends_without_broker: bool,
     ) -> Self {
         Self {
@@ -196,7 +200,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             url,
             speech,
             outbox,
-            say,
+            listener,
             line: Line::Waiting(Instant::now()),
             pauses,
             counts: Counts::default(),
@@ -206,7 +210,6 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             said: None,
             ends_without_broker,
             forbidden: 0,
-            unexplained: None,
         }
     }
 
@@ -242,8 +245,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             self.fill();
         };
         // Without a broker, where one is needed, the failure tells enough.
-        let level = u8::from(ended.is_err() && self.ends_without_broker);
-        self.end(level).await;
+        self.end(ended.is_err() && self.ends_without_broker).await;
         ended.map(|()| self.counts)
     }
 
@@ -253,22 +255,13 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
 
     /// Takes what the poller has found.
     fn take(&mut self, event: &Found) {
-        if let Found::Inventory(Err(failure)) = event {
-            (self.say)(0, &format!("{}; what it said before goes on to count", failure.message));
-        }
-        if let Found::Looked(look) = event {
-            let why = look.unexplained.as_ref().map(|failure| failure.message.clone());
-            if let Some(why) = why.filter(|why| self.unexplained.as_ref() != Some(why)) {
-                (self.say)(0, &format!("alarms are told without explanation: {why}"));
-                self.unexplained = Some(why);
-            }
-        }
         for record in self.speech.found(event, now_ms()) {
             self.outbox.push(record);
         }
         if let Some(error) = self.outbox.take_trouble() {
-            let plain = crate::failure::plain(&error);
-            (self.say)(0, &format!("the disk takes no messages ({plain}): what memory cannot hold is dropped"));
+            let why = plain(&error);
+            self.listener
+                .say(Level::Error, &format!("the disk takes no messages ({why}): what memory cannot hold is dropped"));
         }
         // While nobody listens, each one would be said: the sum comes with the connection.
         if matches!(self.line, Line::Open(_)) {
@@ -281,10 +274,13 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         self.counts.dropped += dropped.for_room + dropped.damaged;
         if dropped.for_room > 0 {
             let what = if dropped.for_room == 1 { "message was" } else { "messages were" };
-            (self.say)(0, &format!("{} {what} dropped, the oldest first: the buffer had no room", dropped.for_room));
+            self.listener.say(
+                Level::Warning,
+                &format!("{} {what} dropped, the oldest first: the buffer had no room", dropped.for_room),
+            );
         }
         if dropped.damaged > 0 {
-            (self.say)(0, "a part of the buffer on disk was damaged, and is lost");
+            self.listener.say(Level::Error, "a part of the buffer on disk was damaged, and is lost");
         }
     }
 
@@ -325,8 +321,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             }
             Step::Happened(Event::Subscribed(is_allowed)) => {
                 if !is_allowed {
-                    (self.say)(
-                        0,
+                    self.listener.say(
+                        Level::Warning,
                         "the broker does not allow to subscribe: no host can ask for births, or be waited for",
                     );
                 }
@@ -343,6 +339,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
     fn connected(&mut self) {
         let Line::Open(open) = &mut self.line else { return };
         open.is_accepted = true;
+        self.listener.reached(true);
         let again = std::mem::replace(&mut self.was_accepted, true);
         self.refusals = 0;
         self.said = None;
@@ -361,16 +358,16 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             Some(since) => {
                 self.counts.reconnects += 1;
                 let secs = duration::display(Duration::from_secs(since.elapsed().as_secs()));
-                (self.say)(0, &format!("{} is back after {secs}{buffered}", self.url));
+                self.listener.say(Level::Notice, &format!("{} is back after {secs}{buffered}", self.url));
             }
-            None => (self.say)(0, &format!("connected to {}{buffered}", self.url)),
+            None => self.listener.say(Level::Notice, &format!("connected to {}{buffered}", self.url)),
         }
         self.say_dropped();
         let topics = self.speech.topics();
         if let (false, Line::Open(open)) = (topics.is_empty(), &mut self.line)
             && open.uplink.subscribe(&topics).is_err()
         {
-            (self.say)(0, "the broker cannot be told which messages are wanted");
+            self.listener.say(Level::Warning, "the broker cannot be told which messages are wanted");
         }
         let messages = self.speech.connected(now_ms());
         self.send(None, &messages);
@@ -378,7 +375,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
 
     fn react(&mut self, reaction: Reaction) {
         if let Some((level, note)) = reaction.note {
-            (self.say)(level, &note);
+            self.listener.say(level, &note);
         }
         self.send(None, &reaction.messages);
         if reaction.leaves {
@@ -390,6 +387,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
 
     /// The connection is over: what has not arrived waits.
     fn leave(&mut self) {
+        self.listener.reached(false);
         self.outbox.lost();
         self.speech.lost();
         self.gone_since = self.gone_since.or_else(|| self.was_accepted.then(Instant::now));
@@ -421,9 +419,9 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let is_known = self.said.as_ref().is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMIND);
         // Where it worked before, no setting is wrong.
         let hint = failure.hint.filter(|_| !self.was_accepted).map(|hint| format!(" ({hint})")).unwrap_or_default();
-        let level = u8::from(is_known);
+        let level = if is_known { Level::Detail } else { Level::Warning };
         let again = format!("{}.{}s", pause.as_secs(), pause.subsec_millis() / 100);
-        (self.say)(level, &format!("{}{hint}; trying again in {again}, and so on", failure.message));
+        self.listener.say(level, &format!("{}{hint}; trying again in {again}, and so on", failure.message));
         if !is_known {
             self.said = Some((failure.message, Instant::now()));
         }
@@ -447,7 +445,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
 
     /// Says it the first time, and then at `-v`.
     fn refuse(&mut self, why: &str) {
-        (self.say)(u8::from(self.forbidden > 0), why);
+        self.listener.say(if self.forbidden > 0 { Level::Detail } else { Level::Warning }, why);
         self.forbidden = self.forbidden.saturating_add(1);
     }
 
@@ -515,9 +513,9 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Tells what waits, if that is soon done, says farewell, and leaves the rest for the next process, which it says from
-    /// this level of `-v` on.
-    async fn end(&mut self, level: u8) {
+    /// Tells what waits, if that is soon done, says farewell, and leaves the rest for the next process, of which it says
+    /// little where a failure says more.
+    async fn end(&mut self, has_failed: bool) {
         let told = async {
             while let Line::Open(_) = &self.line {
                 if self.outbox.is_empty() && self.is_idle() || !self.speech.is_ready() {
@@ -553,13 +551,15 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let (nowhere, trouble) = outbox.park();
         self.counts.undelivered = nowhere;
         if let Some(error) = trouble {
-            (self.say)(0, &format!("the buffer could not be kept: {}", crate::failure::plain(&error)));
+            self.listener.say(Level::Error, &format!("the buffer could not be kept: {}", plain(&error)));
         }
+        let or_detail = |level| if has_failed { Level::Detail } else { level };
         if nowhere > 0 {
             let what = if nowhere == 1 { "message was" } else { "messages were" };
-            (self.say)(level, &format!("{nowhere} {what} not delivered: no disk has room for what waits"));
+            let text = format!("{nowhere} {what} not delivered: no disk has room for what waits");
+            self.listener.say(or_detail(Level::Warning), &text);
         } else if has_left {
-            (self.say)(level, "what was not delivered is kept on disk, for the next start");
+            self.listener.say(or_detail(Level::Notice), "what was not delivered is kept on disk, for the next start");
         }
     }
 }

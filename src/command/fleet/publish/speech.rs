@@ -4,6 +4,7 @@
 
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::Event;
+use crate::output::log::Level;
 
 use super::outbox::Record;
 
@@ -12,8 +13,8 @@ use super::outbox::Record;
 pub struct Reaction {
     /// What is sent at once, before all that waits.
     pub messages: Vec<Message>,
-    /// What is said of it, at a level of `-v`; 0 is always.
-    pub note: Option<(u8, String)>,
+    /// What is said of it.
+    pub note: Option<(Level, String)>,
     /// Whether the connection is left, and made anew.
     pub leaves: bool,
 }

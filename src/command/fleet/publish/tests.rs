@@ -1,6 +1,6 @@
 //! The pump in virtual time, between looks that are made here and a broker that is made here.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::future::pending;
 use std::rc::Rc;
@@ -13,15 +13,16 @@ use tokio::time::{Instant, sleep};
 
 use super::outbox::Outbox;
 use super::plain::Plain;
-use super::pump::{Broker, Counts, Pauses, Pump, Uplink};
+use super::pump::{Broker, Counts, Listener, Pauses, Pump, Uplink};
 use super::spool::Spool;
 use super::topic::Levels;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
 use super::{Also, Kind, Speech};
 use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Sample};
+use crate::command::face::sample::{Alarm, Sample, Traffic};
 use crate::command::fleet::poll::{Event as Found, Look};
 use crate::failure::{self, Failure};
+use crate::output::log::Level;
 use crate::settings::inventory::Inventory;
 use crate::settings::{Robot, Selection, Sources};
 
@@ -45,20 +46,12 @@ pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
         ..OverviewReport::default()
     };
     let sample = Sample { line, alarms: alarms.iter().map(alarm).collect(), ..Sample::default() };
-    Found::Looked(Arc::new(Look {
-        robot: Arc::clone(robot),
-        sample,
-        took: Duration::ZERO,
-        missed: 0,
-        through_session: false,
-        extras: Vec::new(),
-        unexplained: None,
-    }))
+    Found::Looked(Arc::new(Look::new(Arc::clone(robot), sample)))
 }
 
 pub fn silence(robot: &Arc<Robot>) -> Found {
     let failure = Failure::new(failure::Kind::NoAnswer, "no answer");
-    Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1) }
+    Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1), traffic: Traffic::default() }
 }
 
 /// What the broker does with those who come.
@@ -191,24 +184,38 @@ fn plain() -> Box<dyn Speech> {
     Box::new(Plain::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
 }
 
+/// Notes what is said unless it is for `-v`.
+#[derive(Debug, Default)]
+struct Notes {
+    said: RefCell<Vec<String>>,
+    is_reached: Cell<bool>,
+}
+
+impl Listener for Notes {
+    fn say(&self, level: Level, text: &str) {
+        if level != Level::Detail {
+            self.said.borrow_mut().push(text.to_owned());
+        }
+    }
+
+    fn reached(&self, is_there: bool) {
+        self.is_reached.set(is_there);
+    }
+}
+
 /// Runs the pump while `script` hands it what is found; what was said, and what came of it.
 async fn pumped(
     fake: &Fake,
     outbox: Outbox,
     script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
 ) -> (Result<Counts, Failure>, Vec<String>) {
-    let said = RefCell::new(Vec::new());
-    let say = |level: u8, text: &str| {
-        if level == 0 {
-            said.borrow_mut().push(text.to_owned());
-        }
-    };
+    let notes = Notes::default();
     let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let pump = Pump::new((&fake, &url), plain(), outbox, (&say, Pauses::new(7)), false);
+    let pump = Pump::new((&fake, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
     let pumped = pump.run(async || found.recv().await, pending());
     let (counts, ()) = futures_util::future::join(pumped, script(tell)).await;
-    (counts, said.into_inner())
+    (counts, notes.said.into_inner())
 }
 
 const MEMORY: usize = 1 << 20;

@@ -299,7 +299,13 @@ fn moved(index: usize, by: isize, length: usize) -> usize {
 fn content_of(data: &Value) -> String {
     let list = data.as_object().and_then(|fields| fields.values().find_map(Value::as_array));
     let point = list.and_then(|list| list.first()).unwrap_or(&Value::Null);
+    let label = point.get("label").and_then(Value::as_str).map(|label| format!("{label}: ")).unwrap_or_default();
     let value = point.get("value").unwrap_or(point);
+    format!("{label}{}", place_of(value))
+}
+
+/// A place in a line.
+fn place_of(value: &Value) -> String {
     if let Some(text) = value.get("text").and_then(Value::as_str) {
         return text.to_owned();
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::{Select, without_suffix};
-use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
+use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
@@ -91,31 +91,28 @@ impl Command for Start {
         }
         let job = chosen.name(link.encoding);
         let limit = self.wait.or(self.repeat.repeat.map(|_| None));
-        let mut times_ms = Vec::new();
+        let mut runs = Runs::new(self.repeat);
         let mut line = None;
-        for run in 1..=self.repeat.count() {
+        for _ in 0..self.repeat.count() {
+            let early = |failure| runs.early(failure);
             // What ended is started again only if it stands as it did before.
-            if run > 1 {
-                chosen.check_again(link).await.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
+            if runs.last_ms().is_some() {
+                chosen.check_again(link).await.map_err(early)?;
             }
-            let started = link.is_for("starts it").ask(&StartJob).await;
-            started.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
+            link.is_for("starts it").ask(&StartJob).await.map_err(early)?;
             let Some(limit) = limit else {
                 return Ok(Started { accepted: true, job, ..Started::default() });
             };
             if link.is_dry() {
                 return Err(self.plan(link).await?);
             }
-            let what = self.repeat.repeat.map_or("the job runs".to_owned(), |count| format!("run {run} of {count}"));
-            let ended = wait(link, screen, limit, &what, &chosen).await;
-            let (elapsed_ms, at) = ended.map_err(|failure| ended_early(failure, self.repeat, &times_ms))?;
-            times_ms.push(elapsed_ms);
+            let what = runs.next().unwrap_or_else(|| "the job runs".to_owned());
+            let (elapsed_ms, at) = wait(link, screen, limit, &what, &chosen).await.map_err(early)?;
+            runs.ended(elapsed_ms);
             line = at;
         }
-        let cycle = if self.repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
-        let elapsed_ms = times_ms.last().copied();
-        let with_stats = self.repeat.stats;
-        Ok(Started { accepted: true, job, ended: Some(true), line, elapsed_ms, cycle, with_stats })
+        let elapsed_ms = runs.last_ms();
+        Ok(Started { accepted: true, job, ended: Some(true), line, elapsed_ms, cycle: runs.cycle() })
     }
 }
 
@@ -309,10 +306,8 @@ pub struct Started {
     line: Option<u32>,
     /// From the acceptance to the end, of the last run if there were several; null if nobody waited.
     elapsed_ms: Option<u64>,
-    /// What the runs took; null unless there were several.
-    cycle: Option<CycleTimes>,
-    #[serde(skip)]
-    with_stats: bool,
+    #[serde(flatten)]
+    cycle: Cycle,
 }
 
 impl Report for Started {
@@ -329,7 +324,7 @@ impl Report for Started {
                     ("line", Cell::maybe(self.line)),
                     ("elapsed (ms)", ms.into()),
                 ];
-                fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
+                fields.extend(self.cycle.rows());
                 View { sections: vec![Section::Fields(fields)] }
             }
         }

@@ -3,7 +3,7 @@
 use super::arguments::{Destination, Speed, Values};
 use super::going::{Goal, Going, MotionReport, plan_looks};
 use super::question::Question;
-use super::{Target, plain, unnamed_base};
+use super::{Target, plain, unnamed_base, way};
 use crate::command::Context;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
@@ -27,8 +27,6 @@ use crate::failure::{Failure, Kind};
 pub(super) struct Motion<'a> {
     pub(super) target: &'a Target,
     pub(super) kind: MoveKind,
-    /// `in a straight line`.
-    pub(super) way: &'static str,
     pub(super) speed: Speed,
 }
 
@@ -94,7 +92,7 @@ impl Motion<'_> {
         };
         let to = name.map(|name| format!(" to {name}")).unwrap_or_default();
         Question {
-            what: format!("move {} {}{to}", self.target.mover.group, self.way),
+            what: format!("move {} {}{to}", self.target.mover.group, way(self.kind)),
             preposition: "to",
             kind,
             how,

@@ -22,7 +22,7 @@ use crate::transport::fault::FaultSpec;
 #[group(skip)]
 pub struct ServeArgs {
     /// EtherNet/IP: address to listen on, with the TCP port of sessions; port 0 lets the system choose
-    #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
+    #[arg(long, alias = "listen", value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
     /// EtherNet/IP: UDP port of images, 2222 unless given; any where the system chooses that of sessions
     #[arg(long, value_name = "PORT")]

@@ -13,6 +13,7 @@ use crate::transport::profinet::commission::Found;
 use crate::transport::profinet::error::{ModuleMismatch, ProfinetError};
 use crate::transport::profinet::layout::Layout;
 use crate::transport::profinet::simulated::Network;
+use crate::transport::profinet::wire::connect::ExpectedSubmodule;
 use crate::transport::profinet::wire::frame::ETHER_TYPE;
 use crate::transport::profinet::wire::record::RealModule;
 
@@ -98,10 +99,17 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
     match identity.modules {
         Ok(real) => {
             let mismatches = mismatches(&settings.layout, &real);
-            if mismatches.is_empty() {
-                layers.ok("modules", format!("as the target says: {}", settings.layout));
-            } else {
+            if !mismatches.is_empty() {
                 return Err(("modules", board.failure(ProfinetError::Modules(mismatches))));
+            }
+            let layout = &settings.layout;
+            match left_out(layout, &real) {
+                None => layers.ok("modules", format!("as the target says: {layout}")),
+                Some(left_out) => layers.warn(
+                    "modules",
+                    format!("as the target says, but for {left_out} of the head, which it has besides: {layout}"),
+                    "a device may want all of its head named: `yrcx profinet probe` tells what it has",
+                ),
             }
         }
         Err(error) => {
@@ -119,13 +127,32 @@ fn listed(modules: &[RealModule]) -> String {
 
 /// What of the real modules is not as in the layout.
 fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
-    let expected = layout.expected();
-    let differs = expected.iter().filter_map(|module| {
-        let found = real.iter().find(|real| real.slot == module.slot).map(|real| real.ident);
-        let expected = Some(module.ident);
-        (found != expected).then_some(ModuleMismatch { slot: module.slot, subslot: None, found, expected })
-    });
-    differs.collect()
+    let mut mismatches = Vec::new();
+    for module in layout.expected() {
+        let (slot, there) = (module.slot, real.iter().find(|real| real.slot == module.slot));
+        let (found, expected) = (there.map(|real| real.ident), Some(module.ident));
+        if found != expected {
+            mismatches.push(ModuleMismatch { slot, subslot: None, found, expected });
+            continue;
+        }
+        for ExpectedSubmodule { subslot, ident, .. } in module.submodules {
+            let submodules = there.into_iter().flat_map(|real| &real.submodules);
+            let found = submodules.filter(|(real, _)| *real == subslot).map(|(_, ident)| *ident).next();
+            if found != Some(ident) {
+                mismatches.push(ModuleMismatch { slot, subslot: Some(subslot), found, expected: Some(ident) });
+            }
+        }
+    }
+    mismatches
+}
+
+/// Submodules of the head that are there and not in the layout.
+fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
+    let head = real.iter().find(|module| module.slot == 0)?;
+    let left_out = head.submodules.iter().filter(|(subslot, _)| layout.find(0, *subslot).is_none());
+    let left_out: Vec<String> =
+        left_out.map(|(subslot, ident)| format!("0.{subslot:#x}:{:#x}/{ident:#x}", head.ident)).collect();
+    (!left_out.is_empty()).then(|| left_out.join(","))
 }
 
 /// Connects to a simulator, for the first image.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use tokio::time::{Instant, timeout};
 
 use super::WhichOrAll;
-use crate::command::frame::cycle::{CycleTimes, Repeat, ended_early};
+use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yrcx::link::{Link, Yrcx};
@@ -60,32 +60,29 @@ impl Command for Run {
         let done = New::of("program_state", "running", format!("started {what}"));
         let done = self.which.named(done).replaces(Old::UNREAD);
         let limit = self.wait.or(self.repeat.repeat.map(|_| None));
-        let mut times_ms = Vec::new();
-        let mut last = None;
-        for run in 1..=self.repeat.count() {
-            let early = |failure| ended_early(failure, self.repeat, &times_ms);
+        let mut runs = Runs::new(self.repeat);
+        for _ in 0..self.repeat.count() {
+            let early = |failure| runs.early(failure);
             link.ask(&order).await.map_err(early)?;
             let began = Instant::now();
             let Some(limit) = limit else {
-                return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: None, with_stats: false });
+                return Ok(Ran { done, ended: None, elapsed_ms: None, cycle: Cycle::default() });
             };
             if link.is_dry() {
                 return Err(self.plan(link));
             }
-            let run = self.repeat.repeat.map_or("runs".to_owned(), |count| format!("runs, {run} of {count}"));
-            let _progress = screen.spinner(&format!("{what} {run}"));
+            let doing = runs.next().map_or_else(|| format!("{what} runs"), |run| format!("{what}: {run}"));
+            let _progress = screen.spinner(&doing);
             let seen = wait(link, &what, began, limit).await.map_err(early)?;
             let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-            last = seen.then_some(elapsed_ms);
-            match last {
-                Some(elapsed_ms) => times_ms.push(elapsed_ms),
+            if seen {
+                runs.ended(elapsed_ms);
+            } else if self.repeat.repeat.is_some() {
                 // Nobody knows whether it ended or has not begun: it is not started on top of that.
-                None if self.repeat.repeat.is_some() => return Err(early(not_seen(&what))),
-                None => {}
+                return Err(early(not_seen(&what)));
             }
         }
-        let cycle = if self.repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
-        Ok(Ran { done, ended: Some(true), elapsed_ms: last, cycle, with_stats: self.repeat.stats })
+        Ok(Ran { done, ended: Some(true), elapsed_ms: runs.last_ms(), cycle: runs.cycle() })
     }
 }
 
@@ -157,10 +154,8 @@ pub struct Ran {
     /// From the acceptance to the end, of the last run if there were several; null if nobody waited, or if it was over
     /// before it was seen.
     elapsed_ms: Option<u64>,
-    /// What the runs took; null unless there were several.
-    cycle: Option<CycleTimes>,
-    #[serde(skip)]
-    with_stats: bool,
+    #[serde(flatten)]
+    cycle: Cycle,
 }
 
 impl Report for Ran {
@@ -174,7 +169,7 @@ impl Report for Ran {
             ("state", state),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ];
-        fields.extend(self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows));
+        fields.extend(self.cycle.rows());
         View { sections: vec![Section::Fields(fields)] }
     }
 }

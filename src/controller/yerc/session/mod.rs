@@ -122,6 +122,11 @@ impl Counters {
         ]
     }
 
+    /// All of them together.
+    pub fn total(&self) -> u64 {
+        self.named().iter().map(|&(count, _)| u64::from(count)).sum()
+    }
+
     /// Whether datagrams arrived that were no answer, which tells "something else is there" from "nothing is there".
     pub fn heard_something(&self) -> bool {
         self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")

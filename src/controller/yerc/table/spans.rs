@@ -168,53 +168,46 @@ pub(super) const GROUPS: Instances = each(
     &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
     &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
 );
+/// The last signal of each class in which models differ, counted from the first; and where those of the network begin.
+struct Signals {
+    user: u16,
+    external: u16,
+    network_from: u16,
+    network: u16,
+    system_output: u16,
+    control_status: u16,
+}
+
+const fn signals(last: &Signals) -> [Span; 12] {
+    let Signals { user, external, network_from, network, system_output, control_status } = *last;
+    let outputs_from = 1000 + network_from;
+    [
+        ro(1, user, "robot user input"),
+        ro(1001, 1000 + user, "robot user output"),
+        ro(2001, 2000 + external, "external input"),
+        rw(network_from, network_from + network - 1, "network input"),
+        ro(3001, 3000 + external, "external output"),
+        ro(outputs_from, outputs_from + network - 1, "network output"),
+        ro(4001, 4160, "robot system input"),
+        ro(5001, 5000 + system_output, "robot system output"),
+        ro(6001, 6064, "interface panel input"),
+        ro(7001, 7999, "auxiliary relay"),
+        ro(8001, 8000 + control_status, "robot control status"),
+        ro(8201, 8220, "pseudo input"),
+    ]
+}
+
+const FS100_SIGNALS: Signals =
+    Signals { user: 128, external: 128, network_from: 2501, network: 128, system_output: 200, control_status: 64 };
+const DX100_SIGNALS: Signals =
+    Signals { user: 512, external: 500, system_output: 300, control_status: 128, ..FS100_SIGNALS };
+const DX200_SIGNALS: Signals = Signals { external: 512, network_from: 2701, network: 256, ..DX100_SIGNALS };
+
 /// The numbers of an FS100 class follow from 128 groups each; the manual prints two of them differently. A DX100 has its
 /// network signals where an FS100 has them (`WriteSingleIO.srv` of `motoman_msgs`: inputs from 25010 on); so many may be
 /// written as an FS100 has, and whatever may be there can be read.
-pub(super) const IO: Instances = Instances {
-    fs100: &[
-        ro(1, 128, "robot user input"),
-        ro(1001, 1128, "robot user output"),
-        ro(2001, 2128, "external input"),
-        rw(2501, 2628, "network input"),
-        ro(3001, 3128, "external output"),
-        ro(3501, 3628, "network output"),
-        ro(4001, 4160, "robot system input"),
-        ro(5001, 5200, "robot system output"),
-        ro(6001, 6064, "interface panel input"),
-        ro(7001, 7999, "auxiliary relay"),
-        ro(8001, 8064, "robot control status"),
-        ro(8201, 8220, "pseudo input"),
-    ],
-    dx100: &[
-        ro(1, 512, "robot user input"),
-        ro(1001, 1512, "robot user output"),
-        ro(2001, 2500, "external input"),
-        rw(2501, 2628, "network input"),
-        ro(3001, 3500, "external output"),
-        ro(3501, 3628, "network output"),
-        ro(4001, 4160, "robot system input"),
-        ro(5001, 5300, "robot system output"),
-        ro(6001, 6064, "interface panel input"),
-        ro(7001, 7999, "auxiliary relay"),
-        ro(8001, 8128, "robot control status"),
-        ro(8201, 8220, "pseudo input"),
-    ],
-    dx200: &[
-        ro(1, 512, "robot user input"),
-        ro(1001, 1512, "robot user output"),
-        ro(2001, 2512, "external input"),
-        rw(2701, 2956, "network input"),
-        ro(3001, 3512, "external output"),
-        ro(3701, 3956, "network output"),
-        ro(4001, 4160, "robot system input"),
-        ro(5001, 5300, "robot system output"),
-        ro(6001, 6064, "interface panel input"),
-        ro(7001, 7999, "auxiliary relay"),
-        ro(8001, 8128, "robot control status"),
-        ro(8201, 8220, "pseudo input"),
-    ],
-};
+pub(super) const IO: Instances =
+    Instances { fs100: &signals(&FS100_SIGNALS), dx100: &signals(&DX100_SIGNALS), dx200: &signals(&DX200_SIGNALS) };
 pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);
 
 const fn variables(last: u16) -> [Span; 2] {

@@ -24,6 +24,7 @@ use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::{Event, Look};
+use crate::output::log::Level;
 use crate::settings::Robot;
 
 /// Least time between two births that a host asks for.
@@ -298,7 +299,7 @@ impl Node {
         match (state.online, self.is_born) {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
-                note: Some((0, format!("the primary host {name} is online"))),
+                note: Some((Level::Notice, format!("the primary host {name} is online"))),
                 leaves: false,
             },
             // It is told of the death, and the next connection waits for it (section 5.4).
@@ -306,12 +307,15 @@ impl Node {
                 self.is_born = false;
                 Reaction {
                     messages: vec![self.death(now_ms)],
-                    note: Some((0, format!("the primary host {name} is offline: what is found waits for it"))),
+                    note: Some((
+                        Level::Notice,
+                        format!("the primary host {name} is offline: what is found waits for it"),
+                    )),
                     leaves: true,
                 }
             }
             (false, false) => Reaction {
-                note: Some((0, format!("waiting for the primary host {name}, which is offline"))),
+                note: Some((Level::Notice, format!("waiting for the primary host {name}, which is offline"))),
                 ..Reaction::default()
             },
             (true, true) => Reaction::default(),
@@ -332,13 +336,13 @@ impl Node {
         if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
             return ignored("an order to be born again, right behind a birth");
         }
-        let note = Some((1, "a host asks for the births again".to_owned()));
+        let note = Some((Level::Detail, "a host asks for the births again".to_owned()));
         Reaction { messages: self.births(now_ms), note, leaves: false }
     }
 }
 
 fn ignored(what: &str) -> Reaction {
-    Reaction { note: Some((1, format!("ignored from the broker: {what}"))), ..Reaction::default() }
+    Reaction { note: Some((Level::Detail, format!("ignored from the broker: {what}"))), ..Reaction::default() }
 }
 
 fn named(name: &str, kind: DataType, value: Value, now_ms: u64) -> Metric {

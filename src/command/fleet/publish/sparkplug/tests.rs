@@ -217,7 +217,7 @@ fn hosts_can_ask_for_births_and_for_nothing_else() {
     ] {
         let reaction = node.received(&message, 60_000);
         assert!(reaction.messages.is_empty() && !reaction.leaves, "{message:?}");
-        assert!(matches!(reaction.note, Some((1, _))), "said at -v: {:?}", reaction.note);
+        assert!(matches!(reaction.note, Some((Level::Detail, _))), "said at -v: {:?}", reaction.note);
     }
 }
 

@@ -1,0 +1,98 @@
+//! Controllers to measure against: simulated, on the loopback, in this process.
+
+use std::future::Future;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::mpsc;
+
+use anyhow::ensure;
+use armctl::command::{toyo, yerc, yrcx};
+use armctl::controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
+use armctl::transport::eip::adapter::server::Listen;
+use armctl::transport::fault::Faults;
+use armctl::transport::line::Pace;
+use armctl::transport::server::Server;
+use armctl::transport::stream_server::StreamServer;
+use tokio::task::LocalSet;
+
+use super::runtime;
+
+/// The names of the families, in the order of a fleet.
+pub const FAMILIES: [&str; 3] = ["yerc", "toyo", "yrcx"];
+
+/// How slow the controllers are, if they do not answer at once.
+#[derive(Clone, Copy, Default)]
+pub struct Delays {
+    /// Of a datagram, as `--fault delay=` takes it.
+    pub answer: Option<&'static str>,
+    /// Of a serial line.
+    pub baud: Option<u32>,
+}
+
+/// Serves so many controllers of each family until the process ends, and gives their inventory: `yerc0` and so on, each with
+/// one of so many tags, `shard0` and so on.
+pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result<String> {
+    let (tell, told) = mpsc::channel();
+    std::thread::spawn(move || {
+        let local = LocalSet::new();
+        for (family, count) in FAMILIES.into_iter().zip(fleet) {
+            for number in 0..count {
+                let tell = tell.clone();
+                let tell = move |target: String| {
+                    let named = format!("name = \"{family}{number}\"\ntags = [\"shard{}\"]", number % shards);
+                    tell.send(format!("[[robot]]\n{named}\ntarget = \"{target}\"\n"))
+                        .map_err(|_| anyhow::anyhow!("nobody wants to know where they are"))
+                };
+                match family {
+                    "yerc" => drop(local.spawn_local(until_it_fails(yerc(tell, delays)))),
+                    "toyo" => drop(local.spawn_local(until_it_fails(toyo(tell, delays)))),
+                    _ => drop(local.spawn_local(until_it_fails(yrcx(tell)))),
+                }
+            }
+        }
+        // Where one fails to start, the list below is short of it.
+        drop(tell);
+        runtime().map(|runtime| runtime.block_on(local))
+    });
+    let entries: Vec<String> = told.iter().take(fleet.iter().sum()).collect();
+    ensure!(entries.len() == fleet.iter().sum::<usize>(), "not every controller could be served");
+    Ok(entries.concat())
+}
+
+/// Serves, and says why it ended.
+pub async fn until_it_fails(served: impl Future<Output = anyhow::Result<()>>) {
+    if let Err(error) = served.await {
+        println!("a simulated controller ended: {error:#}");
+    }
+}
+
+/// Somewhere on the loopback.
+pub const ANY: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
+
+async fn yerc(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {
+    let faults = delays.answer.map(|delay| format!("delay={delay}").parse()).transpose().map_err(anyhow::Error::msg)?;
+    let mut server = Server::bind([ANY, ANY], faults.map(Faults::pair)).await?;
+    tell(format!("udp://{}?file_port={}", server.local(0)?, server.local(1)?.port()))?;
+    let start = yerc::simulated::start(None, yerc_controller::Model::Dx200, None)?;
+    let mut controller = yerc::simulated::Simulated(yerc_controller::simulator::Simulator::new(start));
+    loop {
+        server.turn(&mut controller).await?;
+    }
+}
+
+async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {
+    let pace = delays.baud.map(|baud| Pace::new(baud, 11));
+    let (mut server, address) = StreamServer::tcp(ANY, pace, None).await?;
+    tell(format!("tcp://{address}"))?;
+    let mut controller = toyo::simulated::Simulated::new(toyo_controller::simulator::Start::default());
+    loop {
+        server.turn(&mut controller).await?;
+    }
+}
+
+async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    let start = yrcx_controller::simulator::Start::default();
+    // It has threads of its own.
+    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+    tell(format!("eip://{}", server.address()))?;
+    std::future::pending().await
+}
