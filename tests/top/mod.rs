@@ -1,20 +1,20 @@
 //! `armctl top` on a terminal, against simulated controllers on the loopback: what it shows, what keys do, that the
-//! terminal is as before on every way out, and that nothing leaves but reads.
+//! terminal is as before on every way out, and that nothing leaves but reads; the last of services, too.
 #![cfg(unix)]
 
 mod proxy;
+mod recorded;
 
 use std::io::Read as _;
 use std::os::unix::process::CommandExt as _;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use tempfile::TempDir;
 
-use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
-use proxy::Sent;
+use recorded::Recorded;
 
 /// A user with an inventory of these targets, robot1 and so on.
 struct Desk {
@@ -148,16 +148,8 @@ fn without_colour_and_beyond_ascii_nothing_is_told_that_the_terminal_has_not() {
 
 #[test]
 fn only_reads_leave_whatever_is_pressed() {
-    let (yerc, toyo, yrcx) = (Simulator::start("yerc"), Simulator::start("toyo"), Simulator::start("yrcx"));
-    let (yerc_at, to_yerc) = proxy::udp(yerc.place().0);
-    let (toyo_at, to_toyo) = proxy::tcp(toyo.place().0);
-    let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.place().0);
-    let targets = [
-        format!("yerc udp://{yerc_at}?{}", yerc.place().1),
-        format!("toyo tcp://{toyo_at}"),
-        format!("yrcx eip://{yrcx_at}"),
-    ];
-    let desk = Desk::new(&targets);
+    let controllers = Recorded::start();
+    let desk = Desk::new(&controllers.targets);
     let mut top = desk.top(&["--watch", "50ms"]);
     top.shows("3 robots · 3 answer");
     for robot in ["robot1", "robot2", "robot3"] {
@@ -177,56 +169,24 @@ fn only_reads_leave_whatever_is_pressed() {
     }
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
-    reads_of_yerc(&to_yerc);
-    reads_of_toyo(&to_toyo);
-    reads_of_yrcx(&to_yrcx);
+    controllers.have_only_reads();
 }
 
-/// Status, alarm, axes, positions, errors of position, torque, I/O: by their numbers and the services that read (FS and DX
-/// 3.3).
-fn reads_of_yerc(sent: &Sent) {
-    let frames = sent.pieces();
-    assert!(frames.len() > 20);
-    for frame in frames {
-        let command = u16::from_le_bytes([frame[24], frame[25]]);
-        assert!(matches!(command, 0x70 | 0x72 | 0x74 | 0x75 | 0x76 | 0x77 | 0x300 | 0x30A), "{command:#x}");
-        assert!(matches!(frame[29], 0x01 | 0x0E | 0x33), "service {:#x} of {command:#x}", frame[29]);
-    }
-}
-
-/// Words that read (TO 2-2, 2-4, 2-8).
-fn reads_of_toyo(sent: &Sent) {
-    let text = String::from_utf8(sent.pieces().concat()).expect("the protocol is text");
-    let words: Vec<&str> = text.split("\r\n").filter_map(|block| block.strip_prefix('@')?.get(..4)).collect();
-    assert!(words.len() > 20);
-    for word in words {
-        assert!(["STAS", "MPST", "SYSP", "RPAR", "MINP", "MOUT"].contains(&word), "{word}");
-    }
-}
-
-/// Encapsulation commands and CIP services that leave nothing behind: no connection is opened that the controller would
-/// miss (volume 2, 2-3; volume 1, appendix A).
-fn reads_of_yrcx(sent: &Sent) {
-    const REGISTER: u16 = 0x65;
-    const UNREGISTER: u16 = 0x66;
-    const SEND: u16 = 0x6F;
-    let mut bytes = &sent.pieces().concat()[..];
-    let mut asked = 0;
-    while let [low, high, short, long, ..] = *bytes {
-        let (command, length) = (u16::from_le_bytes([low, high]), usize::from(u16::from_le_bytes([short, long])));
-        let (frame, rest) = bytes.split_at(24 + length);
-        bytes = rest;
-        match command {
-            REGISTER | UNREGISTER => {}
-            // Behind the header: interface, timeout, two items; the second one is the request.
-            SEND => {
-                assert_eq!(frame[40], 0x0E, "only Get_Attribute_Single");
-                asked += 1;
-            }
-            other => panic!("encapsulation command {other:#x}"),
+#[test]
+fn services_send_nothing_but_reads() {
+    for words in [["serve", "metrics", "--listen", "127.0.0.1:0"], ["publish", "mqtt://127.0.0.1:1", "--every", "1s"]] {
+        let controllers = Recorded::start();
+        let desk = Desk::new(&controllers.targets);
+        let mut command = desk.command(&[&words[..], &["--all", "--watch", "50ms"]].concat());
+        let mut service = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
+        while controllers.fewest() < 60 {
+            assert!(service.try_wait().expect("it is our child").is_none(), "{words:?} goes on");
+            std::thread::park_timeout(Duration::from_millis(20));
         }
+        service.kill().expect("it runs");
+        service.wait().expect("it ends");
+        controllers.have_only_reads();
     }
-    assert!(asked > 3);
 }
 
 #[test]

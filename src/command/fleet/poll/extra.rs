@@ -1,21 +1,30 @@
 //! Command lines that only read, asked along with the looks at the robots of their family: `yerc var get B0..B9`.
 
 use std::fmt;
+use std::slice;
 use std::sync::Arc;
 
 use crate::command::AnyCommand;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::families;
+use crate::command::frame::names;
 use crate::controller::Risk;
 use crate::failure::Failure;
+use crate::settings::Robot;
 use crate::settings::target::Family;
 
 /// Such a line. Two with the same text are the same.
 pub struct Extra {
     text: Arc<str>,
     family: Family,
+    /// With any addresses in place of names, where there are some in it.
     command: Box<dyn AnyCommand>,
+    /// Whether names stand for addresses in it: each robot has its own.
+    is_named: bool,
 }
+
+/// What gives an idea of a line that is none.
+const EXAMPLE: &str = "such as 'yerc var get B0..B9' or 'toyo counter get'";
 
 impl Extra {
     /// Reads a line; its first word is the family.
@@ -23,34 +32,29 @@ impl Extra {
     /// # Errors
     /// It is no command, or one that does more than read, or none that has an end.
     pub fn parse(text: &str) -> Result<Self, Failure> {
-        let wrong = |why: &str, hint: &str| Err(Failure::usage(format!("'{text}' {why}")).hint(hint));
-        let example = "such as 'yerc var get B0..B9' or 'toyo counter get'";
-        let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", example) };
+        let wrong = |why: &str, hint: &str| Err(wrong(text, why, hint));
+        let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", EXAMPLE) };
         let Some(family) = words.first().and_then(|word| word.parse::<Family>().ok()) else {
-            return wrong("does not begin with a family", example);
+            return wrong("does not begin with a family", EXAMPLE);
         };
-        let face = families::of(family);
-        let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
-        let read = parser.try_get_matches_from(&words).and_then(|mut matches| face.read(&mut matches));
-        let command = match read {
-            Ok(Typed { wish: Wish::Command(command), .. }) => command,
-            Ok(_) => return wrong("is no command", example),
-            Err(error) => {
-                let told = error.render().to_string();
-                let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
-                return wrong(&format!("is not understood: {told}"), &format!("see `armctl {family} --help`"));
-            }
-        };
+        let (command, is_named) = names::asking(|| read(text, family, &words));
+        let command = command?;
         if command.intent(None).risk > Risk::Read {
             return wrong("does more than read", "whoever watches robots changes nothing; choose a command that reads");
         }
         if command.driver().is_none() {
-            return wrong("asks no robot", example);
+            return wrong("asks no robot", EXAMPLE);
         }
         if command.is_endless() {
             return wrong("does not end by itself", "use the command that reads once: it is asked again and again");
         }
-        Ok(Self { text: text.into(), family, command })
+        Ok(Self { text: text.into(), family, command, is_named })
+    }
+
+    /// What it is for one robot, where names in it stand for addresses; nothing where it is the same for all.
+    pub fn of(&self, robot: &Robot) -> Option<Result<Box<dyn AnyCommand>, Failure>> {
+        let words = shlex::split(&self.text).filter(|_| self.is_named)?;
+        Some(names::known(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
     }
 
     /// As it was typed.
@@ -66,6 +70,25 @@ impl Extra {
     /// What it is, without its type.
     pub fn command(&self) -> &dyn AnyCommand {
         &*self.command
+    }
+}
+
+fn wrong(text: &str, why: &str, hint: &str) -> Failure {
+    Failure::usage(format!("'{text}' {why}")).hint(hint)
+}
+
+/// The command that words are, the first of them its family.
+fn read(text: &str, family: Family, words: &[String]) -> Result<Box<dyn AnyCommand>, Failure> {
+    let face = families::of(family);
+    let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
+    match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
+        Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
+        Ok(_) => Err(wrong(text, "is no command", EXAMPLE)),
+        Err(error) => {
+            let told = error.render().to_string();
+            let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            Err(wrong(text, &format!("is not understood: {told}"), &format!("see `armctl {family} --help`")))
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Looks at one robot again and again, at its own pace.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,7 +14,7 @@ use crate::command::face::Watch;
 use crate::command::face::sample::Traffic;
 use crate::command::families;
 use crate::command::frame::attach::is_held;
-use crate::command::{Access, ConnectMode, Entry};
+use crate::command::{Access, AnyCommand, ConnectMode, Entry};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -27,6 +28,8 @@ pub(super) struct Follower {
     pub wants: watch::Receiver<Wants>,
     pub stopped: watch::Receiver<bool>,
     pub tell: Teller,
+    /// What is asked along with looks, as it is for this robot: by its text.
+    pub asked: HashMap<Arc<str>, Option<Result<Box<dyn AnyCommand>, Failure>>>,
 }
 
 /// How long a robot that failed is left alone at first, unless looks are further apart.
@@ -165,10 +168,10 @@ impl Follower {
     }
 
     /// Looks once, and asks what is asked along with it.
-    async fn look(&self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
-        let robot = &self.robot;
+    async fn look(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
+        let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
-        let unexplained = sample.line.fault.explain(robot).err();
+        let unexplained = sample.line.fault.explain(&robot).err();
         let mut extras = Vec::new();
         for extra in wants.extras(id) {
             match self.ask(link, extra).await {
@@ -178,17 +181,23 @@ impl Follower {
             }
         }
         let through_session = link.is_shared;
-        Ok(Look { through_session, extras, unexplained, ..Look::new(Arc::clone(robot), sample) })
+        Ok(Look { through_session, extras, unexplained, ..Look::new(robot, sample) })
     }
 
     /// Asks what a command line asks, unless that takes a connection which the controller would miss.
-    async fn ask(&self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
-        if matches!(extra.command().entry(&self.robot), Entry::Stops(_)) {
+    async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
+        let own = self.asked.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
+        let command = match own {
+            None => extra.command(),
+            Some(Ok(command)) => &**command,
+            Some(Err(failure)) => return Err(failure.clone()),
+        };
+        if matches!(command.entry(&self.robot), Entry::Stops(_)) {
             let message = format!("'{}' takes a command connection, whose end stops the robot", extra.text());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint(format!("`armctl session open -r {}` keeps one open, and is used then", self.robot.name)));
         }
-        let report = link.watch.ask(extra.command(), &self.robot, &self.screen).await?;
+        let report = link.watch.ask(command, &self.robot, &self.screen).await?;
         report.data()
     }
 }

@@ -21,7 +21,7 @@ mod roster;
 mod tests;
 mod wish;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::future::pending;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -298,6 +298,7 @@ impl Fleet {
                 wants: self.wants.subscribe(),
                 stopped,
                 tell: self.tell.clone(),
+                asked: HashMap::new(),
             };
             self.active.insert(id.clone(), Active { given, robot: Arc::clone(&robot), stop: Some(stop) });
             self.tell.tell(Event::Appeared(robot)).await;

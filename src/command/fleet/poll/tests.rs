@@ -259,6 +259,32 @@ async fn command_lines_are_asked_along_with_the_looks_of_their_family() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn a_name_in_a_command_line_is_that_of_each_robot() {
+    let plant = fleet();
+    let entry = |name: &str, names: &str| {
+        format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"sim:\"\n{names}\n")
+    };
+    let named = |address: &str| format!("[robot.names]\nparts = \"{address}\"");
+    plant.write_text(&[entry("a", &named("B5")), entry("b", &named("B6")), entry("c", "")].concat());
+    let extra = Rc::new(Extra::parse("yerc var get parts").unwrap());
+    let wish = Wish { extras: Rc::from([extra]), ..Wish::every(EVERY) };
+    let told = watched(plant.all(), wish, async |events: &mut Subscription| {
+        let mut told = BTreeMap::new();
+        while told.len() < 3 {
+            if let Event::Looked(look) = events.next().await.expect("it goes on") {
+                told.insert(look.robot.name.clone(), look.extras[0].1.clone());
+            }
+        }
+        told
+    })
+    .await;
+    let address = |robot: &str| told[robot].as_ref().unwrap()["variables"][0]["name"].clone();
+    assert_eq!((address("a"), address("b")), ("B5".into(), "B6".into()));
+    let failure = told["c"].as_ref().unwrap_err();
+    assert!(failure.message.contains("'parts' names no variable"), "{failure}");
+}
+
+#[tokio::test(start_paused = true)]
 async fn robots_come_and_go_as_the_inventory_says() {
     let plant = fleet();
     let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {

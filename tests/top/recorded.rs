@@ -1,0 +1,87 @@
+//! Controllers of all families behind ends that keep what is sent to them, and what may be in that.
+
+use super::proxy::{self, Sent};
+use crate::support::simulator::Simulator;
+
+/// One of each family, served on the loopback.
+pub struct Recorded {
+    /// Family and target of each.
+    pub targets: [String; 3],
+    sent: [Sent; 3],
+    _simulators: [Simulator; 3],
+}
+
+impl Recorded {
+    pub fn start() -> Self {
+        let simulators = ["yerc", "toyo", "yrcx"].map(Simulator::start);
+        let [yerc, toyo, yrcx] = &simulators;
+        let (yerc_at, to_yerc) = proxy::udp(yerc.place().0);
+        let (toyo_at, to_toyo) = proxy::tcp(toyo.place().0);
+        let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.place().0);
+        let targets = [
+            format!("yerc udp://{yerc_at}?{}", yerc.place().1),
+            format!("toyo tcp://{toyo_at}"),
+            format!("yrcx eip://{yrcx_at}"),
+        ];
+        Self { targets, sent: [to_yerc, to_toyo, to_yrcx], _simulators: simulators }
+    }
+
+    /// How many pieces the one was sent that was sent the fewest.
+    pub fn fewest(&self) -> usize {
+        self.sent.iter().map(|sent| sent.pieces().len()).min().unwrap_or_default()
+    }
+
+    pub fn have_only_reads(&self) {
+        let [to_yerc, to_toyo, to_yrcx] = &self.sent;
+        reads_of_yerc(to_yerc);
+        reads_of_toyo(to_toyo);
+        reads_of_yrcx(to_yrcx);
+    }
+}
+
+/// Status, alarm, axes, positions, errors of position, torque, I/O: by their numbers and the services that read (FS and DX
+/// 3.3).
+fn reads_of_yerc(sent: &Sent) {
+    let frames = sent.pieces();
+    assert!(frames.len() > 20);
+    for frame in frames {
+        let command = u16::from_le_bytes([frame[24], frame[25]]);
+        assert!(matches!(command, 0x70 | 0x72 | 0x74 | 0x75 | 0x76 | 0x77 | 0x300 | 0x30A), "{command:#x}");
+        assert!(matches!(frame[29], 0x01 | 0x0E | 0x33), "service {:#x} of {command:#x}", frame[29]);
+    }
+}
+
+/// Words that read (TO 2-2, 2-4, 2-8).
+fn reads_of_toyo(sent: &Sent) {
+    let text = String::from_utf8(sent.pieces().concat()).expect("the protocol is text");
+    let words: Vec<&str> = text.split("\r\n").filter_map(|block| block.strip_prefix('@')?.get(..4)).collect();
+    assert!(words.len() > 20);
+    for word in words {
+        assert!(["STAS", "MPST", "SYSP", "RPAR", "MINP", "MOUT"].contains(&word), "{word}");
+    }
+}
+
+/// Encapsulation commands and CIP services that leave nothing behind: no connection is opened that the controller would
+/// miss (volume 2, 2-3; volume 1, appendix A).
+fn reads_of_yrcx(sent: &Sent) {
+    const REGISTER: u16 = 0x65;
+    const UNREGISTER: u16 = 0x66;
+    const SEND: u16 = 0x6F;
+    let mut bytes = &sent.pieces().concat()[..];
+    let mut asked = 0;
+    while let [low, high, short, long, ..] = *bytes {
+        let (command, length) = (u16::from_le_bytes([low, high]), usize::from(u16::from_le_bytes([short, long])));
+        let (frame, rest) = bytes.split_at(24 + length);
+        bytes = rest;
+        match command {
+            REGISTER | UNREGISTER => {}
+            // Behind the header: interface, timeout, two items; the second one is the request.
+            SEND => {
+                assert_eq!(frame[40], 0x0E, "only Get_Attribute_Single");
+                asked += 1;
+            }
+            other => panic!("encapsulation command {other:#x}"),
+        }
+    }
+    assert!(asked > 3);
+}
