@@ -6,8 +6,9 @@
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::fd::OwnedFd;
 use std::os::unix::fs::MetadataExt as _;
-use std::os::unix::net::UnixDatagram;
+use std::os::unix::net::{UnixDatagram, UnixStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::thread;
@@ -109,6 +110,16 @@ fn is_there(program: &str) -> bool {
         println!("skipped: there is no {program} here");
     }
     found
+}
+
+/// Whether a process can have a network and mounts of its own.
+fn has_namespaces() -> bool {
+    let alone = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
+    let has = alone.is_ok_and(|status| status.success());
+    if !has {
+        println!("skipped: there are no user namespaces here");
+    }
+    has
 }
 
 fn docs(name: &str) -> PathBuf {
@@ -394,14 +405,40 @@ fn the_journal_gets_priorities_and_fields_and_a_file_gets_words() {
     assert!(line.starts_with("warning: gone (tcp://127.0.0.1:1)") && !line.contains("kind="), "{line}");
 }
 
+/// In a namespace of its own, where the journal is this test.
+#[test]
+fn entries_of_the_journal_have_fields_of_their_own() {
+    if !has_namespaces() {
+        return;
+    }
+    let folder = plant(&[("gone", "toyo", "tcp://127.0.0.1:1")]);
+    let journal = UnixDatagram::bind(folder.path().join("socket")).expect("a socket");
+    let (stderr, _other_end) = UnixStream::pair().expect("a pair");
+    let stderr = std::fs::File::from(OwnedFd::from(stderr));
+    let stat = stderr.metadata().expect("it is there");
+    let place = "mount -t tmpfs none /run && mkdir /run/systemd && ln -s \"$0\" /run/systemd/journal && exec \"$@\"";
+    let own = armctl(folder.path());
+    let mut command = Command::new("unshare");
+    command.args(["-Urm", "sh", "-c", place]).arg(folder.path()).arg(own.get_program());
+    command.args(["serve", "metrics", "--listen", "127.0.0.1:0"]);
+    command.envs(own.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    command.env("JOURNAL_STREAM", format!("{}:{}", stat.dev(), stat.ino()));
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(stderr);
+    let _service = Service { process: command.spawn().expect("it starts") };
+    let mut entry = [0; 1000];
+    let length = journal.recv(&mut entry).expect("it is written");
+    let entry = String::from_utf8_lossy(&entry[..length]);
+    assert!(entry.starts_with("MESSAGE=gone (tcp://127.0.0.1:1): "), "{entry}");
+    let fields = "\nPRIORITY=4\nSYSLOG_IDENTIFIER=armctl\nROBOT=gone\nFAMILY=toyo\nKIND=no_answer\n";
+    assert!(entry.ends_with(fields), "{entry}");
+}
+
 #[test]
 fn a_port_that_others_reach_is_warned_of() {
     let folder = plant(&[("cell3", "yerc", "sim:")]);
     let log = folder.path().join("log");
     // In a network of its own, where nobody is.
-    let alone = || Command::new("unshare").args(["-Urn", "true"]).stderr(Stdio::null()).status();
-    if !alone().is_ok_and(|status| status.success()) {
-        println!("skipped: there are no user namespaces here");
+    if !has_namespaces() {
         return;
     }
     let mut command = Command::new("unshare");

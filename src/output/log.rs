@@ -1,5 +1,6 @@
 //! What a service says of itself as it runs: lines on stderr. Where that is the journal of systemd, each begins with its
-//! priority (`sd-daemon(3)`) and ends with its fields, so that `journalctl -p warning` and `grep robot=cell3` find it.
+//! priority (`sd-daemon(3)`) and ends with its fields, so that `journalctl -p warning` and `grep robot=cell3` find it; whoever
+//! reaches the journal itself can write entries instead.
 
 use std::fmt::Write as _;
 
@@ -20,7 +21,7 @@ pub enum Level {
 
 impl Level {
     /// The number of syslog(3).
-    fn priority(self) -> u8 {
+    pub fn priority(self) -> u8 {
         match self {
             Self::Error => 3,
             Self::Warning => 4,
@@ -41,15 +42,25 @@ impl Level {
 /// Longest value of a field, in characters.
 const LONGEST: usize = 200;
 
+/// The value of a field, as it can be shown and is not too long.
+pub fn value(text: &str) -> String {
+    let text: String = text.chars().take(LONGEST).collect();
+    escape::line(&text).into_owned()
+}
+
 impl Screen {
-    /// Says what happens in a service, with fields for the journal.
-    pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        let is_wanted = match level {
+    /// Whether somebody wants to read what matters so much.
+    pub fn wants(&self, level: Level) -> bool {
+        match level {
             Level::Error | Level::Warning => true,
             Level::Notice => !self.quiet,
             Level::Detail => self.verbosity > 0,
-        };
-        if !is_wanted {
+        }
+    }
+
+    /// Says what happens in a service, with fields for the journal.
+    pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+        if !self.wants(level) {
             return;
         }
         let text = escape::line(text);
@@ -65,8 +76,7 @@ impl Screen {
 fn list(fields: &[(&str, &str)]) -> String {
     let mut all = String::new();
     for (name, value) in fields {
-        let value: String = value.chars().take(LONGEST).collect();
-        let value = escape::line(&value);
+        let value = self::value(value);
         let is_plain = !value.is_empty() && !value.contains([' ', '"', '=', '\\']);
         let _never_fails = if is_plain {
             write!(all, " {name}={value}")
@@ -88,6 +98,14 @@ fn is_journal() -> bool {
 #[cfg(not(unix))]
 fn is_journal() -> bool {
     false
+}
+
+/// Whether stderr is the journal's own socket, and not a file that stands for it.
+#[cfg(unix)]
+pub fn is_journal_socket() -> bool {
+    let is_socket = rustix::fs::fstat(std::io::stderr())
+        .is_ok_and(|stat| rustix::fs::FileType::from_raw_mode(stat.st_mode) == rustix::fs::FileType::Socket);
+    is_socket && is_journal()
 }
 
 #[cfg(test)]

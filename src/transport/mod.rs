@@ -10,6 +10,8 @@ pub mod fault;
 #[cfg(feature = "plant")]
 pub mod http;
 pub mod image;
+#[cfg(all(unix, feature = "plant"))]
+pub mod journal;
 pub mod line;
 pub mod local;
 #[cfg(feature = "plant")]

@@ -3,23 +3,27 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io;
+#[cfg(unix)]
+use std::path::Path;
 use std::time::Duration;
 
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
 use crate::failure::Failure;
-use crate::output::Screen;
-use crate::output::log::Level;
+use crate::output::log::{self, Level};
+use crate::output::{Screen, escape};
 use crate::settings::Robot;
+#[cfg(unix)]
+use crate::transport::journal::{Journal, PLACE};
 use crate::transport::supervisor::Supervisor;
 
 /// A service as it runs: what it says, and who is told how it is.
 #[derive(Debug)]
 pub struct Service {
-    screen: Screen,
+    log: Log,
     supervisor: Supervisor,
-    journal: RefCell<Journal>,
+    news: RefCell<News>,
 }
 
 impl Service {
@@ -27,22 +31,22 @@ impl Service {
     pub fn begin(screen: Screen) -> Result<Self, Failure> {
         make_room();
         let supervisor = Supervisor::find().map_err(|error| unreached(&error))?;
-        Ok(Self { screen, supervisor, journal: RefCell::new(Journal::new(screen)) })
+        Ok(Self { log: Log::new(screen), supervisor, news: RefCell::default() })
     }
 
     /// Notes what was told of a poll.
     pub fn note(&self, event: &Event) {
-        self.journal.borrow_mut().note(event);
+        self.news.borrow_mut().note(&self.log, event);
     }
 
     /// Says what happens, with fields for the journal.
     pub fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        self.screen.log(level, text, fields);
+        self.log.say(level, text, fields);
     }
 
     /// How the robots are, in a line: `3 robots, 2 answer`.
     pub fn robots(&self) -> String {
-        self.journal.borrow().status()
+        self.news.borrow().status()
     }
 
     /// Tells the service manager that so many robots are looked at from now on.
@@ -79,10 +83,53 @@ fn unreached(error: &io::Error) -> Failure {
     Failure::io("NOTIFY_SOCKET", error)
 }
 
-/// Says once when something begins or ends, however often it is seen.
+/// Where a service says what happens: in the journal of systemd where stderr is that, or else on stderr.
 #[derive(Debug)]
-struct Journal {
+struct Log {
     screen: Screen,
+    #[cfg(unix)]
+    journal: Option<Journal>,
+}
+
+impl Log {
+    #[cfg(unix)]
+    fn new(screen: Screen) -> Self {
+        // One that is not reached has stderr, as it has of every process.
+        let journal = log::is_journal_socket().then(|| Journal::at(Path::new(PLACE)).ok()).flatten();
+        Self { screen, journal }
+    }
+
+    #[cfg(not(unix))]
+    fn new(screen: Screen) -> Self {
+        Self { screen }
+    }
+
+    fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+        if self.screen.wants(level) && !self.is_written(level, text, fields) {
+            self.screen.log(level, text, fields);
+        }
+    }
+
+    /// Writes an entry of the journal; whether it has taken that.
+    #[cfg(unix)]
+    fn is_written(&self, level: Level, text: &str, fields: &[(&str, &str)]) -> bool {
+        let Some(journal) = &self.journal else { return false };
+        let (message, priority) = (escape::line(text), level.priority().to_string());
+        let values: Vec<String> = fields.iter().map(|(_, value)| log::value(value)).collect();
+        let mut entry = vec![("MESSAGE", &message[..]), ("PRIORITY", &priority), ("SYSLOG_IDENTIFIER", "armctl")];
+        entry.extend(fields.iter().map(|(name, _)| *name).zip(values.iter().map(String::as_str)));
+        journal.write(&entry).is_ok()
+    }
+
+    #[cfg(not(unix))]
+    fn is_written(&self, _level: Level, _text: &str, _fields: &[(&str, &str)]) -> bool {
+        false
+    }
+}
+
+/// Says once when something begins or ends, however often it is seen.
+#[derive(Debug, Default)]
+struct News {
     /// Whether each robot answers; nothing where that is not known yet.
     answers: BTreeMap<RobotId, Option<bool>>,
     /// What could not be read, of the inventory and of the texts of alarms.
@@ -91,40 +138,36 @@ struct Journal {
     has_begun: bool,
 }
 
-impl Journal {
-    fn new(screen: Screen) -> Self {
-        Self { screen, answers: BTreeMap::new(), unread: [None, None], has_begun: false }
-    }
-
-    fn note(&mut self, event: &Event) {
+impl News {
+    fn note(&mut self, log: &Log, event: &Event) {
         match event {
             Event::Appeared(robot) => {
                 self.answers.insert(RobotId::of(robot), None);
                 if self.has_begun {
-                    self.say(Level::Notice, robot, "is looked at from now on", &[]);
+                    say(log, Level::Notice, robot, "is looked at from now on", &[]);
                 }
             }
             Event::Gone(robot) => {
                 self.answers.remove(&RobotId::of(robot));
-                self.say(Level::Notice, robot, "is looked at no more", &[]);
+                say(log, Level::Notice, robot, "is looked at no more", &[]);
             }
             Event::Looked(look) => {
                 if self.answers.insert(RobotId::of(&look.robot), Some(true)) == Some(Some(false)) {
-                    self.say(Level::Notice, &look.robot, "answers again", &[]);
+                    say(log, Level::Notice, &look.robot, "answers again", &[]);
                 }
-                self.unread(1, look.unexplained.as_ref());
+                self.unread(log, 1, look.unexplained.as_ref());
             }
             Event::Failed { robot, failure, .. } => {
                 if self.answers.insert(RobotId::of(robot), Some(false)) != Some(Some(false)) {
-                    self.failed(robot, failure);
+                    failed(log, robot, failure);
                 }
             }
             Event::Inventory(read) => {
                 self.has_begun = true;
                 if read.is_ok() {
-                    self.screen.log(Level::Notice, "the inventory has changed, and was read", &[]);
+                    log.say(Level::Notice, "the inventory has changed, and was read", &[]);
                 }
-                self.unread(0, read.as_ref().err());
+                self.unread(log, 0, read.as_ref().err());
             }
         }
     }
@@ -136,23 +179,8 @@ impl Journal {
         format!("{robots} robot{plural}, {answer} {verb}")
     }
 
-    fn say(&self, level: Level, robot: &Robot, what: &str, fields: &[(&str, &str)]) {
-        let own = [("robot", robot.name.as_str()), ("family", robot.family.name())];
-        self.screen.log(level, &format!("{}: {what}", robot.label()), &[&own, fields].concat());
-    }
-
-    fn failed(&self, robot: &Robot, failure: &Failure) {
-        let kind = kind(failure);
-        let mut fields = vec![("robot", robot.name.as_str()), ("family", robot.family.name()), ("kind", &kind)];
-        fields.extend(failure.code.as_deref().map(|code| ("code", code)));
-        let label = robot.label();
-        let message = &failure.message;
-        let text = if message.contains(&label) { message.clone() } else { format!("{label}: {message}") };
-        self.screen.log(Level::Warning, &text, &fields);
-    }
-
     /// Says why something cannot be read, once for each reason.
-    fn unread(&mut self, which: usize, why: Option<&Failure>) {
+    fn unread(&mut self, log: &Log, which: usize, why: Option<&Failure>) {
         let Some(failure) = why else {
             // A look at a robot without a fault needs no texts, and says nothing of them.
             if which == 0 {
@@ -162,10 +190,27 @@ impl Journal {
         };
         if self.unread[which].as_ref() != Some(&failure.message) {
             let effect = if which == 0 { "the robots stay as they were" } else { "its texts are left out" };
-            self.screen.log(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
+            log.say(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
             self.unread[which] = Some(failure.message.clone());
         }
     }
+}
+
+/// Says something of a robot.
+fn say(log: &Log, level: Level, robot: &Robot, what: &str, fields: &[(&str, &str)]) {
+    let own = [("robot", robot.name.as_str()), ("family", robot.family.name())];
+    log.say(level, &format!("{}: {what}", robot.label()), &[&own, fields].concat());
+}
+
+/// Says that one does not answer as it should.
+fn failed(log: &Log, robot: &Robot, failure: &Failure) {
+    let kind = kind(failure);
+    let mut fields = vec![("robot", robot.name.as_str()), ("family", robot.family.name()), ("kind", &kind)];
+    fields.extend(failure.code.as_deref().map(|code| ("code", code)));
+    let label = robot.label();
+    let message = &failure.message;
+    let text = if message.contains(&label) { message.clone() } else { format!("{label}: {message}") };
+    log.say(Level::Warning, &text, &fields);
 }
 
 /// The class of a failure, as the envelope has it: `no_answer`.

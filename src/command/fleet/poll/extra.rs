@@ -23,6 +23,9 @@ pub struct Extra {
     is_named: bool,
 }
 
+/// The command that a line is, or why it is none.
+pub type Read = Result<Box<dyn AnyCommand>, Failure>;
+
 /// What gives an idea of a line that is none.
 const EXAMPLE: &str = "such as 'yerc var get B0..B9' or 'toyo counter get'";
 
@@ -52,7 +55,7 @@ impl Extra {
     }
 
     /// What it is for one robot, where names in it stand for addresses; nothing where it is the same for all.
-    pub fn of(&self, robot: &Robot) -> Option<Result<Box<dyn AnyCommand>, Failure>> {
+    pub fn of(&self, robot: &Robot) -> Option<Read> {
         let words = shlex::split(&self.text).filter(|_| self.is_named)?;
         Some(names::known(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
     }
@@ -78,7 +81,7 @@ fn wrong(text: &str, why: &str, hint: &str) -> Failure {
 }
 
 /// The command that words are, the first of them its family.
-fn read(text: &str, family: Family, words: &[String]) -> Result<Box<dyn AnyCommand>, Failure> {
+fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
     match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {

@@ -8,13 +8,14 @@ use serde_json::Value;
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep_until, timeout};
 
+use super::extra::Read;
 use super::wish::Wants;
 use super::{Event, Extra, LEAVE_WITHIN, Look, RobotId, Teller, over};
 use crate::command::face::Watch;
 use crate::command::face::sample::Traffic;
 use crate::command::families;
 use crate::command::frame::attach::is_held;
-use crate::command::{Access, AnyCommand, ConnectMode, Entry};
+use crate::command::{Access, ConnectMode, Entry};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -29,7 +30,7 @@ pub(super) struct Follower {
     pub stopped: watch::Receiver<bool>,
     pub tell: Teller,
     /// What is asked along with looks, as it is for this robot: by its text.
-    pub asked: HashMap<Arc<str>, Option<Result<Box<dyn AnyCommand>, Failure>>>,
+    pub asked: HashMap<Arc<str>, Option<Read>>,
 }
 
 /// How long a robot that failed is left alone at first, unless looks are further apart.

@@ -350,6 +350,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             // The first looks are done while it is connected to.
             (_, 0) if !again => String::new(),
             (waiting, 0) => format!("; {waiting} {messages} waited for it"),
+            (0, bytes) => format!("; {} KiB on disk waited for it", bytes.div_ceil(1024)),
             (waiting, bytes) => {
                 format!("; {waiting} {messages} and {} KiB on disk waited for it", bytes.div_ceil(1024))
             }
