@@ -144,16 +144,16 @@ impl News {
             Event::Appeared(robot) => {
                 self.answers.insert(RobotId::of(robot), None);
                 if self.has_begun {
-                    say(log, Level::Notice, robot, "is looked at from now on", &[]);
+                    say(log, Level::Notice, robot, "is looked at from now on");
                 }
             }
             Event::Gone(robot) => {
                 self.answers.remove(&RobotId::of(robot));
-                say(log, Level::Notice, robot, "is looked at no more", &[]);
+                say(log, Level::Notice, robot, "is looked at no more");
             }
             Event::Looked(look) => {
                 if self.answers.insert(RobotId::of(&look.robot), Some(true)) == Some(Some(false)) {
-                    say(log, Level::Notice, &look.robot, "answers again", &[]);
+                    say(log, Level::Notice, &look.robot, "answers again");
                 }
                 self.unread(log, 1, look.unexplained.as_ref());
             }
@@ -197,15 +197,20 @@ impl News {
 }
 
 /// Says something of a robot.
-fn say(log: &Log, level: Level, robot: &Robot, what: &str, fields: &[(&str, &str)]) {
-    let own = [("robot", robot.name.as_str()), ("family", robot.family.name())];
-    log.say(level, &format!("{}: {what}", robot.label()), &[&own, fields].concat());
+fn say(log: &Log, level: Level, robot: &Robot, what: &str) {
+    log.say(level, &format!("{}: {what}", robot.label()), &fields_of(robot));
+}
+
+/// What the journal finds a robot by.
+fn fields_of(robot: &Robot) -> [(&'static str, &str); 2] {
+    [("robot", robot.name.as_str()), ("family", robot.family.name())]
 }
 
 /// Says that one does not answer as it should.
 fn failed(log: &Log, robot: &Robot, failure: &Failure) {
     let kind = kind(failure);
-    let mut fields = vec![("robot", robot.name.as_str()), ("family", robot.family.name()), ("kind", &kind)];
+    let mut fields = fields_of(robot).to_vec();
+    fields.push(("kind", &kind));
     fields.extend(failure.code.as_deref().map(|code| ("code", code)));
     let label = robot.label();
     let message = &failure.message;

@@ -7,13 +7,13 @@ use crate::command::fleet::service::Service;
 use crate::output::log::Level;
 
 /// Says what happens with a broker, with a field for the journal, and remembers whether it is reached.
-pub struct Log<'a> {
+pub struct BrokerLog<'a> {
     service: &'a Service,
     url: String,
     is_there: Cell<bool>,
 }
 
-impl<'a> Log<'a> {
+impl<'a> BrokerLog<'a> {
     /// Of a broker that is not reached yet.
     pub fn new(service: &'a Service, url: String) -> Self {
         Self { service, url, is_there: Cell::new(false) }
@@ -26,7 +26,7 @@ impl<'a> Log<'a> {
     }
 }
 
-impl Listener for Log<'_> {
+impl Listener for BrokerLog<'_> {
     fn say(&self, level: Level, text: &str) {
         self.service.say(level, text, &[("broker", &self.url)]);
     }

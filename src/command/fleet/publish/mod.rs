@@ -44,7 +44,7 @@ use serde::Serialize;
 
 use self::also::Also;
 use self::broker::{Broker, Login, Url};
-use self::log::Log;
+use self::log::BrokerLog;
 use self::outbox::Outbox;
 use self::plain::{Alarms, Plain, Position};
 use self::pump::{Counts, Pauses, Pump};
@@ -263,7 +263,7 @@ impl Publish {
         let service = Service::begin(run.screen)?;
         let (outbox, folder) = self.outbox(&node)?;
         let speech = self.speech((&node, levels), &also, folder.as_deref());
-        let log = Log::new(&service, broker.url.to_string());
+        let log = BrokerLog::new(&service, broker.url.to_string());
         catch_interrupts();
         let extras = also.iter().map(Also::extra).collect();
         let mut events = poll.subscribe(Wish { extras, ..Wish::every(interval) });
