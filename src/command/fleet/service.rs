@@ -11,8 +11,10 @@ use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
 use crate::failure::Failure;
-use crate::output::log::{self, Level};
-use crate::output::{Screen, escape};
+use crate::output::Screen;
+use crate::output::log::Level;
+#[cfg(unix)]
+use crate::output::{escape, log};
 use crate::settings::Robot;
 #[cfg(unix)]
 use crate::transport::journal::{Journal, PLACE};

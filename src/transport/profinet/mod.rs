@@ -16,6 +16,7 @@ pub mod interface;
 pub mod layout;
 #[cfg(target_os = "linux")]
 pub mod link;
+mod link_error;
 #[cfg(target_os = "linux")]
 pub mod network;
 #[cfg(target_os = "linux")]

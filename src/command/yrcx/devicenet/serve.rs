@@ -1,5 +1,6 @@
 //! A simulated controller behind SLCAN adapters, for others.
 
+use std::iter;
 use std::net::SocketAddr;
 use std::path::Path;
 
@@ -57,11 +58,11 @@ impl Serve for ServeArgs {
 
     fn serve(&self, simulator: Option<&str>, start: Start, link: Option<&Path>) -> Result<Served, Failure> {
         let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
-        let mut listen = vec![Listen::Tcp(self.slcan_bind)];
         #[cfg(unix)]
-        if link.is_some() {
-            listen.push(Listen::Pty);
-        }
+        let terminal = link.map(|_| Listen::Pty);
+        #[cfg(not(unix))]
+        let terminal = None;
+        let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
         let hub = simulated::serve(start, setup, &listen, self.frame_fault.clone(), self.node_fault);
         let hub = hub.map_err(|error| cannot_listen(&format!("TCP {}", self.slcan_bind), &error))?;
         let place = hub.places().first().map(String::as_str).unwrap_or_default();
