@@ -3,11 +3,10 @@
 //! stdout carries data only; prompts, progress, hints and logs go to stderr.
 
 pub mod busy;
-pub mod columns;
+pub mod csv;
 pub mod editor;
 pub mod envelope;
 pub mod escape;
-pub mod flat;
 pub mod fullscreen;
 pub mod jq;
 pub mod leave;

@@ -11,8 +11,8 @@ pub struct Redraw {
     /// Lines that the next text replaces.
     old: Cell<usize>,
     is_on: Cell<bool>,
-    /// Columns of the CSV that was begun.
-    pub columns: RefCell<Vec<String>>,
+    /// The header of the CSV that was begun.
+    pub header: RefCell<String>,
 }
 
 impl Redraw {

@@ -16,18 +16,13 @@ pub fn text(view: &View, width: u16, color: bool) -> String {
     parts.join("\n")
 }
 
-/// The view as CSV (RFC 4180): its table, or its fields as one row, after a column that names the robot where there are
-/// several. Lines end in `\n`. Characters that a terminal would obey are escaped, and texts that a spreadsheet would take
-/// for a formula are marked.
-pub fn csv(view: &View, robot: Option<&str>) -> String {
-    let _busy = busy::busy();
+/// The tables and fields of a view as CSV, for tests: shorter than the text, and without its blanks.
+#[cfg(test)]
+pub fn csv(view: &View) -> String {
     let mut out = String::new();
-    let header = |names: &mut dyn Iterator<Item = &str>| {
-        robot.map(|_| "robot".to_owned()).into_iter().chain(names.map(column_id)).collect::<Vec<_>>()
-    };
-    let line = |cells: &mut dyn Iterator<Item = &Cell>| {
-        robot.map(harmless).into_iter().chain(cells.map(csv_cell)).collect::<Vec<_>>()
-    };
+    let header = |names: &mut dyn Iterator<Item = &str>| names.map(column_id).collect::<Vec<_>>();
+    let line = |cells: &mut dyn Iterator<Item = &Cell>| cells.map(csv_cell).collect::<Vec<_>>();
+    let csv_line = |out: &mut String, cells: &[String]| super::csv::line(out, cells.iter().map(String::as_str));
     for section in &view.sections {
         match section {
             Section::Fields(fields) => {
@@ -327,6 +322,7 @@ fn dyed(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
 }
 
 /// `x (mm)` becomes `x_mm`, and `#` `number`.
+#[cfg(test)]
 fn column_id(name: &str) -> String {
     if name == "#" {
         return "number".to_owned();
@@ -337,32 +333,9 @@ fn column_id(name: &str) -> String {
 }
 
 /// The text of a cell; numbers are as they are.
+#[cfg(test)]
 fn csv_cell(cell: &Cell) -> String {
-    if cell.is_number { escape::lines(&cell.text).into_owned() } else { harmless(&cell.text) }
-}
-
-/// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
-/// formula. Signed numbers are none, nor is the dash that stands for nothing.
-pub(super) fn harmless(text: &str) -> String {
-    let shown = escape::lines(text);
-    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
-    if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
-}
-
-pub(super) fn csv_line(out: &mut String, fields: &[String]) {
-    for (index, field) in fields.iter().enumerate() {
-        if index > 0 {
-            out.push(',');
-        }
-        if field.contains([',', '"', '\n', '\r']) {
-            out.push('"');
-            out.push_str(&field.replace('"', "\"\""));
-            out.push('"');
-        } else {
-            out.push_str(field);
-        }
-    }
-    out.push('\n');
+    if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::harmless(&cell.text) }
 }
 
 #[cfg(test)]
@@ -382,39 +355,6 @@ mod tests {
             text(&sample(), 80, false),
             "NAME            X (MM)\nてすと           1.000\na,\"b\"\\x1b[31m  -20.500\n"
         );
-    }
-
-    #[test]
-    fn csv_quotes_what_needs_it() {
-        assert_eq!(csv(&sample(), None), "name,x_mm\nてすと,1.000\n\"a,\"\"b\"\"\\x1b[31m\",-20.500\n");
-    }
-
-    #[test]
-    fn csv_does_nothing_on_a_terminal_or_in_a_spreadsheet() {
-        let csv = |text: &str| {
-            let mut table = Table::new(&["text"], "");
-            table.row([text.into()]);
-            csv(&View::table(table), None).trim_start_matches("text\n").trim_end_matches('\n').to_owned()
-        };
-        for (text, expected) in [
-            ("=1+2", "'=1+2"),
-            ("+SUM(A1)", "'+SUM(A1)"),
-            ("-2+3", "'-2+3"),
-            ("@HSON", "'@HSON"),
-            ("=HYPERLINK(\"x\",\"y\")", "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""),
-            ("-12.5", "-12.5"),
-            ("+3", "+3"),
-            ("-", "-"),
-            ("a=b", "a=b"),
-            ("\t=1", "\\t=1"),
-            ("\u{1b}]0;title\u{7}", "\\x1b]0;title\\x07"),
-            ("two\nlines", "\"two\nlines\""),
-        ] {
-            assert_eq!(csv(text), expected, "{text:?}");
-        }
-        let text = View::text("a\u{1b}[2Jb\n");
-        assert_eq!(super::csv(&text, Some("=r")), "a\\x1b[2Jb\n");
-        assert!(super::csv(&sample(), Some("=r")).contains("'=r,"));
     }
 
     #[test]

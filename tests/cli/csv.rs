@@ -1,13 +1,12 @@
-//! CSV is made of the fields of the JSON: the same names, for every command that reads.
+//! The columns of CSV come from the schema of the report, for every command that reads.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
 use armctl::command::leaves::leaves;
 use armctl::controller::Risk;
-use armctl::output::columns;
-use serde_json::{Value, json};
+use armctl::output::csv::{RowsOf, Sheet};
+use serde_json::Value;
 
 /// What writes files, waits, or wants another target than a simulator.
 const LEFT_OUT: [&str; 12] = [
@@ -39,32 +38,8 @@ fn printed(line: &str, format: &str, folder: &Path) -> Option<String> {
     output.status.success().then(|| String::from_utf8(output.stdout).expect("CSV and JSON are UTF-8"))
 }
 
-/// Every name that a field can have as a column.
-fn names(value: &Value, path: &str, found: &mut BTreeSet<String>) {
-    let below = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
-    match value {
-        Value::Object(fields) if !fields.is_empty() => {
-            for (name, value) in fields {
-                names(value, &below(name), found);
-            }
-        }
-        Value::Array(items) if !items.is_empty() => {
-            for (index, item) in items.iter().enumerate() {
-                names(item, &below(&index.to_string()), found);
-                if item.is_object() && !path.contains('.') {
-                    names(item, "", found);
-                    names(item, path, found);
-                }
-            }
-        }
-        _ => {
-            found.insert(path.to_owned());
-        }
-    }
-}
-
 #[test]
-fn columns_are_the_fields_of_the_json() {
+fn columns_come_from_the_schema_of_the_json() {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let mut compared = 0;
     for (line, _) in
@@ -76,21 +51,25 @@ fn columns_are_the_fields_of_the_json() {
         let Some(json) = printed(line, "json", folder.path()) else { continue };
         let csv = printed(line, "csv", folder.path()).expect("it is done as CSV, too");
         let envelope: Value = serde_json::from_str(&json).expect("an envelope");
-        let mut known = BTreeSet::new();
-        let envelope = if envelope.is_array() { envelope[0].clone() } else { envelope };
-        names(&envelope["data"], "", &mut known);
-        known.insert("robot".to_owned());
-        // A list of nothing has the columns that its schema tells.
-        let schema =
-            format!("{}/docs/schemas/{}.json", env!("CARGO_MANIFEST_DIR"), envelope["command"].as_str().unwrap());
+        let command = if envelope.is_array() { &envelope[0]["command"] } else { &envelope["command"] };
+        let schema = format!("{}/docs/schemas/{}.json", env!("CARGO_MANIFEST_DIR"), command.as_str().unwrap());
         let schema: Value = serde_json::from_str(&std::fs::read_to_string(schema).expect("a schema")).expect("JSON");
-        for (name, _) in envelope["data"].as_object().into_iter().flatten().filter(|(_, value)| **value == json!([])) {
-            known
-                .extend(columns::of(&schema, name).into_iter().flat_map(|column| [format!("{name}.{column}"), column]));
-        }
         let head = csv.lines().next().unwrap_or_default();
-        let strange: Vec<&str> = head.split(',').filter(|name| !name.is_empty() && !known.contains(*name)).collect();
-        assert_eq!(strange, Vec::<&str>::new(), "{line}: {head}\n{json}");
+        let head = head.strip_prefix("robot,").filter(|_| envelope.is_array()).unwrap_or(head);
+        let variants = schema["anyOf"].as_array().into_iter().flatten();
+        let variants = variants.map(|one| {
+            one["$ref"]
+                .as_str()
+                .map_or(one, |place| schema.pointer(place.trim_start_matches('#')).expect("a definition"))
+        });
+        let lists = std::iter::once(&schema).chain(variants).filter_map(|one| one["properties"].as_object()).flatten();
+        let lists = lists.map(|(name, _)| RowsOf::List(name.clone().leak()));
+        let possible: Vec<String> = [RowsOf::Lists, RowsOf::Report]
+            .into_iter()
+            .chain(lists)
+            .map(|rows| Sheet::of(&schema, rows).header(&[]))
+            .collect();
+        assert!(possible.iter().any(|header| header.trim_end() == head), "{line}: {head}\n{possible:#?}");
         compared += 1;
     }
     assert!(compared > 60, "{compared} commands were compared");

@@ -12,6 +12,7 @@ use crate::command::frame::authority::Authority;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, Command, ConnectMode, Context, Entry, Report};
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 use crate::settings::Robot;
 use crate::settings::alarms::{Alarms, Origin};
@@ -77,8 +78,8 @@ impl<R: Report> Report for Explained<R> {
         self.robots.iter().fold(self.known.view(), |view, told| told.sections().into_iter().fold(view, View::and))
     }
 
-    fn rows(&self) -> Option<&'static str> {
-        if self.robots.is_empty() { self.known.rows() } else { None }
+    fn rows(&self) -> RowsOf {
+        self.known.rows()
     }
 }
 

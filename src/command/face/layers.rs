@@ -173,7 +173,7 @@ mod tests {
         layers.fail("answer", &Failure::new(Kind::NoAnswer, "cell1 (udp://h): no answer").hint("check the cable"));
         let layers = layers.finish();
         assert_eq!(first_failed(&layers), Some(("answer", "no answer")));
-        let csv = render::csv(&View::table(table(&layers)), None);
+        let csv = render::csv(&View::table(table(&layers)));
         assert_eq!(
             csv,
             "layer,state,found\nname,ok,h is 10.0.0.2\nanswer,failed,no answer; check the cable\n\

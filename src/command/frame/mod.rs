@@ -40,4 +40,4 @@ pub(crate) use command_set::commands;
 pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};
 pub use connection::{Access, ConnectMode, Connection, Driver, Entry, Family, Own, OwnArguments};
 pub use kind::{Candidate, ValueKind};
-pub use report::{AnyReport, Outcome, Report, SchemaEntry};
+pub use report::{AnyReport, Outcome, Report, SchemaEntry, schema_of};

@@ -20,6 +20,7 @@ use crate::controller::names::{Found, Grammar, Kind, Name, Names, unusable};
 use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::Screen;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 use crate::settings::Robot;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
@@ -296,8 +297,8 @@ impl Report for Listing {
         view.and(Section::Text(format!("read from the controller on {read_at}, {} ago", in_words(age))))
     }
 
-    fn rows(&self) -> Option<&'static str> {
-        Some("names")
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("names")
     }
 }
 

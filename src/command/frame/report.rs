@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
 /// What a command found out or did.
@@ -18,9 +19,9 @@ pub trait Report: Serialize + JsonSchema {
         None
     }
 
-    /// The list whose things are the rows of a spreadsheet, where that is not every list of a table.
-    fn rows(&self) -> Option<&'static str> {
-        None
+    /// What the rows of a spreadsheet are.
+    fn rows(&self) -> RowsOf {
+        RowsOf::Lists
     }
 }
 
@@ -36,7 +37,7 @@ pub trait AnyReport {
     /// See [`Report::failure`].
     fn failure(&self) -> Option<Failure>;
     /// See [`Report::rows`].
-    fn rows(&self) -> Option<&'static str>;
+    fn rows(&self) -> RowsOf;
     /// The schema of [`AnyReport::data`].
     fn schema(&self) -> Schema;
 }
@@ -54,7 +55,7 @@ impl<R: Report> AnyReport for R {
         Report::failure(self)
     }
 
-    fn rows(&self) -> Option<&'static str> {
+    fn rows(&self) -> RowsOf {
         Report::rows(self)
     }
 
@@ -63,7 +64,8 @@ impl<R: Report> AnyReport for R {
     }
 }
 
-fn schema_of<R: JsonSchema>() -> Schema {
+/// The schema of a report as it is written.
+pub fn schema_of<R: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>()
 }
 

@@ -14,6 +14,7 @@ use super::command::{Command, Context};
 use super::connection::{ConnectMode, Family};
 use super::report::{AnyReport as _, Report};
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, View};
 use crate::settings::duration;
 
@@ -259,8 +260,8 @@ impl Report for Changes {
         View::default().and(Section::Lines(lines.collect()))
     }
 
-    fn rows(&self) -> Option<&'static str> {
-        Some("changes")
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("changes")
     }
 }
 

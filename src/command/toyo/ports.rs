@@ -139,7 +139,7 @@ mod tests {
             ],
         };
         assert_eq!(
-            render::csv(&list.view(), None),
+            render::csv(&list.view()),
             "port,device,target\n\
              /dev/ttyS0,other,serial:///dev/ttyS0\n\
              /dev/ttyUSB0,FTDI FT232R USB UART (usb 0403:6001),\

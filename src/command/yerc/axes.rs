@@ -274,7 +274,7 @@ mod tests {
     fn torque_is_labelled_as_raw() {
         let axes = Axes::new(&[-3, 7]).unwrap();
         let report = Torques { group: "R1".into(), torque_raw: ByAxis::new(axes, true, Fitted::ALL) };
-        assert_eq!(render::csv(&report.view(), None), "axis,torque_raw\nS,-3\nL,7\n");
+        assert_eq!(render::csv(&report.view()), "axis,torque_raw\nS,-3\nL,7\n");
         assert_eq!(serde_json::to_string(&report).unwrap(), r#"{"group":"R1","torque_raw":{"s":-3,"l":7}}"#);
     }
 

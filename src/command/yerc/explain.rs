@@ -8,6 +8,7 @@ use crate::command::face::explain as face;
 use crate::command::{Report, ValueKind};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, View};
 use crate::settings::alarms::{Alarms, Explanation, Origin};
 use crate::settings::target::Family;
@@ -124,7 +125,7 @@ impl Report for Codes {
         View { sections: sections.collect() }
     }
 
-    fn rows(&self) -> Option<&'static str> {
-        Some("codes")
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("codes")
     }
 }

@@ -212,7 +212,7 @@ mod tests {
             ],
         };
         assert_eq!(
-            render::csv(&times.view(), None),
+            render::csv(&times.view()),
             "counter,of,since,elapsed_h_m_s\ncontrol power,controller,2024/01/02 03:04,123:45:06\n\
              servo,R1,2024/01/02 03:04,18:19:02\napplication,2,2024/01/02 03:04,?\n"
         );

@@ -187,7 +187,7 @@ mod tests {
             ],
         };
         assert_eq!(
-            render::csv(&versions.view(), None),
+            render::csv(&versions.view()),
             "part,name,version\ncontroller,system software,DS2.07\nR1,ES0165D-A0*,12.34\nS1,-,-\napplication 1,ES0165D-A0*,-\n"
         );
     }

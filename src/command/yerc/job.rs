@@ -421,7 +421,7 @@ mod tests {
         assert!(json.contains(r#""task":1,"exists":false,"job":null,"line":null"#), "{json}");
         assert!(json.contains(r#""refusal":"0xA001""#), "{json}");
         assert_eq!(
-            render::csv(&tasks.view(), None),
+            render::csv(&tasks.view()),
             "task,job,line,step,override\nmaster,\\x85A,3,0,33.33\nsub 2,-,0,0,0.00\n"
         );
     }

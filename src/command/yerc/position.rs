@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use clap::{Args, ValueEnum};
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
 
 use super::link::Link;
 use super::link::Yerc;
@@ -340,10 +341,7 @@ impl ByAxis {
 
 impl Serialize for ByAxis {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.rows().map(|(name, value)| {
-            let is_number = name.starts_with(|first: char| first.is_ascii_digit());
-            (if is_number { format!("axis_{name}") } else { name.to_lowercase() }, value)
-        }))
+        serializer.collect_map(self.rows().map(|(name, value)| (key(name), value)))
     }
 }
 
@@ -357,8 +355,17 @@ impl JsonSchema for ByAxis {
     }
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        <std::collections::BTreeMap<String, i32>>::json_schema(generator)
+        let value = i32::json_schema(generator);
+        let names = ROBOT_AXES.into_iter().take(MAX_AXES - 1).chain(NUMBERED_AXES).map(key);
+        let properties: Map<String, Value> = names.map(|name| (name, value.clone().to_value())).collect();
+        json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
     }
+}
+
+/// The key of an axis in JSON.
+fn key(name: &str) -> String {
+    let is_number = name.starts_with(|first: char| first.is_ascii_digit());
+    if is_number { format!("axis_{name}") } else { name.to_lowercase() }
 }
 
 impl Report for PositionReport {
@@ -537,7 +544,7 @@ mod tests {
         report.take(Coordinates::Pulse, Ok((pulses(&[1, 2, 3, 4, 5, 6]), Fitted::ALL)));
         report.take(Coordinates::Base, Ok((base(&[100_000, 0, 0, 1_800_000, 0, 0]), Fitted::ALL)));
         assert_eq!(
-            render::csv(&report.view(), None),
+            render::csv(&report.view()),
             "axis,pulses,base,value,unit\nS,1,X,100.000,mm\nL,2,Y,0.000,mm\nU,3,Z,0.000,mm\nR,4,Rx,180.0000,deg\n\
              B,5,Ry,0.0000,deg\nT,6,Rz,0.0000,deg\n,,tool,2,\n,,user,0,\n,,form,front+upper+noflip,\n\
              text,text\n\"pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=2,user=0\",\"base:x=100.000,y=0.000,z=0.000,rx=180.0000,\
@@ -553,7 +560,7 @@ mod tests {
             serde_json::to_value(&report).unwrap()["pulse"]["pulses"].to_string(),
             r#"{"axis_1":7,"axis_2":-8}"#
         );
-        assert_eq!(render::csv(&report.view(), None), "axis,pulses\n1,7\n2,-8\ntext\n\"pulse:1=7,2=-8\"\n");
+        assert_eq!(render::csv(&report.view()), "axis,pulses\n1,7\n2,-8\ntext\n\"pulse:1=7,2=-8\"\n");
     }
 
     #[test]

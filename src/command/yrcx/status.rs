@@ -19,6 +19,7 @@ use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::signal::output;
 use crate::controller::yrcx::table;
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Tone, View};
 
 /// Signals; in a session, on a simulator in this process, or with --full, also servos and position.
@@ -160,6 +161,10 @@ impl StatusReport {
 }
 
 impl Report for StatusReport {
+    fn rows(&self) -> RowsOf {
+        RowsOf::Report
+    }
+
     fn view(&self) -> View {
         let toned = |on: bool, tone: Tone| {
             let cell = Cell::from(if on { "yes" } else { "no" });

@@ -10,6 +10,7 @@ use super::DecodedMessage;
 use crate::command::Report;
 use crate::command::decode::{Field, field_table, in_parentheses, problem_lines};
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::transport::tap::Direction;
 
@@ -144,8 +145,8 @@ impl<F: Field> Report for Capture<F> {
         if self.is_detailed { self.details() } else { self.list() }
     }
 
-    fn rows(&self) -> Option<&'static str> {
-        Some("messages")
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("messages")
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -5,15 +5,17 @@ use std::cell::RefCell;
 use std::io::{self, Read};
 
 use serde::ser::{Serialize, SerializeSeq as _, Serializer};
+use serde_json::json;
 
 use super::report::{Capture, Link, Links, Problems, Row};
 use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
 use crate::command::Report as _;
 use crate::command::frame::run::{Run, RunError, as_value};
+use crate::command::frame::schema_of;
 use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy::busy;
-use crate::output::flat::{Lists, Rows};
+use crate::output::csv::{RowsOf, Sheet};
 use crate::output::render::{self, Layout};
 use crate::output::view::{Table, View};
 use crate::transport::capture::Summary;
@@ -126,23 +128,19 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
 
     /// The messages as CSV, each without its list of fields.
     fn csv<D: CaptureDecoder>(&self, run: &Run, decoder: D) -> Result<(), Failure> {
-        let (mut rows, mut count, mut is_first) = (Rows::default(), 0_usize, true);
-        let mut write = |rows: &mut Rows| {
-            let below = Rows::under(rows.columns().to_vec());
-            run.screen.data(&std::mem::replace(rows, below).csv(std::mem::take(&mut is_first)))
-        };
+        let sheet = Sheet::of(&schema_of::<Capture<D::Field>>().to_value(), RowsOf::List("messages"));
+        let (mut text, mut count) = (sheet.header(&[]), 0_usize);
         let mut written = Ok(());
         self.rows(decoder, |row| {
-            written = as_value(&row).and_then(|mut data| {
-                data.as_object_mut().and_then(|fields| fields.remove("fields"));
-                rows.add(&[], &data, Lists::None, |_| Vec::new());
+            written = as_value(&row).and_then(|row| {
+                sheet.rows(&[], &json!({ "messages": [row] }), &mut text);
                 count += 1;
-                if count.is_multiple_of(PIECE) { write(&mut rows) } else { Ok(()) }
+                if count.is_multiple_of(PIECE) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
             });
             written.is_ok()
         })?;
         written?;
-        write(&mut rows)
+        run.screen.data(&text)
     }
 }
 

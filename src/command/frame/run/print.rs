@@ -7,10 +7,9 @@ use serde_json::Value;
 use super::{Run, RunError};
 use crate::command::frame::{AnyCommand, AnyReport, Outcome};
 use crate::failure::Failure;
-use crate::output::columns;
+use crate::output::csv::Sheet;
 use crate::output::envelope::Envelope;
-use crate::output::flat::{Lists, Rows};
-use crate::output::view::{Section, Table, View};
+use crate::output::view::{Table, View};
 use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 
@@ -194,29 +193,24 @@ impl Run {
         }
     }
 
-    /// Writes the fields of reports as CSV; later rounds of a watch below the columns of the first.
+    /// Writes reports of one kind as CSV. Later rounds of a watch go below the header of the first.
     fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
+        let Some((_, first)) = reports.first() else { return Ok(()) };
+        let sheet = Sheet::of(&first.schema().to_value(), first.rows());
         let is_round = self.repeat.is_wanted() && matches!(place, ReportPosition::First | ReportPosition::Next);
+        let time = (is_round && !sheet.has("time")).then(|| Timestamp::now().to_string());
+        let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
+        before.extend(reports.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
+        let header = sheet.header(&before);
         let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
-        let known = if is_later { self.redraw.columns.take() } else { Vec::new() };
-        let count = known.len();
-        let mut rows = Rows::under(known);
+        let mut text = if is_later && *self.redraw.header.borrow() == header { String::new() } else { header.clone() };
+        self.redraw.header.replace(header);
         for (robot, report) in reports {
-            let lists = match report.rows() {
-                Some(list) => Lists::One(list),
-                None if report.view().sections.iter().any(|part| matches!(part, Section::Table(_))) => Lists::All,
-                None => Lists::None,
-            };
-            let data = report.data()?;
-            let time = is_round.then(|| Timestamp::now().to_string()).filter(|_| !tells_time(&data));
-            let time = time.iter().map(|time| ("time", time.as_str()));
-            let before: Vec<(&str, &str)> =
-                time.chain(robot.iter().map(|robot| ("robot", robot.name.as_str()))).collect();
-            rows.add(&before, &data, lists, |list| columns::of(&report.schema().to_value(), list));
+            let before: Vec<&str> =
+                time.as_deref().into_iter().chain(robot.iter().map(|robot| robot.name.as_str())).collect();
+            sheet.rows(&before, &report.data()?, &mut text);
         }
-        let has_header = !is_later || rows.columns().len() > count;
-        self.redraw.columns.replace(rows.columns().to_vec());
-        self.screen.data(&rows.csv(has_header))
+        self.screen.data(&text)
     }
 
     fn show(&self, view: &View, place: ReportPosition<'_>) -> Result<(), Failure> {
@@ -231,17 +225,6 @@ impl Run {
             }
         };
         screen.data(&self.redraw.over(text))
-    }
-}
-
-/// Whether a report, or what it lists, has times of its own.
-fn tells_time(data: &Value) -> bool {
-    match data {
-        Value::Object(fields) => {
-            fields.contains_key("time") || fields.values().filter(|value| value.is_array()).any(tells_time)
-        }
-        Value::Array(items) => items.iter().any(tells_time),
-        _ => false,
     }
 }
 

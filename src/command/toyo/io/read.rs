@@ -16,6 +16,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 
 /// Which ports.
@@ -290,6 +291,10 @@ struct Unread {
 }
 
 impl Report for Ports {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("ports")
+    }
+
     fn view(&self) -> View {
         let mut table = Table::new(&["port", "8 to 1", "on", "label"], "no ports");
         for port in &self.ports {

@@ -22,6 +22,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Pallet;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// A record of a program and its values, or a file of records.
@@ -123,6 +124,10 @@ pub struct StoredRecord {
 }
 
 impl Report for Stored {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("items")
+    }
+
     fn view(&self) -> View {
         let mut table = Entry::table(&[]);
         table.columns.push("result");

@@ -26,6 +26,7 @@ pub struct Entry {
     /// What it holds.
     pub about: &'static str,
     /// Its values; none if the controller refuses it.
+    #[schemars(length(max = 8))]
     pub values: Vec<Shown>,
     /// Whether it was answered.
     pub ok: bool,

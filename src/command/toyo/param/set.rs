@@ -18,6 +18,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
 /// A parameter, and what it shall hold.
@@ -106,6 +107,10 @@ pub struct Written {
 pub const POWER_CYCLE: &str = "switch the controller's power off and on: until then only communication works";
 
 impl Report for Written {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("items")
+    }
+
     fn view(&self) -> View {
         let values = values::in_a_line(&self.values);
         let mut text = format!("{} {}: {values}\n{}", self.id, self.name, self.cells.in_words());

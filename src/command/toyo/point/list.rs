@@ -14,6 +14,7 @@ use crate::controller::Risk;
 use crate::controller::toyo::bulk::{Setting, points};
 use crate::controller::toyo::layout::Record;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Section, View};
 
 /// Which points, and where to.
@@ -100,6 +101,10 @@ pub struct Saved {
 }
 
 impl Report for Listing {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("points")
+    }
+
     fn view(&self) -> View {
         match self {
             Self::Points(points) => points.view(),

@@ -25,6 +25,7 @@ use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::Screen;
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
 /// A point and its coordinates, or a file of them.
@@ -211,6 +212,10 @@ impl Stored {
 }
 
 impl Report for Stored {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("points")
+    }
+
     fn view(&self) -> View {
         let of = |fate: StoreResult| {
             let rows = self.points.iter().filter(move |row| row.result == fate);

@@ -20,6 +20,7 @@ use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Op, Parameter};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
+use crate::output::csv::RowsOf;
 use crate::output::escape;
 use crate::output::view::View;
 
@@ -221,6 +222,10 @@ impl Step {
 }
 
 impl Report for Got {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("steps")
+    }
+
     fn view(&self) -> View {
         if let Some(text) = &self.text {
             return View::text(text.clone());

@@ -15,6 +15,7 @@ use crate::controller::toyo::request::instruction;
 use crate::controller::toyo::simulator::{Event, State, What};
 use crate::controller::toyo::table::{Instruction, Op};
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, Tone, View};
 
 /// The program of a task, with its file.
@@ -320,6 +321,10 @@ impl Trace {
 type Axis = (&'static str, fn(&Coordinates) -> f64);
 
 impl Report for Trace {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("trace")
+    }
+
     /// Axes that stay at 0 have no column, nor has the task where there is one only.
     fn view(&self) -> View {
         let axes: [Axis; 4] =

@@ -256,7 +256,7 @@ mod tests {
             AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
         let outcome = ItemOutcome::new("alarm slot 1", Ok(entry(20, 1, Some(texts))));
         let alarms = ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, outcome }], with_texts: true, asked: 4 };
-        let csv = render::csv(&alarms.view(), None);
+        let csv = render::csv(&alarms.view());
         assert_eq!(
             csv,
             "slot,code,name,sub_code,time,board\n\

@@ -18,6 +18,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::text::Encoding;
 use crate::controller::yerc::files::FileName;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
@@ -113,6 +114,10 @@ pub struct Fetched {
 }
 
 impl Report for Fetched {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("files")
+    }
+
     fn view(&self) -> View {
         self.results.as_ref().map(Report::view).unwrap_or_default()
     }

@@ -13,6 +13,7 @@ use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::files;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
 /// Lists the files on the controller.
@@ -106,6 +107,10 @@ struct RefusedList {
 }
 
 impl Report for Listing {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("files")
+    }
+
     fn view(&self) -> View {
         let mut table = Table::new(&["name", "type"], "no files of this type");
         for file in &self.files {

@@ -30,6 +30,7 @@ use crate::controller::yerc::variables::{
     ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes,
 };
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
 /// Variables to write.
@@ -390,6 +391,10 @@ impl Part {
 }
 
 impl Report for Written {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("written")
+    }
+
     fn view(&self) -> View {
         let mut table = Table::new(&["written", "label", "value"], "nothing to write");
         let entries = || self.written.iter().map(|written| &written.item);

@@ -9,6 +9,7 @@ use super::{NO_UNIT, board_of};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 
 /// Finds out what the board has: reads every assembly from 1 to 255, then asks for connections with sizes that no assembly
@@ -48,6 +49,10 @@ pub struct ProbeReport {
 }
 
 impl Report for ProbeReport {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("assemblies")
+    }
+
     fn view(&self) -> View {
         let mut view = match &self.identity {
             Some(identity) => View::default().and(Section::Fields(identity.fields())),

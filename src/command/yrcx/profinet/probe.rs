@@ -15,6 +15,7 @@ use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::Risk;
 use crate::controller::yrcx::image::Image;
 use crate::failure::{Failure, Kind};
+use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::transport::profinet::commission::Identity;
 use crate::transport::profinet::error::ProfinetError;
@@ -208,6 +209,10 @@ impl Probed {
 }
 
 impl Report for Probed {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("modules")
+    }
+
     fn view(&self) -> View {
         let mut fields = self.station.fields();
         if let Some(product) = &self.identity {

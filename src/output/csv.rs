@@ -1,0 +1,383 @@
+//! Reports as CSV (RFC 4180): a row for each entry of a list, columns from the schema of the report, never from its data.
+//!
+//! A field keeps its name, and fields of a nested object follow it behind `_`: `error_code`. A list with a greatest length
+//! is a column for each place (`axes_1`), a list of plain values is one cell, and a list of objects inside a row is left
+//! to the JSON. Where a report has several lists, their names stand before those of their fields.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use super::escape;
+
+/// How deep fields are followed. What nests deeper is one cell.
+const DEEPEST: usize = 5;
+/// The longest list that is a column for each place.
+const LONGEST: u64 = 16;
+
+/// What the rows of a report are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowsOf {
+    /// The entries of every list of objects that the report always has. Without such a list the report is one row.
+    Lists,
+    /// The entries of this list, without the fields beside it.
+    List(&'static str),
+    /// The report: one row.
+    Report,
+}
+
+/// The columns of a report.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Fields of the report itself: in every row.
+    common: Vec<Column>,
+    /// Its lists, each with the fields of its entries.
+    lists: Vec<(String, Vec<Column>)>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Column {
+    name: String,
+    /// A JSON pointer, from the report or the entry.
+    pointer: String,
+}
+
+impl Sheet {
+    /// The columns of a report with this schema.
+    pub fn of(schema: &Value, rows: RowsOf) -> Self {
+        let mut sheet = Self { common: Vec::new(), lists: Vec::new() };
+        let all = fields(schema, &[schema]);
+        if all.is_empty() {
+            sheet.common.push(Column { name: "value".to_owned(), pointer: String::new() });
+        }
+        for (name, variants) in all {
+            let entries: Vec<&Value> = variants.iter().flat_map(|one| items(schema, one)).collect();
+            let mut columns = Vec::new();
+            for (field, of_field) in fields(schema, &entries) {
+                add(schema, &field, &pointer("", &field), &of_field, DEEPEST, &mut columns);
+            }
+            let is_list = !columns.is_empty();
+            let is_wanted = match rows {
+                RowsOf::Lists => !is_list || is_required(schema, &name),
+                RowsOf::List(list) => list == name,
+                RowsOf::Report => !is_list,
+            };
+            if !is_wanted {
+                continue;
+            }
+            if is_list {
+                sheet.lists.push((name, columns));
+            } else {
+                add(schema, &name, &pointer("", &name), &variants, DEEPEST, &mut sheet.common);
+            }
+        }
+        let has_several = sheet.lists.len() > 1;
+        let taken: BTreeSet<&String> = sheet.common.iter().map(|column| &column.name).collect();
+        for (list, columns) in &mut sheet.lists {
+            for column in columns.iter_mut().filter(|column| has_several || taken.contains(&column.name)) {
+                column.name = format!("{list}_{}", column.name);
+            }
+        }
+        sheet
+    }
+
+    /// Whether a column has this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns().any(|column| column == name)
+    }
+
+    /// The names of all columns, in order.
+    pub fn columns(&self) -> impl Iterator<Item = &str> {
+        let listed = self.lists.iter().flat_map(|(_, columns)| columns);
+        self.common.iter().chain(listed).map(|column| column.name.as_str())
+    }
+
+    /// The line of names, with the names of other columns before them.
+    pub fn header(&self, before: &[&str]) -> String {
+        let mut out = String::new();
+        line(&mut out, before.iter().copied().chain(self.columns()));
+        out
+    }
+
+    /// Adds the rows of a report: one, or one for each entry of its lists. `before` are the cells of other columns.
+    pub fn rows(&self, before: &[&str], data: &Value, out: &mut String) {
+        let cells = |columns: &[Column], value: &Value| -> Vec<String> {
+            columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
+        };
+        let mut common: Vec<String> = before.iter().map(|text| harmless(text)).collect();
+        common.extend(cells(&self.common, data));
+        if self.lists.is_empty() {
+            return line(out, common.iter().map(String::as_str));
+        }
+        let width: usize = self.lists.iter().map(|(_, columns)| columns.len()).sum();
+        let mut left = 0;
+        for (list, columns) in &self.lists {
+            for entry in data[list].as_array().into_iter().flatten() {
+                let own = cells(columns, entry);
+                let right = width - left - columns.len();
+                let empty = |count| std::iter::repeat_n("", count);
+                let row = common.iter().map(String::as_str).chain(empty(left));
+                line(out, row.chain(own.iter().map(String::as_str)).chain(empty(right)));
+            }
+            left += columns.len();
+        }
+    }
+}
+
+/// Adds the columns of a field: its own, if a plain value may stand there, and those of what is nested in it.
+fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize, columns: &mut Vec<Column>) {
+    let leaf = || Column { name: name.to_owned(), pointer: place.to_owned() };
+    let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf()) };
+    let nested = fields(root, variants);
+    let lists: Vec<&Value> = variants.iter().flat_map(|one| expanded(root, one)).filter(|one| is_list(one)).collect();
+    let of_list: Vec<&Value> = lists.iter().flat_map(|one| items(root, one)).collect();
+    let length = lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= LONGEST);
+    let is_plain = variants.iter().flat_map(|one| expanded(root, one)).any(is_plain);
+    if is_plain || (length.is_none() && !lists.is_empty() && fields(root, &of_list).is_empty()) {
+        columns.push(leaf());
+    }
+    for (field, of_field) in nested {
+        add(root, &format!("{name}_{field}"), &pointer(place, &field), &of_field, depth, columns);
+    }
+    for index in 0..length.unwrap_or_default() {
+        add(root, &format!("{name}_{}", index + 1), &format!("{place}/{index}"), &of_list, depth, columns);
+    }
+}
+
+/// The properties that a value of one of these schemas may have, each with its schemas, in order.
+fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a Value>)> {
+    let mut all: Vec<(String, Vec<&Value>)> = Vec::new();
+    for schema in variants.iter().flat_map(|one| expanded(root, one)) {
+        for (name, field) in schema["properties"].as_object().into_iter().flatten() {
+            match all.iter_mut().find(|(known, _)| known == name) {
+                Some((_, schemas)) => schemas.push(field),
+                None => all.push((name.clone(), vec![field])),
+            }
+        }
+    }
+    all
+}
+
+/// Whether a report of this schema always has this field.
+fn is_required(root: &Value, name: &str) -> bool {
+    let lists = expanded(root, root).into_iter().filter_map(|schema| schema["required"].as_array());
+    lists.flatten().any(|required| required == name)
+}
+
+/// The schemas of what a list holds.
+fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
+    let lists = expanded(root, schema).into_iter().filter(|one| is_list(one));
+    lists
+        .flat_map(|list| list.get("items").into_iter().chain(list["prefixItems"].as_array().into_iter().flatten()))
+        .collect()
+}
+
+/// A schema with references followed and alternatives taken apart.
+fn expanded<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
+    let mut found = Vec::new();
+    let mut open = vec![(schema, DEEPEST)];
+    while let Some((schema, depth)) = open.pop() {
+        let Some(depth) = depth.checked_sub(1) else { continue };
+        found.push(schema);
+        let reference = schema["$ref"].as_str().and_then(|reference| reference.strip_prefix('#'));
+        let alternatives = ["allOf", "anyOf", "oneOf"].into_iter().filter_map(|kind| schema[kind].as_array()).flatten();
+        let below: Vec<_> = reference.and_then(|place| root.pointer(place)).into_iter().chain(alternatives).collect();
+        // The last one in is the first one out.
+        open.extend(below.into_iter().rev().map(|schema| (schema, depth)));
+    }
+    found
+}
+
+fn is_list(schema: &Value) -> bool {
+    types(schema).any(|name| name == "array")
+}
+
+/// Whether a value of this schema may be a single cell. A map without known keys is one, too.
+fn is_plain(schema: &Value) -> bool {
+    let is_scalar = types(schema).any(|name| ["string", "number", "integer", "boolean"].contains(&name));
+    let is_map = types(schema).any(|name| name == "object") && schema.get("properties").is_none();
+    let is_any = schema.as_bool() == Some(true)
+        || schema.as_object().is_some_and(|keys| keys.keys().all(|key| key == "description" || key == "default"));
+    is_scalar || is_map || is_any || schema.get("enum").is_some() || schema.get("const").is_some()
+}
+
+/// The types that a schema names itself.
+fn types(schema: &Value) -> impl Iterator<Item = &str> {
+    let named = &schema["type"];
+    named.as_str().into_iter().chain(named.as_array().into_iter().flatten().filter_map(Value::as_str))
+}
+
+fn pointer(place: &str, field: &str) -> String {
+    format!("{place}/{}", field.replace('~', "~0").replace('/', "~1"))
+}
+
+/// A value as a cell. What has columns of its own leaves this one empty.
+fn cell(value: &Value) -> String {
+    let is_scalar = |value: &Value| !value.is_object() && !value.is_array();
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => harmless(text),
+        Value::Bool(_) | Value::Number(_) => value.to_string(),
+        Value::Array(values) if values.iter().all(is_scalar) => {
+            let between = if values.iter().any(Value::is_string) { "; " } else { " " };
+            harmless(
+                &values
+                    .iter()
+                    .map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned))
+                    .collect::<Vec<_>>()
+                    .join(between),
+            )
+        }
+        Value::Array(_) | Value::Object(_) => harmless(&value.to_string()),
+    }
+}
+
+/// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
+/// formula. Signed numbers are none, nor is the dash that stands for nothing.
+pub(super) fn harmless(text: &str) -> String {
+    let shown = escape::lines(text);
+    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
+}
+
+/// Adds a line of fields, quoted where they need it.
+pub(super) fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
+    for (index, field) in fields.enumerate() {
+        if index > 0 {
+            out.push(',');
+        }
+        if field.contains([',', '"', '\n', '\r']) {
+            out.push('"');
+            out.push_str(&field.replace('"', "\"\""));
+            out.push('"');
+        } else {
+            out.push_str(field);
+        }
+    }
+    out.push('\n');
+}
+
+#[cfg(test)]
+mod tests {
+    use schemars::{JsonSchema, schema_for};
+    use serde::Serialize;
+    use serde_json::json;
+
+    use super::*;
+
+    #[derive(Serialize, JsonSchema)]
+    struct Report {
+        group: u8,
+        alarms: Vec<Alarm>,
+    }
+
+    #[derive(Serialize, JsonSchema)]
+    struct Alarm {
+        code: String,
+        sub_code: Option<SubCode>,
+        value: Number,
+        axes: [i32; 2],
+        remedies: Vec<String>,
+        /// Inside a row: only in the JSON.
+        details: Vec<SubCode>,
+        group: Option<u8>,
+    }
+
+    #[derive(Serialize, JsonSchema)]
+    struct SubCode {
+        raw: u32,
+    }
+
+    #[derive(Serialize, JsonSchema)]
+    #[serde(untagged)]
+    enum Number {
+        Whole(i32),
+        Point { x_mm: f64 },
+    }
+
+    const HEADER: &str = "group,code,sub_code_raw,value,value_x_mm,axes_1,axes_2,remedies,alarms_group\n";
+
+    fn sheet() -> Sheet {
+        Sheet::of(&schema_for!(Report).to_value(), RowsOf::Lists)
+    }
+
+    fn rows(sheet: &Sheet, data: &Value) -> String {
+        let mut out = String::new();
+        sheet.rows(&[], data, &mut out);
+        out
+    }
+
+    #[test]
+    fn columns_are_the_same_with_no_entry_and_with_many() {
+        let none = serde_json::to_value(Report { group: 1, alarms: Vec::new() }).unwrap();
+        assert_eq!((sheet().header(&[]).as_str(), rows(&sheet(), &none).as_str()), (HEADER, ""));
+        let alarm = |sub_code, value| Alarm {
+            code: "4315".to_owned(),
+            sub_code,
+            value,
+            axes: [1, -2],
+            remedies: vec!["a, b".to_owned(), "c".to_owned()],
+            details: vec![SubCode { raw: 1 }],
+            group: None,
+        };
+        let alarms = vec![alarm(Some(SubCode { raw: 7 }), Number::Whole(5)), alarm(None, Number::Point { x_mm: 1.5 })];
+        let many = serde_json::to_value(Report { group: 1, alarms }).unwrap();
+        assert_eq!(
+            rows(&sheet(), &many),
+            "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,\"{\"\"x_mm\"\":1.5}\",1.5,1,-2,\"a, b; c\",\n"
+        );
+    }
+
+    #[test]
+    fn a_report_without_a_list_is_one_row() {
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Status {
+            mode: Option<String>,
+            held: bool,
+        }
+        let sheet = Sheet::of(&schema_for!(Status).to_value(), RowsOf::Lists);
+        assert_eq!(sheet.header(&["robot"]), "robot,mode,held\n");
+        let mut out = String::new();
+        sheet.rows(&["=r"], &json!({"held": true}), &mut out);
+        assert_eq!(out, "'=r,,true\n");
+        let text = Sheet::of(&schema_for!(String).to_value(), RowsOf::Lists);
+        assert_eq!((text.header(&[]).as_str(), rows(&text, &json!("-x")).as_str()), ("value\n", "'-x\n"));
+    }
+
+    #[test]
+    fn several_lists_name_their_columns() {
+        #[derive(JsonSchema)]
+        #[expect(dead_code, reason = "only its schema matters")]
+        struct Two {
+            signals: Vec<SubCode>,
+            groups: Option<Vec<SubCode>>,
+            #[serde(skip_serializing_if = "Vec::is_empty")]
+            left_over: Vec<SubCode>,
+        }
+        let schema = schema_for!(Two).to_value();
+        let data = json!({"signals": [{"raw": 1}], "groups": [{"raw": 2}]});
+        let both = Sheet::of(&schema, RowsOf::Lists);
+        assert_eq!(both.header(&[]), "signals_raw,groups_raw\n");
+        assert_eq!(rows(&both, &data), "1,\n,2\n");
+        let one = Sheet::of(&schema, RowsOf::List("groups"));
+        assert_eq!((one.header(&[]).as_str(), rows(&one, &data).as_str()), ("raw\n", "2\n"));
+    }
+
+    #[test]
+    fn cells_do_nothing_on_a_terminal_or_in_a_spreadsheet() {
+        let cases = [
+            ("=1+1", "'=1+1\n"),
+            ("@SUM", "'@SUM\n"),
+            ("-12.5", "-12.5\n"),
+            ("-", "-\n"),
+            ("-x", "'-x\n"),
+            ("\u{1b}[2J", "\\x1b[2J\n"),
+            ("a,\"b\"", "\"a,\"\"b\"\"\"\n"),
+        ];
+        let sheet = Sheet::of(&schema_for!(String).to_value(), RowsOf::Lists);
+        for (text, expected) in cases {
+            assert_eq!(rows(&sheet, &json!(text)), expected, "{text:?}");
+        }
+    }
+}
