@@ -355,7 +355,8 @@ mod tests {
             #[serde(skip_serializing_if = "Vec::is_empty")]
             left_over: Vec<SubCode>,
         }
-        let schema = schema_for!(Two).to_value();
+        let settings = schemars::generate::SchemaSettings::draft2020_12().for_serialize();
+        let schema = settings.into_generator().into_root_schema_for::<Two>().to_value();
         let data = json!({"signals": [{"raw": 1}], "groups": [{"raw": 2}]});
         let both = Sheet::of(&schema, RowsOf::Lists);
         assert_eq!(both.header(&[]), "signals_raw,groups_raw\n");
