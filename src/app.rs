@@ -27,6 +27,7 @@ use clap::builder::StyledStr;
 use self::parser::{Parser, Refusal};
 use self::prepared::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
+use crate::command::frame::guardian;
 use crate::command::frame::run::RunError;
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
@@ -36,6 +37,9 @@ use crate::settings::target::Family;
 /// Runs a command line, the program's name included, and says how the process ends.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
+    if let Some(served) = guardian::serve(&args) {
+        return exit(served);
+    }
     if jq::worker::is_meant(&args) {
         return exit(jq::worker::serve());
     }

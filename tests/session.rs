@@ -2,6 +2,8 @@
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
+mod orphans;
+
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -264,7 +266,8 @@ fn an_interrupt_stops_a_motion_in_a_session_too() {
 fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     let (_simulator, desk) = cell();
     let mut session = Running::session(&desk, "cell");
-    let moving = moving(&desk);
+    let mut moving = Running::start(desk.command(&format!("{SLOW} --on-interrupt leave -vv")), false);
+    moving.says("<- WO 0100");
     let pid = moving.process.id();
     moving.signal("KILL");
     session.says(&format!("client {pid} has died"));

@@ -1,7 +1,8 @@
 //! What a client may send.
 
-use std::sync::Arc;
+use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use armctl_controller::Risk;
 use thiserror::Error;
@@ -9,7 +10,22 @@ use thiserror::Error;
 /// The most that may leave through a client. Clones are the same grant: whoever keeps one can raise it, and the client
 /// checks it before every request.
 #[derive(Debug, Clone)]
-pub struct Grant(Arc<AtomicU8>);
+pub struct Grant(Arc<Granted>);
+
+#[derive(Debug)]
+struct Granted {
+    most: AtomicU8,
+    /// Called before a motion is sent.
+    on_motion: OnceLock<Hook>,
+}
+
+struct Hook(Box<dyn Fn() + Send + Sync>);
+
+impl fmt::Debug for Hook {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Hook")
+    }
+}
 
 /// Something riskier than what was granted. Nothing was sent.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -26,23 +42,34 @@ const RISKS: [Risk; 4] = [Risk::Read, Risk::Write, Risk::Destroy, Risk::Motion];
 impl Grant {
     /// Lets through what is not riskier than this.
     pub fn of(risk: Risk) -> Self {
-        Self(Arc::new(AtomicU8::new(risk as u8)))
+        Self(Arc::new(Granted { most: AtomicU8::new(risk as u8), on_motion: OnceLock::new() }))
     }
 
     /// The most that may leave.
     pub fn get(&self) -> Risk {
         // Only `raise` writes it, and it writes the number of a risk.
-        RISKS[usize::from(self.0.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
+        RISKS[usize::from(self.0.most.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
     }
 
     /// Lets this through from now on as well.
     pub fn raise(&self, risk: Risk) {
-        self.0.fetch_max(risk as u8, Ordering::Relaxed);
+        self.0.most.fetch_max(risk as u8, Ordering::Relaxed);
     }
 
     /// The last check before something leaves: whether `what` may.
     pub fn check(&self, risk: Risk, what: &str) -> Result<(), NotAuthorized> {
-        if risk <= self.get() { Ok(()) } else { Err(NotAuthorized { what: what.to_owned(), risk }) }
+        if risk > self.get() {
+            return Err(NotAuthorized { what: what.to_owned(), risk });
+        }
+        if let Some(Hook(hook)) = self.0.on_motion.get().filter(|_| risk == Risk::Motion) {
+            hook();
+        }
+        Ok(())
+    }
+
+    /// Has `hook` called each time before a motion is sent. The first hook of a grant stays.
+    pub fn on_motion(&self, hook: impl Fn() + Send + Sync + 'static) {
+        let _ = self.0.on_motion.set(Hook(Box::new(hook)));
     }
 }
 

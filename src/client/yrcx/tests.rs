@@ -63,7 +63,9 @@ async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
 
 /// A client of the session at a spot.
 async fn attached(spot: &Spot) -> Client {
-    let Found::Session(attached) = attach_at(spot, "cell", "test").await.unwrap() else { panic!("nobody holds it") };
+    let Found::Session(attached) = attach_at(spot, "cell", "test", false).await.unwrap() else {
+        panic!("nobody holds it")
+    };
     Client::connect(ImageLink::in_session(attached), Options::default()).await.unwrap()
 }
 

@@ -209,6 +209,10 @@ impl<F: Declaration> Face for Declared<F> {
         F::PANEL
     }
 
+    fn stop(&self) -> &'static [&'static str] {
+        F::STOP
+    }
+
     fn guard(&self) -> Guard {
         F::GUARD
     }

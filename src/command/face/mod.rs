@@ -84,6 +84,8 @@ pub trait Face: Sync {
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
+    /// The words of the command that stops a robot, behind the word of the family.
+    fn stop(&self) -> &'static [&'static str];
     /// What may pass to a read-only robot, whoever sends it through a session.
     fn guard(&self) -> Guard;
     /// Whether a session records what passes; otherwise each command does.

@@ -29,6 +29,7 @@ pub enum Link {
 impl Family for Fleet {
     const FAMILY: Option<target::Family> = None;
     type Link = Link;
+    const STOP: &'static [&'static str] = &[];
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let face = families::of(robot.family);

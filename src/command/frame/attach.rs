@@ -30,7 +30,7 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
     if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }
-    let attached = match client::attach(&key_of(robot), &command_line(access)).await {
+    let attached = match client::attach(&key_of(robot), &command_line(access), access.leaves_motion).await {
         Ok(Found::Session(attached)) => attached,
         Ok(Found::Nothing) => return Ok(None),
         Ok(Found::Dead) => {
@@ -70,6 +70,16 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
 pub fn is_held(robot: &Robot) -> bool {
     robot.sessions != Sessions::None
         && Place::find().is_ok_and(|place| place.is_some_and(|place| place.spot(&key_of(robot)).is_open()))
+}
+
+/// Whether a session of another process holds the robot's link, and commands may go through it.
+pub fn is_held_by_another(robot: &Robot) -> bool {
+    is_held(robot)
+        && Place::find()
+            .ok()
+            .flatten()
+            .and_then(|place| place.spot(&key_of(robot)).owner())
+            .is_some_and(|owner| owner.pid != process())
 }
 
 /// What the robot's session is named by: by its address, or by the other one that a session was opened with.

@@ -98,6 +98,11 @@ pub trait Command {
         false
     }
 
+    /// Whether it jogs: such a motion is stopped even where `--on-interrupt` says to leave it.
+    fn jogs(&self) -> bool {
+        false
+    }
+
     /// Whether it is repeated until something ends it, each run waiting for the next thing to tell.
     fn is_endless(&self) -> bool {
         false
@@ -140,6 +145,10 @@ pub trait AnyCommand {
     }
     /// See [`Command::moves_until_stopped`].
     fn moves_until_stopped(&self) -> bool {
+        false
+    }
+    /// See [`Command::jogs`].
+    fn jogs(&self) -> bool {
         false
     }
     /// See [`Command::is_endless`].
@@ -201,6 +210,10 @@ impl<C: Command> AnyCommand for C {
 
     fn moves_until_stopped(&self) -> bool {
         Command::moves_until_stopped(self)
+    }
+
+    fn jogs(&self) -> bool {
+        Command::jogs(self)
     }
 
     fn is_endless(&self) -> bool {

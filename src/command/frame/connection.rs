@@ -31,12 +31,15 @@ pub struct Access {
     pub typed: Option<Arc<str>>,
     /// What was typed between the word of the family and the command.
     pub own: Own,
+    /// Whether the robot moves on if this process dies.
+    pub leaves_motion: bool,
 }
 
 impl Access {
     /// For what only looks.
     pub fn reading(mode: ConnectMode) -> Self {
-        Self { granted: Grant::of(Risk::Read), dry_run: false, trace: None, mode, typed: None, own: Own::default() }
+        let (granted, own) = (Grant::of(Risk::Read), Own::default());
+        Self { granted, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false }
     }
 }
 
@@ -111,6 +114,8 @@ pub trait Family: Sized + 'static {
     const FAMILY: Option<target::Family>;
     /// A connection to one robot.
     type Link: 'static;
+    /// Words of the command that stops a robot, behind the word of the family; none where nothing moves.
+    const STOP: &'static [&'static str];
 
     /// Connects. With `dry_run` nothing is opened.
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
@@ -158,6 +163,8 @@ pub trait Connection {
 pub trait Driver: Sync {
     /// See [`Family::FAMILY`].
     fn family(&self) -> Option<target::Family>;
+    /// See [`Family::STOP`].
+    fn stop(&self) -> &'static [&'static str];
     /// See [`Family::entry`].
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
     /// See [`Family::addresses`].
@@ -181,6 +188,10 @@ struct Drives<F>(PhantomData<fn() -> F>);
 impl<F: Family> Driver for Drives<F> {
     fn family(&self) -> Option<target::Family> {
         F::FAMILY
+    }
+
+    fn stop(&self) -> &'static [&'static str] {
+        F::STOP
     }
 
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {

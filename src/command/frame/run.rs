@@ -15,12 +15,13 @@ pub use self::print::as_value;
 use self::print::{ReportPosition, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
-use super::attach::identify;
+use super::attach::{identify, is_held_by_another};
 use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry, Own};
 use super::dry_run::{DryRun, Plan, is_end};
+use super::guardian::Guardian;
 use super::interrupt::{catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
@@ -389,6 +390,7 @@ impl Run {
             mode: command.connect_mode(),
             typed: None,
             own: self.own.clone(),
+            leaves_motion: self.leaves_motion(command),
         }
     }
 
@@ -404,8 +406,40 @@ impl Run {
         AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
     }
 
-    /// One run. Ctrl-C during a motion stops the robot first.
+    /// Whether what a command sets in motion goes on when this process ends. A jog never does.
+    fn leaves_motion(&self, command: &dyn AnyCommand) -> bool {
+        self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
+    }
+
+    /// One run, with a guardian where the robot may move.
     async fn attempt(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        grant: &Grant,
+    ) -> Outcome {
+        let guardian = self.guardian(command, robot)?;
+        let attempt = self.attempt_alone(command, robot, link, grant);
+        let Some(guardian) = guardian else { return attempt.await };
+        grant.on_motion(guardian.before_motion());
+        guardian.guard(attempt).await
+    }
+
+    /// What stops the robot when this process dies or hangs: the guardian, a session of another process, or the adapter of
+    /// a fieldbus, which misses its master. For those the guardian only ends a process that hangs.
+    fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
+        let intent = command.intent(Some(robot));
+        let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
+        let Some(driver) = command.driver().filter(|_| moves && !robot.target.value.is_simulated()) else {
+            return Ok(None);
+        };
+        let stops = command.entry(robot) == Entry::Harmless && !is_held_by_another(robot);
+        Guardian::start(robot, driver.stop(), stops).map(Some)
+    }
+
+    /// One run. Ctrl-C during a motion stops the robot first.
+    async fn attempt_alone(
         &self,
         command: &dyn AnyCommand,
         robot: &Robot,

@@ -329,6 +329,10 @@ impl Command for Jog {
         self.in_words(&self.axis.to_string())
     }
 
+    fn jogs(&self) -> bool {
+        true
+    }
+
     /// The controller tells which axis has which letter.
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Jogged, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {

@@ -56,6 +56,7 @@ pub struct Link {
 impl Family for Toyo {
     const FAMILY: Option<target::Family> = Some(target::Family::Toyo);
     type Link = Link;
+    const STOP: &'static [&'static str] = &["stop"];
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         Link::of(connect::open(robot, &access, screen).await?, robot, &access, screen)

@@ -58,6 +58,7 @@ pub struct Link {
 impl Family for Yerc {
     const FAMILY: Option<target::Family> = Some(target::Family::Yerc);
     type Link = Link;
+    const STOP: &'static [&'static str] = &["hold", "on"];
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let mut client = connect::open(robot, &access, screen).await?;

@@ -71,6 +71,7 @@ pub struct Link {
 impl Family for Yrcx {
     const FAMILY: Option<target::Family> = Some(target::Family::Yrcx);
     type Link = Link;
+    const STOP: &'static [&'static str] = &["stop"];
 
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Link, Failure> {
         let endpoint = connect::endpoint(robot)?;

@@ -70,20 +70,22 @@ pub enum SessionBusy {
     Moved(Peer),
 }
 
-/// Looks for the session of this key, and says hello to it.
-pub async fn attach(key: &str, command: &str) -> Result<Found, AttachError> {
+/// Looks for the session of this key, and says hello to it. `leaves_motion`: the session does not stop the robot if this
+/// process dies while it moves the robot.
+pub async fn attach(key: &str, command: &str, leaves_motion: bool) -> Result<Found, AttachError> {
     match Place::find()? {
-        Some(place) => attach_at(&place.spot(key), key, command).await,
+        Some(place) => attach_at(&place.spot(key), key, command, leaves_motion).await,
         None => Ok(Found::Nothing),
     }
 }
 
 /// The same, where the spot is known.
-pub async fn attach_at(spot: &Spot, key: &str, command: &str) -> Result<Found, AttachError> {
+pub async fn attach_at(spot: &Spot, key: &str, command: &str, leaves_motion: bool) -> Result<Found, AttachError> {
     let Some(mut end) = End::connect(spot).await? else {
         return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
     };
-    let hello = Hello { version: VERSION, key: key.to_owned(), pid: std::process::id(), command: short(command) };
+    let (key, pid, command) = (key.to_owned(), std::process::id(), short(command));
+    let hello = Hello { version: VERSION, key, pid, command, leaves_motion };
     end.post(Control::Hello(hello));
     match end.answer().await? {
         Control::Welcome(welcome) if welcome.version == VERSION => {

@@ -10,8 +10,8 @@
 //!   switched bit by bit by whoever wants to, so that a stop needs no turn;
 //! - one client at a time moves the robot.
 //!
-//! A client that dies gives back what it holds. What it left on the image stays there: to take it away would be a decision
-//! about a machine that moves.
+//! A client that dies gives back what it holds. What it was moving is stopped, unless it said that it leaves its motion: then
+//! what it left on the image stays there.
 
 pub mod client;
 pub mod host;

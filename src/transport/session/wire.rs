@@ -12,7 +12,7 @@ use tokio::io::AsyncReadExt as _;
 use super::socket::ReadHalf;
 
 /// What both sides must speak alike.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Longest frame: more than a datagram or an image can have.
 const LONGEST: usize = 1 << 17;
@@ -133,6 +133,8 @@ pub struct Hello {
     pub pid: u32,
     /// Its command line.
     pub command: String,
+    /// Whether the robot moves on if the client dies.
+    pub leaves_motion: bool,
 }
 
 /// A client, to others.

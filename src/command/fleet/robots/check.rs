@@ -32,6 +32,7 @@ impl Family for Checked {
     const FAMILY: Option<target::Family> = None;
     /// How the check may connect.
     type Link = Access;
+    const STOP: &'static [&'static str] = &[];
 
     async fn connect(_robot: &Robot, access: Access, _screen: &Screen) -> Result<Access, Failure> {
         Ok(access)

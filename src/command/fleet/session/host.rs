@@ -14,6 +14,7 @@ use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
 use crate::command::frame::attach::{key_of, no_place};
+use crate::command::frame::guardian;
 use crate::command::frame::session_manager::{By, ManagerRequest, SessionManager};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -63,6 +64,12 @@ impl SessionHost {
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host = Host::new(claim, key, info, held, say).with_context(|| spot.socket().display().to_string())?;
+        let (orphaned, note) = (robot.clone(), *screen);
+        let host = host.stopped_by(move |why| {
+            let label = orphaned.label();
+            note.note(&format!("{label}: {why}: the robot is being stopped"));
+            guardian::stop_orphan(&orphaned, face.stop(), move |what| note.note(&format!("{label}: {what}")));
+        });
         let host = if robot.read_only.value { host.guarded(face.guard()) } else { host };
         Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
     }

@@ -75,6 +75,10 @@ impl Command for Jog {
         self.within.is_none()
     }
 
+    fn jogs(&self) -> bool {
+        true
+    }
+
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());

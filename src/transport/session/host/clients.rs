@@ -30,6 +30,8 @@ pub struct Client {
     pid: Option<u32>,
     /// What it says it is; `None` before its hello.
     name: Option<(u32, String)>,
+    /// Whether the robot moves on if it dies.
+    pub leaves_motion: bool,
     /// Whether it said that it leaves.
     pub has_left: bool,
     /// What the device is shown if it dies.
@@ -58,6 +60,7 @@ impl Client {
             outbox,
             pid,
             name: None,
+            leaves_motion: false,
             has_left: false,
             will: None,
             since: now,

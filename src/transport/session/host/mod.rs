@@ -46,6 +46,10 @@ pub struct Host {
     say: Box<dyn FnMut(&str)>,
     /// What clients may send; anything, if there is none.
     guard: Option<Guard>,
+    /// Stops the robot when the client that moved it has died; is given the reason.
+    stop: Box<dyn FnMut(&str)>,
+    /// Whether the link went down while a client moved the robot.
+    was_lost_in_motion: bool,
 }
 
 /// What may pass to a device that is only to be read, whoever sends it.
@@ -80,6 +84,8 @@ impl Host {
             reopenings: 0,
             say: Box::new(say),
             guard: None,
+            stop: Box::new(|_| {}),
+            was_lost_in_motion: false,
         })
     }
 
@@ -87,6 +93,13 @@ impl Host {
     #[must_use]
     pub fn guarded(self, guard: Guard) -> Self {
         Self { guard: Some(guard), ..self }
+    }
+
+    /// Has `stop` stop the robot when a client that moved it has died, or when the link is open again that was lost in a
+    /// motion.
+    #[must_use]
+    pub fn stopped_by(self, stop: impl FnMut(&str) + 'static) -> Self {
+        Self { stop: Box::new(stop), ..self }
     }
 
     /// Serves until a client has it end. The future may be dropped: [`Host::end`] goes on from there.
@@ -235,6 +248,7 @@ impl Host {
             return;
         }
         client.named(hello.pid, short(&hello.command));
+        client.leaves_motion = hello.leaves_motion;
         client.tell(Control::Welcome(Box::new(welcome)));
     }
 
@@ -301,17 +315,19 @@ impl Host {
         let died = client.is_named() && !client.has_left;
         let leaves = self.line == Some(id) && self.held.images().is_some_and(|images| !images.is_clear());
         let by = client.peer(client.since);
+        let mut orphans = died && self.motion == Some(id) && !client.leaves_motion && self.may_be_moving(leaves);
         if died {
             let mut what = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
                 what.push("it was moving the robot".to_owned());
             }
-            if leaves {
+            if leaves && !orphans {
                 what.push("the command that it gave is left as it is".to_owned());
             }
             let will = client.will.clone().filter(|will| self.may_show(will));
             if let Some(will) = will.and_then(|will| self.held.images()?.change(will, false)) {
                 what.push("what it was to be stopped by is shown".to_owned());
+                orphans = false;
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
             (self.say)(&what.join("; "));
@@ -324,6 +340,14 @@ impl Host {
         }
         self.held.forget(id);
         self.release(id);
+        if orphans {
+            (self.stop)("the client that moved the robot has died");
+        }
+    }
+
+    /// Whether what the mover began may move on: of images it is known, by the command that is left there.
+    fn may_be_moving(&mut self, leaves_command: bool) -> bool {
+        leaves_command || self.held.images().is_none()
     }
 
     fn leftover(&self) -> Option<Leftover> {
@@ -393,6 +417,10 @@ impl Host {
             Happening::Lost(why) => {
                 (self.say)(&format!("the link was lost: {why}; it is being opened again"));
                 self.showing.clear();
+                let mover = self.motion.and_then(|id| self.clients.get(&id));
+                // A device that loses the link of its images stops by itself.
+                self.was_lost_in_motion |=
+                    mover.is_some_and(|mover| !mover.leaves_motion) && self.held.images().is_none();
                 if self.leftover.take().is_some() {
                     (self.say)("what a client had left under way went with it");
                 }
@@ -401,6 +429,9 @@ impl Host {
             Happening::Reopened => {
                 self.reopenings = self.reopenings.saturating_add(1);
                 (self.say)("the link is open again");
+                if std::mem::take(&mut self.was_lost_in_motion) {
+                    (self.stop)("the link was lost while a client moved the robot");
+                }
                 if let Some(images) = self.held.images() {
                     let (generation, shown) = (images.generation, images.shown.clone());
                     self.everybody(|| Frame::Control(Control::Reopened { generation, shown: shown.clone() }));

@@ -73,7 +73,7 @@ fn host(folder: &Path, held: Held) -> (Host, Spot) {
 }
 
 async fn client(spot: &Spot, name: &str) -> Box<Attached> {
-    match attach_at(spot, "key", name).await.unwrap() {
+    match attach_at(spot, "key", name, false).await.unwrap() {
         Found::Session(attached) => attached,
         found => panic!("{found:?}"),
     }
@@ -212,14 +212,14 @@ async fn the_end_is_told_to_everybody() {
     };
     assert_eq!((lost.to_string().as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
     assert!(matches!(link.take(soon()).await, Err(SessionBusy::Ended(_))));
-    assert!(matches!(attach_at(&spot, "key", "late").await.unwrap(), Found::Nothing));
+    assert!(matches!(attach_at(&spot, "key", "late", false).await.unwrap(), Found::Nothing));
 }
 
 #[tokio::test]
 async fn a_client_for_another_device_is_sent_away() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, spot) = host(folder.path(), images());
-    let refused = served(&mut host, attach_at(&spot, "other", "wrong")).await;
+    let refused = served(&mut host, attach_at(&spot, "other", "wrong", false)).await;
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
 
@@ -282,7 +282,13 @@ async fn a_client_of_another_version_is_refused_with_a_word() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, spot) = host(folder.path(), images());
     served(&mut host, async {
-        let hello = Hello { version: VERSION + 1, key: "key".to_owned(), pid: 1, command: "armctl".to_owned() };
+        let hello = Hello {
+            version: VERSION + 1,
+            key: "key".to_owned(),
+            pid: 1,
+            command: "armctl".to_owned(),
+            leaves_motion: false,
+        };
         let told = told(&spot, &[Control::Hello(hello)]).await;
         let [Frame::Control(Control::Refused(why))] = &told[..] else { panic!("{told:?}") };
         assert!(why.contains("another version"), "{why}");

@@ -1,0 +1,225 @@
+//! Guardian process: stops the robot when the process that moves it dies or hangs.
+//!
+//! The guardian is this program again, in a process group of its own, with the words of the family's stop command. It first
+//! reads a pipe from the process that it guards, which writes a byte before a motion is sent, a beat from then on, and a
+//! last byte at its end. The pipe closes with the process, however that ends. A process that does not beat is killed: then
+//! its serial port, its TCP connection and its place in a session are free for the stop.
+
+use std::ffi::OsString;
+use std::io::{self, Read as _, Write as _};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::Context as _;
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::failure::{Failure, Kind};
+use crate::output::{ColorChoice, Format, Screen};
+use crate::settings::Robot;
+
+/// Pause between two beats.
+const BEAT: Duration = Duration::from_millis(500);
+/// A process without a beat for so long counts as dead.
+const DEAD: Duration = Duration::from_secs(2);
+
+/// How long a stop is tried, and the pause after one that failed.
+const CONFIRMED_WITHIN: Duration = Duration::from_secs(30);
+const AGAIN_AFTER: Duration = Duration::from_millis(200);
+
+/// First word of a guardian that stops the robot.
+const STOPS: &str = "--guardian=stop";
+/// First word of a guardian that ends a process that hangs: the session, or the adapter of the fieldbus, then stops the robot.
+const ENDS: &str = "--guardian=end";
+
+/// What the guarded process writes.
+const MOTION: u8 = b'm';
+const ALIVE: u8 = b'.';
+const DONE: u8 = b'q';
+
+/// This program with the words of the command that stops a robot, of which `words` stand behind that of the family.
+fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Result<Command> {
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(first).args(["--quiet", "-t", robot.target.value.url(), robot.family.name()]);
+    command.args(words).env_remove("ARMCTL_ROBOT").env_remove("ARMCTL_TARGET");
+    command.stdout(Stdio::null());
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    Ok(command)
+}
+
+/// Stops a robot in a process of its own, through the session that holds its link. `say` is told what came of it.
+pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 'static) {
+    let command = stop_command(robot, words, None);
+    thread::spawn(move || match command.map_err(|error| error.to_string()).and_then(|mut stop| confirm(&mut stop)) {
+        Ok(()) => say("the robot was stopped"),
+        Err(why) => say(&unstopped(&why)),
+    });
+}
+
+/// Runs the command that stops a robot until it succeeds: a stop twice is a stop once, and another program may have taken
+/// the line from it.
+///
+/// # Errors
+/// What the last one said.
+fn confirm(stop: &mut Command) -> Result<(), String> {
+    let until = Instant::now() + CONFIRMED_WITHIN;
+    loop {
+        let why = match stop.stdin(Stdio::null()).output() {
+            Ok(output) if output.status.success() => return Ok(()),
+            Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_owned(),
+            Err(error) => error.to_string(),
+        };
+        if Instant::now() >= until {
+            return Err(why);
+        }
+        thread::sleep(AGAIN_AFTER);
+    }
+}
+
+fn unstopped(why: &str) -> String {
+    format!("the robot may still move, use the pendant or the emergency stop: {why}")
+}
+
+/// Guards the motion of a command.
+#[derive(Debug)]
+pub struct Guardian {
+    pipe: Arc<Mutex<Option<ChildStdin>>>,
+    child: Option<Child>,
+}
+
+impl Guardian {
+    /// Starts one. `stops`: it stops the robot itself, because no session and no adapter does.
+    pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
+        let spawned = stop_command(robot, words, Some(if stops { STOPS } else { ENDS }))
+            .and_then(|mut command| command.stdin(Stdio::piped()).spawn());
+        let mut child = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
+        let pipe = Arc::new(Mutex::new(child.stdin.take()));
+        Ok(Self { pipe, child: Some(child) })
+    }
+
+    /// What is to be called before a motion is sent.
+    pub fn before_motion(&self) -> impl Fn() + Send + Sync + 'static {
+        let pipe = Arc::clone(&self.pipe);
+        move || write(&pipe, MOTION)
+    }
+
+    /// Does the work, and beats.
+    pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
+        let beat = async {
+            let mut beats = interval(BEAT);
+            beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
+            loop {
+                beats.tick().await;
+                write(&self.pipe, ALIVE);
+            }
+        };
+        tokio::select! {
+            done = work => done,
+            () = beat => unreachable!("it beats without end"),
+        }
+    }
+}
+
+/// The work has come to its end.
+impl Drop for Guardian {
+    fn drop(&mut self) {
+        write(&self.pipe, DONE);
+        self.pipe.lock().unwrap_or_else(PoisonError::into_inner).take();
+        // Nobody waits for it, but it must not stay as a zombie.
+        if let Some(mut child) = self.child.take() {
+            thread::spawn(move || child.wait());
+        }
+    }
+}
+
+fn write(pipe: &Mutex<Option<ChildStdin>>, byte: u8) {
+    // A guardian that is gone, as somebody killed it, cannot be told.
+    if let Some(pipe) = &mut *pipe.lock().unwrap_or_else(PoisonError::into_inner) {
+        let _ = pipe.write_all(&[byte]);
+    }
+}
+
+/// Serves as the guardian, if the first argument says so: waits for the end of the guarded process, and has the stop sent
+/// that the other arguments name. Whether the robot stands, or nothing moved it.
+pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
+    let stops = match args.get(1)?.to_str()? {
+        STOPS => true,
+        ENDS => false,
+        _ => return None,
+    };
+    if !outlives_motion() || !stops {
+        return Some(Ok(()));
+    }
+    let stopped = std::env::current_exe().map_err(|error| error.to_string());
+    let stopped = stopped.and_then(|program| confirm(Command::new(program).args(&args[2..])));
+    Some(stopped.map_err(|why| {
+        say(&unstopped(&why));
+        Kind::OutcomeUnknown
+    }))
+}
+
+fn say(text: &str) {
+    Screen::new(Format::Table, ColorChoice::Never, false, 0).note(text);
+}
+
+/// Waits for the end of the guarded process; whether a motion was under way.
+fn outlives_motion() -> bool {
+    let guarded = guarded();
+    let (heard, bytes) = channel();
+    thread::spawn(move || {
+        let mut byte = [0];
+        while io::stdin().read_exact(&mut byte).is_ok() && heard.send(byte[0]).is_ok() {}
+    });
+    let mut is_moving = false;
+    let mut is_killed = false;
+    loop {
+        let byte = if is_moving && !is_killed {
+            bytes.recv_timeout(DEAD)
+        } else {
+            bytes.recv().map_err(|_| RecvTimeoutError::Disconnected)
+        };
+        match byte {
+            Ok(DONE) => return false,
+            Ok(byte) => is_moving |= byte == MOTION,
+            Err(RecvTimeoutError::Disconnected) => return is_moving,
+            Err(RecvTimeoutError::Timeout) => {
+                is_killed = kill(guarded);
+                say(&format!(
+                    "armctl (process {}) did not respond for {} s while the robot moved: it was ended, to stop the robot",
+                    guarded.map_or_else(|| "unknown".to_owned(), |guarded| guarded.to_string()),
+                    DEAD.as_secs()
+                ));
+                if !is_killed {
+                    return true;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(unix)]
+fn guarded() -> Option<rustix::process::Pid> {
+    rustix::process::getppid()
+}
+
+/// Kills the guarded process, unless it has ended and its number may be another's.
+#[cfg(unix)]
+fn kill(guarded: Option<rustix::process::Pid>) -> bool {
+    use rustix::process::{Signal, getppid, kill_process};
+
+    guarded.filter(|_| getppid() == guarded).is_some_and(|guarded| kill_process(guarded, Signal::KILL).is_ok())
+}
+
+#[cfg(not(unix))]
+fn guarded() -> Option<u32> {
+    None
+}
+
+/// The stop goes out beside the process that hangs.
+#[cfg(not(unix))]
+fn kill(_guarded: Option<u32>) -> bool {
+    false
+}
