@@ -45,6 +45,7 @@ pub mod cli;
 pub mod command;
 pub mod failure;
 pub mod gate;
+pub mod guardian;
 pub mod output;
 pub mod settings;
 

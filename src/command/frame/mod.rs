@@ -14,7 +14,6 @@ pub mod connection;
 pub mod cycle;
 pub mod dry_run;
 pub mod edited;
-pub mod guardian;
 pub mod interrupt;
 pub mod items;
 pub mod kind;
