@@ -348,7 +348,7 @@ fn ctrl_c_stops_first() {
 /// The stop is repeated until it is confirmed, whatever the options say.
 #[test]
 fn a_lost_stop_is_sent_again() {
-    let mut lost = 4;
+    let mut lost = 12;
     let controller = robot(move |asked| {
         lost -= i32::from(asked.command == 0x83);
         (asked.command == 0x83 && lost >= 0).then_some(Reaction::Silence)
@@ -359,7 +359,7 @@ fn a_lost_stop_is_sent_again() {
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("stopping the robot") && stderr(&output).contains("HOLD is on"));
-    assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 5);
+    assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 13);
 }
 
 /// A second Ctrl-C, or TERM, ends the process wherever it is: here, while nobody confirms the stop.

@@ -15,12 +15,19 @@
 //!
 //! A client can be one of a dry run: it notes in a [`Plan`] what it would send, and has no answers.
 
+use std::time::Duration;
+
 mod grant;
 mod plan;
 pub mod toyo;
 mod watcher;
 pub mod yerc;
 pub mod yrcx;
+
+/// How long a stop is tried that nobody confirms.
+const STOP_WITHIN: Duration = Duration::from_secs(3);
+/// The silence after which a stop is sent again.
+const STOP_EVERY: Duration = Duration::from_millis(200);
 
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};

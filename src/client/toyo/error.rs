@@ -47,6 +47,12 @@ pub enum Error {
         /// What is wrong with it.
         why: String,
     },
+    /// More characters came in one exchange than a controller sends.
+    #[error("{received} characters came, and no answer among them")]
+    Flooded {
+        /// How many were read.
+        received: usize,
+    },
     /// A request with a value out of its range; nothing was sent.
     #[error("{0}")]
     Unsendable(#[from] BlockError),
@@ -125,7 +131,7 @@ impl Error {
     /// Whether something answered that made no sense.
     pub fn is_malformed(&self) -> bool {
         match self {
-            Self::Malformed { .. } => true,
+            Self::Malformed { .. } | Self::Flooded { .. } => true,
             Self::NoAnswer(unanswered) => unanswered.unfitting.is_some(),
             _ => false,
         }

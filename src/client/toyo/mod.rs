@@ -130,6 +130,8 @@ pub enum Event {
 
 /// Room for what arrives in one piece.
 const BUFFER: usize = 1024;
+/// The most characters that may come in one exchange: 5 s of the fastest line, and answers are short.
+const MOST_RECEIVED: usize = 64 * 1024;
 /// The longest silence while something moves that must be stopped.
 const SILENCE: Duration = Duration::from_millis(300);
 /// The page of the status that tells who commands.
@@ -417,6 +419,7 @@ impl Client {
         let began = self.started.elapsed();
         let mut now = began;
         let mut has_left = false;
+        let mut total = 0;
         let mut buffer = [0; BUFFER];
         loop {
             let step = match self.session.poll(now) {
@@ -433,6 +436,11 @@ impl Client {
                 Step::Data(_) | Step::Feed => Ok(0),
             };
             let received = step.map_err(|error| self.broken(error, has_left && risk > Risk::Read))?;
+            total += received;
+            if total > MOST_RECEIVED {
+                let error = Error::Flooded { received: total };
+                return Err(if has_left && risk > Risk::Read { Error::CutShort(Box::new(error)) } else { error });
+            }
             now = self.started.elapsed();
             self.session.handle(now, &buffer[..received]);
         }

@@ -5,20 +5,20 @@ use std::time::Duration;
 use armctl_controller::Risk;
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::Policy;
+use armctl_controller::toyo::session::{Ended, Policy};
 use armctl_controller::toyo::table::commands::Command;
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout_at};
 
 use super::borrowed::Host;
-use super::{Client, Error, SILENCE, jog, status_page};
-use crate::Grant;
+use super::{Client, Error, jog, status_page};
+use crate::{Grant, STOP_EVERY, STOP_WITHIN};
 
-/// How long a stop is tried, how often it is sent again after silence, and the pause between two looks.
-const WITHIN: Duration = Duration::from_secs(5);
-const REPETITIONS: u32 = 3;
 /// What has not come to rest by then is no program.
 const SLOW: Duration = Duration::from_secs(1);
+/// The pause between two looks.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
+/// What is asked while a stop is tried, is asked so often.
+const REPETITIONS: u32 = 3;
 
 /// What moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,8 +69,14 @@ impl Client {
             }
             return Err(Error::NotKnown);
         }
-        self.set_policy(Policy { timeout: SILENCE, retries: REPETITIONS, ..self.usual });
-        let stopped = self.stop_until_it_stands(moving).await;
+        self.set_policy(Policy { timeout: STOP_EVERY, retries: REPETITIONS, ..self.usual });
+        let mut why = None;
+        let until = Instant::now() + STOP_WITHIN;
+        let stopped = timeout_at(until, self.stop_until_it_stands(moving, &mut why)).await;
+        let stopped = stopped.unwrap_or_else(|_| {
+            let silent = || self.unanswered(Ended::NoAnswer, Risk::Read, Some(&moving.stop()));
+            Err(unstopped(why.unwrap_or_else(silent)))
+        });
         self.set_policy(self.usual);
         match &stopped {
             Ok(_) => self.has_ended(),
@@ -88,19 +94,20 @@ impl Client {
         }
     }
 
-    async fn stop_until_it_stands(&mut self, moving: Moving) -> Result<Record, Error> {
+    /// Ends only when it stands, or the line is gone. `why` is told what is in the way so far.
+    async fn stop_until_it_stands(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
         // Where it was at the last look, if nothing was executed then.
         let mut last = None;
         loop {
             let attempt = self.try_stop(moving, &stop).await;
-            let (is_slow, is_late) = (began.elapsed() >= SLOW, began.elapsed() >= WITHIN);
+            let is_slow = began.elapsed() >= SLOW;
             last = match attempt {
                 Ok(Attempt { is_busy: false, place, .. }) if last.as_ref() == Some(&place) => return Ok(place),
-                Ok(Attempt { is_refused, .. }) if is_late => return Err(Error::MovesOn { is_refused }),
-                Err(error) if is_late || self.is_gone => return Err(Error::StandUnseen(Box::new(error))),
+                Err(error) if self.is_gone => return Err(unstopped(error)),
                 Ok(Attempt { is_refused, is_busy, place }) => {
+                    *why = Some(Error::MovesOn { is_refused });
                     // What goes wrong here shows in the next attempt.
                     if is_refused && moving == Moving::Jog {
                         // To stop a JOG takes the host, too.
@@ -112,7 +119,10 @@ impl Client {
                     }
                     (!is_busy).then_some(place)
                 }
-                Err(_) => None,
+                Err(error) => {
+                    *why = Some(error);
+                    None
+                }
             };
             tokio::time::sleep(LOOK_EVERY).await;
         }
@@ -152,4 +162,9 @@ impl Client {
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
         self.has_ended();
     }
+}
+
+/// Why nobody knows that it stands.
+fn unstopped(why: Error) -> Error {
+    if matches!(why, Error::MovesOn { .. }) { why } else { Error::StandUnseen(Box::new(why)) }
 }

@@ -39,7 +39,7 @@ pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, Watcher};
+use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_WITHIN, Watcher};
 
 /// A connection to one controller.
 ///
@@ -126,11 +126,6 @@ pub struct Totals {
     pub disturbances: u64,
 }
 
-/// How long a stop is tried at least, the silence after which it is sent again (it doubles), and how often.
-const STOP_WITHIN: Duration = Duration::from_secs(3);
-const REPEAT_STOP: Duration = Duration::from_millis(100);
-const STOPS: u32 = 8;
-
 /// Room for more than a frame, so that an oversized datagram shows.
 const BUFFER: usize = 2048;
 
@@ -169,9 +164,10 @@ impl Client {
 
     fn over(transport: Transport, options: Options) -> Self {
         let Options { model, granted, timeout, retries } = options;
+        let usual = Policy::default();
         Self {
             transport,
-            policy: Policy { deadline: timeout, attempt: Policy::default().attempt.min(timeout), retries },
+            policy: Policy { deadline: timeout, attempt: usual.attempt.min(timeout), retries, ..usual },
             ids: Ids::default(),
             granted,
             has_moved: false,
@@ -231,8 +227,7 @@ impl Client {
             return Ok(self.plan_next(&request)?);
         }
         let usual = self.policy;
-        let deadline = usual.deadline.max(STOP_WITHIN);
-        self.policy = Policy { deadline, attempt: REPEAT_STOP, retries: STOPS };
+        self.policy = Policy { deadline: STOP_WITHIN, attempt: STOP_EVERY, doubles: false, retries: u32::MAX };
         let reply = self.transact(&request, true).await;
         self.policy = usual;
         match reply?.status {

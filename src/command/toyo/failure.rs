@@ -35,6 +35,9 @@ pub fn failure(label: &str, error: Error) -> Failure {
         }
         Error::Malformed { .. } => about(Kind::Malformed, error.to_string())
             .hint("check baud rate and parity; -vv shows what came, `armctl decode toyo` explains it"),
+        Error::Flooded { .. } => about(Kind::Malformed, error.to_string()).hint(
+            "something on this line sends without end: another client of the device server, or a wrong baud rate",
+        ),
         Error::Unsendable(error) => misuse(&error),
         Error::NotPutBack { block, cause } => not_undone(label, &not_put_back(&block), cause)
             .hint("`toyo mode` and `toyo task` set it; `toyo status` tells how the controller stands"),

@@ -287,6 +287,12 @@ impl LineSession {
     }
 }
 
+/// Whether of two answers that came together one is a yes and the other a no: a device server may send each to all clients.
+fn contradicts(first: &str, second: &Framed) -> bool {
+    let Framed::Block(second) = second else { return false };
+    matches!((first, second.as_str()), ("@OK", "@NG") | ("@NG", "@OK"))
+}
+
 impl Exchange {
     fn accepts(&self, block: &str) -> Result<(), BlockError> {
         self.request.as_ref().map_or(Ok(()), |request| request.check_answer(block))
@@ -335,6 +341,7 @@ impl Session for LineSession {
     }
 
     fn handle(&mut self, now: Now, bytes: &[u8]) {
+        let mut is_answered = false;
         for byte in bytes {
             self.free = if *byte == b'\r' { now + self.policy.character } else { now };
             let (framed, noise) = self.framer.push(*byte);
@@ -344,7 +351,17 @@ impl Session for LineSession {
             }
             let Some(framed) = framed else { continue };
             self.state = match std::mem::replace(&mut self.state, State::Ended(None)) {
-                State::Waiting(exchange, deadline) => self.take(now, exchange, deadline, framed),
+                State::Waiting(exchange, deadline) => {
+                    let state = self.take(now, exchange, deadline, framed);
+                    is_answered = matches!(state, State::Ended(_));
+                    state
+                }
+                State::Ended(Some(Ended::Answered(first))) if is_answered && contradicts(&first, &framed) => {
+                    self.counters.foreign += 1;
+                    self.stray = Some(now);
+                    let why = "both @OK and @NG came: one of them answers another client of this line".to_owned();
+                    State::Ended(Some(Ended::Unfitting { block: first, why }))
+                }
                 state => {
                     self.counters.foreign += 1;
                     self.stray = Some(now);

@@ -170,7 +170,7 @@ fn a_dead_line_says_what_to_do() {
     ends_with_a_stop(&heard);
     // Once the line is back.
     dead.store(false, Relaxed);
-    assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 40.0);
+    assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 20.0);
     assert_eq!(bench.data(&["status"])["executing"], false);
 }
 

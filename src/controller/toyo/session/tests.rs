@@ -55,6 +55,19 @@ fn reads_are_repeated_and_orders_are_not() {
 }
 
 #[test]
+fn a_yes_and_a_no_that_come_together_are_no_answer() {
+    for answers in ["@OK\r\n@NG\r\n", "@NG\r\n@OK\r\n"] {
+        let mut line = sent("@HOME", false);
+        line.handle(ms(20), answers.as_bytes());
+        let ended = line.poll(ms(20));
+        assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
+    }
+    let mut line = sent("@HOME", false);
+    line.handle(ms(20), b"@OK\r\n@OK\r\n");
+    assert_eq!(line.poll(ms(20)), answered("@OK"));
+}
+
+#[test]
 fn a_late_ok_is_not_the_answer_to_the_next_order() {
     let mut line = sent("@MAUT", false);
     let deadline = waits(&mut line, ms(1));

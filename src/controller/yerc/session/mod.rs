@@ -53,8 +53,10 @@ pub fn is_damaged(result: Status) -> bool {
 pub struct Policy {
     /// Patience: for an exchange as a whole, for a transfer without progress.
     pub deadline: Duration,
-    /// Silence before the first repeat; it doubles with each further one.
+    /// Silence before the first repeat.
     pub attempt: Duration,
+    /// Whether that silence doubles with each further repeat.
+    pub doubles: bool,
     /// Most repeats of the same frame after silence.
     pub retries: u32,
 }
@@ -63,7 +65,7 @@ impl Default for Policy {
     /// A controller answers within 20 ms. With these, a frame goes out after 0, 0.3, 0.9 and 2.1 s and is given up
     /// after 3 s.
     fn default() -> Self {
-        Self { deadline: Duration::from_secs(3), attempt: Duration::from_millis(300), retries: 3 }
+        Self { deadline: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
     }
 }
 
@@ -270,7 +272,7 @@ impl Pace {
     /// A frame left, to be repeated after silence if `repeatable`.
     fn sent(&mut self, now: Now, repeatable: bool) {
         let doubled = 1_u32.checked_shl(self.repeats).unwrap_or(u32::MAX);
-        let silence = self.policy.attempt.saturating_mul(doubled);
+        let silence = self.policy.attempt.saturating_mul(if self.policy.doubles { doubled } else { 1 });
         let more = repeatable && self.repeats < self.policy.retries;
         self.repeat_at = more.then(|| now.saturating_add(silence));
     }
@@ -380,7 +382,7 @@ mod tests {
 
     #[test]
     fn extreme_policies_neither_overflow_nor_hang() {
-        let policy = Policy { deadline: Duration::MAX, attempt: Duration::MAX, retries: u32::MAX };
+        let policy = Policy { deadline: Duration::MAX, attempt: Duration::MAX, doubles: true, retries: u32::MAX };
         let mut pace = Pace::new(policy);
         pace.restart(Duration::MAX);
         pace.repeats = 40;
