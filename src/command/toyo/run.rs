@@ -322,7 +322,7 @@ pub struct Ran {
     instruction: Option<String>,
     /// Where the axes stand; null if nobody waited.
     position: Option<Coordinates>,
-    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
+    /// From the acceptance to the end; null if nobody waited.
     elapsed_ms: Option<u64>,
     #[serde(flatten)]
     cycle: Cycle,
@@ -402,10 +402,11 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_is_over_at_once_has_ended() {
+    fn a_program_that_was_never_seen_to_run_has_not_ended() {
         let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-        let data = Bench::with_faults(state, |_, _| Fault::None).0.data(&["run", "sequential"]);
-        assert_eq!(data["stopped"], false);
+        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential"]).unwrap_err();
+        assert_eq!(failure.kind, Kind::OutcomeUnknown);
+        assert!(failure.message.contains("it was not seen to run"), "{}", failure.message);
     }
 
     #[test]

@@ -159,6 +159,8 @@ impl Accepted {
             WaitFailure::NoOrigin => tell("it ended without the origin").hint(
                 "somebody or something stopped it without an error: look at the machine, then repeat `toyo home`",
             ),
+            WaitFailure::NotSeen => Failure { kind: Kind::OutcomeUnknown, ..tell("it was not seen to run") }
+                .hint("it was over before the first look, or it never began: look at `toyo status` and at the robot"),
             WaitFailure::NotBegun => tell("it was not seen to begin")
                 .hint("it may still begin: keep clear, and look at `toyo status` and the teach pendant"),
         }
@@ -304,6 +306,8 @@ enum WaitFailure {
     NoOrigin,
     /// Nothing of it was seen.
     NotBegun,
+    /// Nothing of it was seen, and it may have been over before the first look.
+    NotSeen,
 }
 
 impl Watch {
@@ -333,6 +337,8 @@ impl Watch {
             _ if !is_over => Look::Running,
             (Work::Home, true) if !status.homed() => Look::Failed(WaitFailure::NoOrigin),
             (Work::Home, false) if !status.homed() => Look::Failed(WaitFailure::NotBegun),
+            // Where it is paused at a stop, it has run.
+            (Work::Program, false) if !status.paused() => Look::Failed(WaitFailure::NotSeen),
             _ => Look::Ended,
         }
     }
@@ -379,9 +385,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_over_before_the_first_look_has_ended() {
+    fn what_was_never_seen_has_not_ended() {
         let idle = page0(IDLE);
-        assert_eq!(looks(Work::Program, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
+        assert_eq!(looks(Work::Program, [(0, idle, 0), (1000, idle, 0)]), Look::Failed(WaitFailure::NotSeen));
         assert_eq!(looks(Work::Home, [(0, idle, 0), (1000, idle, 0)]), Look::Ended);
         assert_eq!(
             looks(Work::Home, [(0, page0(0x20), 0), (1000, page0(0x20), 0)]),
