@@ -27,8 +27,10 @@ use clap::builder::StyledStr;
 use self::parser::{Parser, Refusal};
 use self::prepared::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Globals, Words};
+use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::RunError;
 use crate::failure::{Failure, Kind};
+use crate::files;
 use crate::guardian;
 use crate::output::envelope::Envelope;
 use crate::output::{ColorChoice, Format, Screen, jq};
@@ -69,6 +71,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
     let screen = screen(&cli.globals);
     screen.tells_the_end();
+    files::before_drafts(catch_interrupts);
     if let Err(failure) = format {
         return exit(Err(tell(&screen, failure.into())));
     }

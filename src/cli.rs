@@ -128,8 +128,8 @@ pub struct Globals {
     /// Talk to the controller at URL, such as udp://192.168.1.31, or at 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<Given>,
-    /// Talk to a robot of the inventory, by name or pattern (repeatable; ARMCTL_ROBOT)
-    #[arg(short, long, global = true, value_name = "NAME", add = ValueKind::Robot, help_heading = "Which robot")]
+    /// Talk to robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
+    #[arg(short, long, global = true, value_name = "NAME", value_delimiter = ',', add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
     /// Talk to every robot of the inventory
     #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
@@ -153,7 +153,7 @@ pub struct Globals {
     )]
     pub format: Option<Format>,
     /// Print JSON (the same as -o json)
-    #[arg(long, global = true, help_heading = "Output", conflicts_with = "format")]
+    #[arg(long, global = true, help_heading = "Output", conflicts_with = "format", overrides_with = "json")]
     pub json: bool,
     /// Print what a jq filter makes of the JSON
     #[arg(
@@ -208,10 +208,11 @@ pub struct Globals {
     )]
     pub on_interrupt: OnInterrupt,
 
-    /// Longest wait for an answer (ARMCTL_TIMEOUT)
+    /// Longest wait of each try for its answer: 3s, for toyo 1.5s (ARMCTL_TIMEOUT)
     #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse_some, help_heading = "Link")]
     pub timeout: Option<Duration>,
-    /// Repetitions of a read after silence (changes are never repeated; ARMCTL_RETRIES)
+    /// Further tries of a read after silence: 3; a read takes at most TIME × (N + 1), a change has one try
+    /// (ARMCTL_RETRIES)
     #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
     pub retries: Option<u32>,
     /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
@@ -227,8 +228,8 @@ pub struct Globals {
     /// Stop after N reads
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
     pub count: Option<u64>,
-    /// Repeat a read until a jq filter over its JSON is true
-    #[arg(long, global = true, hide_short_help = true, value_name = "FILTER", help_heading = "Repeat")]
+    /// Repeat a read until this holds: idle, NAME=VALUE, or a jq filter over its JSON
+    #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
     pub until: Option<String>,
     /// How long --until waits before it gives up with exit code 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
@@ -240,8 +241,7 @@ impl Globals {
     /// said of it: a robot, a format, how much to tell.
     #[must_use]
     pub fn within(self, all: &Self) -> Self {
-        let names_robot =
-            self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty();
+        let names_robot = self.names_robot();
         let says_how_much = self.quiet || self.verbose > 0;
         let (robot, format, how_much) = (
             if names_robot { self.clone() } else { all.clone() },
@@ -277,6 +277,17 @@ impl Globals {
             until: self.until,
             within: self.within,
         }
+    }
+
+    /// Whether they say which robot.
+    pub fn names_robot(&self) -> bool {
+        self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty()
+    }
+
+    /// The same for a command that is about the inventory, whatever robot was chosen.
+    #[must_use]
+    pub fn without_robot(self) -> Self {
+        Self { sim: false, target: None, robot: Vec::new(), all: false, tag: Vec::new(), ..self }
     }
 
     /// When to use colour.

@@ -114,7 +114,8 @@ impl Gate {
 
     /// Refuses to move, or to overwrite things on, robots that were not each named, where there are several.
     pub fn pass_many(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
-        let unnamed = robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !is_named(robot));
+        let unnamed =
+            robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !intent.is_stop && !is_named(robot));
         let unnamed: Vec<&(&Robot, Intent)> = unnamed.collect();
         let Some((_, intent)) = unnamed.first().filter(|_| robots.len() > 1) else { return Ok(()) };
         let names: Vec<&str> = unnamed.iter().map(|(robot, _)| robot.name.as_str()).collect();

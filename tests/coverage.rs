@@ -210,7 +210,11 @@ fn raw_reaches_a_single_field() {
         ("raw --command 0x79 --instance 5 --attribute 0 --service 0x02 --data 0100 --check", (0x79, 5, 0, SET_ALL)),
         ("raw --command 0x30A --instance 1 --attribute 8 --service 0x0E --check", (0x30A, 1, 8, GET)),
     ] {
-        assert_eq!(head(&frames(DX200, line)[0]), (1, expected), "{line}");
+        let sent = frames(DX200, line);
+        let (request, before) = sent.split_last().expect("the request");
+        assert_eq!(head(request), (1, expected), "{line}");
+        // A position that would be overwritten is read first.
+        assert!(before.iter().all(|frame| head(frame).1.3 == GET_ALL), "{line}");
     }
 }
 

@@ -4,8 +4,9 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::{TcpListener, UdpSocket};
+use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::{Arc, Mutex};
 use std::thread;
 
 use serde_json::Value;
@@ -147,8 +148,8 @@ fn an_owner_that_is_there_already() {
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
 
-/// Layers of `robots check` by their names, and whether `yrcx eip probe` finds an owner.
-fn owner(target: &str) -> (Value, Value) {
+/// The layer `owner` of `robots check`, and what `yrcx eip probe` says of an owner without and with `--try`.
+fn owner(target: &str) -> (Value, Value, Value) {
     let data = |line: &str| {
         let output = armctl(target, line).output().unwrap();
         serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].clone()
@@ -156,23 +157,79 @@ fn owner(target: &str) -> (Value, Value) {
     let checked = data("robots check");
     let layers = checked["layers"].as_array().unwrap();
     let layer = layers.iter().find(|layer| layer["layer"] == "owner").unwrap();
-    (layer["state"].clone(), data("yrcx eip probe")["owned"].clone())
+    let owned = |line| data(line)["owned"].clone();
+    (layer["state"].clone(), owned("yrcx eip probe"), owned("yrcx eip probe --try"))
 }
 
 #[test]
 fn an_owner_is_found_where_the_board_says_so_but_once() {
-    for mischief in ["trailing", "unowned"] {
+    // Who only reads sees what the board says of itself; what it refuses takes a try.
+    for (mischief, is_said) in [("trailing", true), ("unowned", false)] {
         let board = Board::start(&["--mischief", mischief]);
-        assert_eq!(owner(&board.target), ("ok".into(), false.into()), "{mischief}");
+        assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{mischief}");
         let mut holder = armctl(&board.target, "yrcx info servo --watch 1h").spawn().unwrap();
         BufReader::new(holder.stdout.take().unwrap()).lines().next().unwrap().unwrap();
         let (exit, _, code, message, _) = told(&board.target, "yrcx info servo");
         assert_eq!((exit, &*code), (3, "0x0106"), "{mischief}: {message}");
-        assert_eq!(owner(&board.target), ("warning".into(), true.into()), "{mischief}");
+        let layer = if is_said { "warning" } else { "ok" };
+        assert_eq!(owner(&board.target), (layer.into(), is_said.into(), true.into()), "{mischief}");
         let sent = Command::new("kill").args(["-s", "INT", &holder.id().to_string()]).status().unwrap();
         assert!(sent.success());
         assert_eq!(holder.wait().unwrap().code(), Some(130));
     }
+}
+
+/// Takes one connection after the other to a board; the bytes that clients sent come out.
+fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
+    let (_, place) = board.target.split_once("://").unwrap();
+    let board = place.split('?').next().unwrap().to_owned();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("eip://{}", listener.local_addr().unwrap());
+    let sent = Arc::new(Mutex::new(Vec::new()));
+    let record = Arc::clone(&sent);
+    thread::spawn(move || {
+        for mut client in listener.incoming().map_while(Result::ok) {
+            let mut server = TcpStream::connect(&board).unwrap();
+            let (mut from, mut to) = (server.try_clone().unwrap(), client.try_clone().unwrap());
+            thread::spawn(move || {
+                // Either end may go first.
+                let _ = std::io::copy(&mut from, &mut to);
+                let _ = to.shutdown(Shutdown::Both);
+            });
+            let mut buffer = [0; 4096];
+            while let Ok(len @ 1..) = client.read(&mut buffer) {
+                record.lock().unwrap().extend(&buffer[..len]);
+                if server.write_all(&buffer[..len]).is_err() {
+                    break;
+                }
+            }
+            let _ = server.shutdown(Shutdown::Both);
+        }
+    });
+    (target, sent)
+}
+
+/// A board that accepts an owner's connection is commanded from then on: what only looks never asks for one.
+#[test]
+fn only_a_try_asks_for_an_owner_connection() {
+    let board = Board::start(&[]);
+    let (target, sent) = recorded(&board);
+    let opens = || {
+        let sent = std::mem::take(&mut *sent.lock().unwrap());
+        // ForwardOpen and its large form, for the connection manager (volume 1, 3-5.5.2).
+        [0x54, 0x5B].map(|service| sent.windows(6).filter(|bytes| **bytes == [service, 2, 0x20, 6, 0x24, 1]).count())
+    };
+    for line in ["yrcx eip probe", "robots check", "yrcx eip identity", "yrcx status"] {
+        assert!(armctl(&target, line).output().unwrap().status.success(), "{line}");
+        assert_eq!(opens(), [0, 0], "{line}");
+    }
+    let unconfirmed = armctl(&target, "yrcx eip probe --try").args(["--dry-run"]).output().unwrap();
+    assert_eq!((unconfirmed.status.code(), opens()), (Some(0), [0, 0]));
+    let mut unconfirmed = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    unconfirmed.env_clear().stdin(Stdio::null()).args(["-t", &target, "yrcx", "eip", "probe", "--try"]);
+    assert_eq!((unconfirmed.output().unwrap().status.code(), opens()), (Some(7), [0, 0]));
+    assert!(armctl(&target, "yrcx eip probe --try").output().unwrap().status.success());
+    assert!(opens()[0] > 0);
 }
 
 #[test]
@@ -253,7 +310,7 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
 }
 
 /// A TCP server that does with every connection what `serve` says; it ends with the process.
-fn stranger(serve: fn(std::net::TcpStream)) -> String {
+fn stranger(serve: fn(TcpStream)) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("eip://{}", listener.local_addr().unwrap());
     thread::spawn(move || {

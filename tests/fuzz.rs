@@ -201,7 +201,7 @@ fn answer() -> impl Strategy<Value = Answer> {
 
 /// Runs a session that is answered by a script, and then by silence, to its end.
 fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) -> Result<(), TestCaseError> {
-    let deadline = Policy::default().deadline;
+    let deadline = Policy::default().patience();
     let (mut now, mut last, mut script) = (Now::ZERO, Vec::<u8>::new(), script.into_iter());
     let (mut sends, mut answers, mut calls) = (0_usize, 0, 0);
     for _ in 0..10_000 {

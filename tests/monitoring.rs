@@ -354,6 +354,28 @@ fn a_service_manager_is_told_and_sigterm_ends_it_well() {
     is_managed(&["publish", "mqtt://127.0.0.1:1"], "; not connected to mqtt://127.0.0.1:1");
 }
 
+#[test]
+fn idle_connections_do_not_hold_up_a_page() {
+    let folder = plant(&[("cell3", "yerc", "sim:")]);
+    let (_service, at) = serve(armctl(folder.path()));
+    let silent: Vec<TcpStream> = (0..64)
+        .map(|number| {
+            let mut stream = TcpStream::connect(at).expect("somebody listens");
+            if number % 2 == 0 {
+                stream.write_all(b"GET /metrics HTTP/1.1\r\nHost").expect("sent");
+            }
+            stream
+        })
+        .collect();
+    assert!(page(at).contains("armctl_"), "there is a page");
+    // Those that came last are open still: no time has passed that would have closed them.
+    for mut stream in silent.into_iter().skip(40) {
+        stream.set_nonblocking(true).expect("set");
+        let read = stream.read(&mut [0; 1]).map_err(|error| error.kind());
+        assert_eq!(read, Err(std::io::ErrorKind::WouldBlock));
+    }
+}
+
 /// The log of a service, as a journal if it is one, until it has a line with all of these.
 struct Log {
     path: PathBuf,

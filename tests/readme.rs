@@ -28,8 +28,9 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 11] = [
+const PAGES: [&str; 12] = [
     "README.md",
+    "docs/tasks.md",
     "docs/yerc.md",
     "docs/toyo.md",
     "docs/yrcx.md",

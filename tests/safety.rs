@@ -3,6 +3,7 @@
 
 #![cfg(unix)]
 
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::net::UdpSocket;
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,6 +11,8 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::Duration;
+
+use crate::support::simulator::Simulator;
 
 /// Command, instance and service of a request, and its data.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -172,9 +175,9 @@ const MOVE: &str = "move pulse joint --pulses 90000,0,0,0,0,0 --speed 10% --yes"
 const HOLD_ON: &[u8] = &[1, 0, 0, 0];
 
 /// Every order, and what its message names as the one that tells the outcome.
-const ORDERS: [(&str, &str); 24] = [
+const ORDERS: [(&str, &str); 25] = [
     ("servo on --yes", "yerc status"),
-    ("servo off", "yerc status"),
+    ("servo off --yes", "yerc status"),
     ("hold on", "yerc status"),
     ("hold off", "yerc status"),
     ("hlock on", "yerc status"),
@@ -188,13 +191,14 @@ const ORDERS: [(&str, &str); 24] = [
     ("var set B0=1", "yerc var get"),
     ("var set B0=1 B1=2", "yerc var get"),
     ("var set S0=A", "yerc var get"),
-    ("var set P1=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "yerc var get"),
+    ("var set P1=pulse:s=1,l=2,u=3,r=4,b=5,t=6 --yes", "yerc var get"),
     ("io set --group 2701=3", "yerc io get"),
     ("io set --group 2701=3 --group 2702=4", "yerc io get"),
     ("register set 1=2", "yerc register get"),
     ("register set 1=2 2=3", "yerc register get"),
     ("move relative --z 1 --speed 1mm/s --no-wait --yes", "yerc position"),
     ("file delete A.JBI --yes", "yerc file list"),
+    ("file put Cargo.toml --as A.CND --yes", "yerc file diff A.CND"),
     ("file cmos --start-only --wait 300ms", "--download-only"),
     ("raw --command 0x8D --instance 1 --attribute 1 --service 0x10 --data 01000000 --yes", "yerc status"),
 ];
@@ -214,6 +218,20 @@ fn an_order_leaves_once_and_its_outcome_is_told_unknown() {
             });
         }
     });
+}
+
+/// The timeout is that of one try, and retries are further tries.
+#[test]
+fn a_read_is_tried_once_more_than_retries_says() {
+    for (retries, within) in [(0, "300ms"), (2, "900ms"), (4, "1.5s")] {
+        let controller = Controller::new(|_| Reaction::Silence);
+        let output = controller.run(&format!("status --timeout 300ms --retries {retries}"));
+        assert_eq!(output.status.code(), Some(4), "{}", stderr(&output));
+        assert!(stderr(&output).contains(&format!("no answer within {within}\n")), "{}", stderr(&output));
+        let asked = controller.asked.lock().unwrap().clone();
+        assert_eq!(asked.len(), retries + 1, "{asked:?}");
+        assert!(asked.windows(2).all(|pair| pair[0] == pair[1]), "{asked:?}");
+    }
 }
 
 /// One signal of a group is read with its seven neighbours, set, and written: without the first nothing is written.
@@ -424,6 +442,50 @@ fn ctrl_c_before_the_order_leaves_the_robot_alone() {
 #[cfg(target_os = "linux")]
 fn a_full_disk_under_a_trace_is_told_before_the_order() {
     let controller = robot(|_| None);
-    let output = controller.run("servo off --trace /dev/full");
+    let output = controller.run("servo off --yes --trace /dev/full");
     assert_eq!((output.status.code(), controller.changes()), (Some(1), Vec::new()), "{}", stderr(&output));
+}
+
+/// A controller serves one transfer at a time, and holds one that is broken off open until its timer ends.
+#[test]
+fn a_transfer_that_is_broken_off_keeps_no_other_command_waiting() {
+    let folder = tempfile::tempdir().unwrap();
+    // So large that no transfer ends before it is broken off.
+    std::fs::write(folder.path().join("state.toml"), "[[file]]\nname = \"BIG.DAT\"\nsize = 67108864\n").unwrap();
+    std::fs::write(folder.path().join("UP.CND"), vec![b'x'; 16 << 20]).unwrap();
+    let state = folder.path().join("state.toml");
+    let simulator = Simulator::start_with("yerc", &["--state", state.to_str().unwrap()]);
+    let command = |words: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env("HOME", folder.path()).env("XDG_RUNTIME_DIR", folder.path()).current_dir(folder.path());
+        command.args(["-t", &simulator.url, "yerc"]).args(words.split(' ')).stdin(Stdio::null());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    };
+    let is_free = |after: &str| {
+        let output = command("file list --timeout 300ms --retries 0").output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "after {after}: {}", stderr(&output));
+    };
+
+    let mut child = command("file get BIG.DAT --dir -").spawn().unwrap();
+    child.stdout.as_mut().unwrap().read_exact(&mut [0; 1000]).unwrap();
+    interrupt(&child);
+    // What it still says shall not fill the pipe.
+    let mut rest = Vec::new();
+    child.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    is_free("Ctrl-C in a download");
+
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = command("file get BIG.DAT --dir -").stdout(full).spawn().unwrap().wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    is_free("a full disk");
+
+    let mut child = command("file put UP.CND --yes -vv").spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    assert!(said.any(|line| line.contains("data: file load, block 3")), "no block leaves");
+    interrupt(&child);
+    said.for_each(drop);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    is_free("Ctrl-C in an upload");
 }

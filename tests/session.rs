@@ -310,7 +310,30 @@ fn a_motion_without_waiting_goes_on_after_its_command() {
     let mut watch = desk.command("-r cell yrcx status --watch 10ms --for 1m --json");
     let watched = watch.args(["--until", filter]).output().unwrap();
     assert!(watched.status.success(), "{:?}", watched.stdout.rsplit(|byte| *byte == b'\n').nth(1));
-    assert_eq!(desk.data("-r cell yrcx status --full")["position_mm"][0], 10.0);
+    assert_eq!(desk.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
+}
+
+/// The holder of a session is killed while a command goes through it: the command says so, and that its outcome is unknown.
+#[test]
+fn a_command_whose_holder_is_killed_says_so() {
+    for (family, words, until) in [
+        ("yerc", "move relative --x 200 --speed 5mm/s --yes", "answer to 0x8a cartesian move: ok"),
+        ("yerc", "file put UP.CND --yes", "data: file load, block 3"),
+    ] {
+        let simulator = simulator(&Desk::new(&[]), family, "127.0.0.1:0");
+        let desk = Desk::new(&[("cell", family, &simulator.first)]);
+        let up = desk.folder.path().join("UP.CND");
+        std::fs::write(&up, vec![b'x'; 16 << 20]).unwrap();
+        let session = Running::session(&desk, "cell");
+        let mut command = desk.command(&format!("-r cell {family} {words} -vv"));
+        command.current_dir(desk.folder.path());
+        let mut commanding = Running::start(command, false);
+        commanding.says(until);
+        session.signal("KILL");
+        let (code, said) = commanding.end();
+        assert!(code == Some(6) && said.contains("the session's holder has ended"), "{words}: {code:?}, {said}");
+        assert!(!said.contains("os error") && !said.contains("reset by peer"), "{words}: {said}");
+    }
 }
 
 #[test]
@@ -320,7 +343,10 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
     let moving = moving(&desk);
     session.signal("KILL");
     let (code, said) = moving.end();
-    assert!(code == Some(6) && said.contains("the session is gone") && said.contains("hint: keep clear"), "{said}");
+    assert!(
+        code == Some(6) && said.contains("the session's holder has ended") && said.contains("hint: keep clear"),
+        "{said}"
+    );
     assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
     assert!(stderr(&desk.run("-r cell yrcx status")).contains("its session has died, so this goes without it"));
     // A stale socket is no obstacle. The adapter notices after a moment that its owner is gone.
@@ -378,7 +404,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
         desk.data("session close cell");
         assert_eq!(session.end().0, Some(0), "{target}");
         let _session = Running::session(&desk, "cell");
-        assert_eq!(desk.data("-r cell yrcx info alarm --history 1")["code"], alarm);
+        assert_eq!(desk.data("-r cell yrcx alarm history 1")["alarms"][0]["code"], alarm);
         fails(&desk.run("-r cell yrcx move --to 200,0,0,0 --yes"), 3, alarm);
         assert!(desk.run("-r cell yrcx recover --yes").status.success(), "{target}");
         assert!(desk.run("-r cell yrcx move --to 200,0,0,0 --yes").status.success(), "{target}");

@@ -85,7 +85,7 @@ impl Desk {
 
     /// Where X of the base is.
     fn x(&self) -> f64 {
-        self.data("yerc position --coordinates base")["base"]["x_mm"].as_f64().expect("a number")
+        self.data("yerc position --coordinates base")["positions"][0]["x_mm"].as_f64().expect("a number")
     }
 }
 
@@ -140,7 +140,7 @@ fn sizes_and_speeds_end_where_they_are_limited() {
 #[test]
 fn keys_move_one_axis_by_a_step() {
     let desk = Desk::powered("yerc");
-    let before = desk.data("yerc position --coordinates base")["base"].clone();
+    let before = desk.data("yerc position --coordinates base")["positions"][0].clone();
     let mut teach = desk.panel(&[]);
     teach.press("\x1b[B\x1b[C");
     teach.shows("ok move relative --y 0.1 --coordinate base --speed 5mm/s");
@@ -148,7 +148,7 @@ fn keys_move_one_axis_by_a_step() {
     teach.shows("tool  axis Y");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
-    let after = desk.data("yerc position --coordinates base")["base"].clone();
+    let after = desk.data("yerc position --coordinates base")["positions"][0].clone();
     let moved = |name: &str| after[name].as_f64().unwrap() - before[name].as_f64().unwrap();
     assert!((moved("y_mm") - 0.1).abs() < 1e-6, "{before} {after}");
     for name in ["x_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg"] {
@@ -156,13 +156,13 @@ fn keys_move_one_axis_by_a_step() {
     }
 
     let desk = Desk::powered("toyo");
-    let before = desk.data("toyo position");
+    let before = desk.data("toyo position")["positions"][0].clone();
     let mut teach = desk.panel(&[]);
     teach.press("\x1b[C");
     teach.shows("ok jog X + inch");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
-    let after = desk.data("toyo position");
+    let after = desk.data("toyo position")["positions"][0].clone();
     assert!(after["x_mm"].as_f64() > before["x_mm"].as_f64(), "{before} {after}");
     assert_eq!((&after["y_mm"], &after["z_mm"]), (&before["y_mm"], &before["z_mm"]));
 }

@@ -2,6 +2,9 @@
 #![cfg(unix)]
 
 mod support {
+    #[cfg(target_os = "linux")]
+    #[path = "../profinet/namespaces.rs"]
+    pub mod namespaces;
     pub mod schemas;
     pub mod simulator;
     pub mod terminal;

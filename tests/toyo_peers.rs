@@ -98,7 +98,7 @@ fn works(target: &str) {
     assert_eq!((&point["x_mm"], &point["y_mm"]), (&100.0.into(), &20.0.into()), "{point}");
     data(target, &["param", "set", "M10", "P"]);
     data(target, &["run", "point", "1"]);
-    let place = data(target, &["position"]);
+    let place = &data(target, &["position"])["positions"][0];
     assert_eq!((&place["x_mm"], &place["y_mm"]), (&100.0.into(), &20.0.into()), "{place}");
 }
 

@@ -53,6 +53,7 @@ impl Machine {
             }
             "CTSK" => self.task = block[block.len() - 1..].parse::<u8>().unwrap() - 1,
             "MTSK" => return format!("@MTSK TASK={:02}", self.task + 1),
+            "RPAR" if block == "@RPAR E01" => return "@RPAR E01 AX1=X AX2=Y AX3=Z AX4=R".to_owned(),
             "RSTX" => return "@RSTX 0001 NOP".to_owned(),
             _ => return "@NG".to_owned(),
         }
@@ -157,8 +158,8 @@ fn an_axis_is_not_left_jogging_whatever_ends_the_process() {
         ("INT", "the robot was stopped (@JGST X=SP"),
         ("TERM", "the robot was stopped (@JGST X=SP"),
         ("HUP", "the robot was stopped (@JGST X=SP"),
-        ("QUIT", "Ctrl-\\; the axis was stopped and stands at X "),
-        ("TSTP", "Ctrl-Z; the axis was stopped and stands at X "),
+        ("QUIT", "the robot was stopped (@JGST X=SP"),
+        ("TSTP", "the robot was stopped (@JGST X=SP"),
     ] {
         if name == "HUP" && ignored.is_none_or(|mask| mask & 1 != 0) {
             continue;

@@ -144,7 +144,7 @@ fn looking_leaves_the_owner_alone() {
     }
     let seen = simulator.run("yrcx status --json").stdout;
     let seen: Value = serde_json::from_slice(&seen).unwrap();
-    assert_eq!((&seen["data"]["servos"], &seen["data"]["position_mm"]), (&Value::Null, &Value::Null));
+    assert_eq!((&seen["data"]["servos"], &seen["data"]["joints"]), (&Value::Null, &Value::Null));
     assert!(seen["data"]["not_asked"].as_str().unwrap().contains("--full"));
     let (code, stderr) = failed(&simulator.run("yrcx io get SI06"));
     assert!(code == 2 && stderr.contains("known to whoever commands"), "{code} {stderr}");

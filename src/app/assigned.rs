@@ -65,7 +65,6 @@ mod tests {
         ("yrcx alarm history", "1", "3"),
         ("yrcx comment get", "1", "3"),
         ("yrcx hand-data get", "1", "3"),
-        ("yrcx info message", "1", "3"),
         ("yrcx io get", "SO20", "SO22"),
         ("yrcx pallet-data get", "1", "3"),
         ("yrcx point get", "1", "3"),

@@ -39,6 +39,10 @@ impl Uses {
             Common::Backup(backup) if !backup.takes_robot() => NONE,
             Common::Diff(diff) if !diff.takes_robot() => NONE,
             Common::Status(_)
+            | Common::Alarm(_)
+            | Common::Position
+            | Common::Stop
+            | Common::Wait(_)
             | Common::Top(_)
             | Common::Restore(_)
             | Common::Backup(_)
@@ -49,6 +53,7 @@ impl Uses {
             #[cfg(feature = "plant")]
             Common::Publish(_) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
+            Common::Robots(Robots::List) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
             // What settings would be in force; what a check needs.
@@ -76,10 +81,11 @@ pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
 /// A flag as it is typed, if it was given, and whether it means something.
 type Given = (Option<&'static str>, fn(Uses) -> bool);
 
-/// Each flag, if it was given, with whether it means something.
-fn given(globals: &Globals) -> [Given; 17] {
+/// Each flag, if it was given, with whether it means something. `--for` is not among them: it comes with `--until`, or is
+/// the command's own.
+fn given(globals: &Globals) -> [Given; 16] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
-    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, within, .. } = globals;
+    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, .. } = globals;
     [
         (sim.then_some("--sim"), |uses| uses.robots),
         (target.as_ref().map(|_| "--target"), |uses| uses.robots),
@@ -94,7 +100,6 @@ fn given(globals: &Globals) -> [Given; 17] {
         (watch.map(|_| "--watch"), |uses| uses.repeat),
         (count.map(|_| "--count"), |uses| uses.repeat),
         (until.as_ref().map(|_| "--until"), |uses| uses.repeat),
-        (within.map(|_| "--for"), |uses| uses.repeat),
         (yes.then_some("--yes"), |uses| uses.gate),
         (dry_run.then_some("--dry-run"), |uses| uses.gate),
         ((*on_interrupt != OnInterrupt::Stop).then_some("--on-interrupt"), |uses| uses.gate),
@@ -105,9 +110,6 @@ fn wrong(flag: &str, task: &Task) -> Failure {
     let hint = match (flag, task) {
         ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
             "--with-tag gives the new robot a tag; --tag chooses robots".to_owned()
-        }
-        ("--robot" | "--tag" | "--all", Task::Common(Common::Robots(Robots::List))) => {
-            "the list has all robots; `armctl status` takes --robot and --tag".to_owned()
         }
         _ => format!("remove {flag}"),
     };

@@ -12,6 +12,8 @@ use crate::app::words;
 use crate::cli::Cli;
 use crate::command::AnyCommand;
 use crate::command::common::Common;
+use crate::command::fleet::shared;
+use crate::command::fleet::status::Overview;
 use crate::command::frame::run::Run;
 use crate::command::leaves::{all, leaves};
 use crate::controller::Risk::{Destroy, Motion, Read, Write};
@@ -23,7 +25,7 @@ use crate::settings::inventory::Inventory;
 use crate::settings::target::Family;
 use crate::settings::{Selection, Sources};
 
-const STOPS: [&str; 5] = ["yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+const STOPS: [&str; 6] = ["stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
 /// Two robots of each family that are not there; the second ones are read-only.
 const ROBOTS: &str = r#"
@@ -96,6 +98,10 @@ fn seen(line: &str) -> Result<Seen, String> {
             of(&*command, family)
         }
         Invocation::Task(Task::Common(Common::Status(command))) => of(&command, "toyo"),
+        Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command(), "toyo"),
+        Invocation::Task(Task::Common(Common::Wait(_))) => of(&Overview {}, "toyo"),
+        Invocation::Task(Task::Common(Common::Position)) => of(&shared::position(), "toyo"),
+        Invocation::Task(Task::Common(Common::Stop)) => of(&shared::stop(), "toyo"),
         Invocation::Task(Task::Common(Common::Backup(command))) => of(command.making(), "toyo"),
         Invocation::Task(Task::Common(Common::Restore(command))) => of(&command, "toyo"),
         Invocation::Task(Task::Common(Common::Diff(command))) => of(&command, "toyo"),

@@ -10,6 +10,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
 
 use super::typed::Typed;
+use crate::command::face::Face;
+use crate::command::families::FAMILIES;
 use crate::command::leaves::{self, is_dangerous};
 use crate::controller::Risk;
 use crate::failure::decimal_point;
@@ -23,11 +25,19 @@ const MOST: usize = 4;
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let typed = Typed::new(args, whole);
     let tip = match error.kind() {
-        ErrorKind::InvalidSubcommand => {
-            absent(&mut error, &typed).or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole))
-        }
+        ErrorKind::InvalidSubcommand => absent(&mut error, &typed)
+            .or_else(|| of_families(&error, &typed))
+            .or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole)),
         ErrorKind::UnknownArgument => {
-            place(&mut error, ContextKind::InvalidArg, &typed, whole).or_else(|| joined(&error, args, &typed, whole))
+            // A flag is never meant as a value; a negative number is.
+            let is_flag = |value: &ContextValue| matches!(value, ContextValue::String(word) if word.starts_with("--"));
+            if error.get(ContextKind::InvalidArg).is_some_and(is_flag) {
+                error.remove(ContextKind::Suggested);
+            }
+            absent(&mut error, &typed)
+                .or_else(|| place(&mut error, ContextKind::InvalidArg, &typed, whole))
+                .or_else(|| joined(&error, args, &typed, whole))
+                .or_else(|| flag_or_value(&mut error, &typed, whole))
         }
         ErrorKind::MissingRequiredArgument => every_file(args, &typed).or_else(|| missing(&error, &typed, whole)),
         ErrorKind::InvalidValue => folder(&error, &typed, whole),
@@ -44,10 +54,51 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
 
 /// What there is instead of something that a family has not, whatever it is called.
 fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
-    let ([family], [word, ..]) = (&typed.path[..], &typed.rest[..]) else { return None };
-    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| of == family && words.contains(word))?;
+    let (path, word) = (typed.path.join(" "), typed.rest.first()?);
+    let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| *of == path && words.contains(word))?;
     error.remove(ContextKind::SuggestedSubcommand);
     Some((*instead).to_owned())
+}
+
+/// The families that know a code which none was named for.
+fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
+    let Some(ContextValue::String(code)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let bare = |code: &str| {
+        let code = code.to_ascii_lowercase();
+        code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0').to_owned()
+    };
+    if typed.path != ["explain"] || !code.chars().any(|one| one.is_ascii_digit()) {
+        return None;
+    }
+    let knows = |face: &&&dyn Face| face.codes().iter().any(|(known, _)| bare(known) == bare(code));
+    let of: Vec<&&dyn Face> = FAMILIES.iter().filter(knows).collect();
+    let named = if of.is_empty() { FAMILIES.iter().collect() } else { of };
+    let lines: Vec<String> = named.iter().map(|face| format!("`armctl explain {} {code}`", face.family())).collect();
+    Some(format!("say whose code it is: {}", lines.join(" or ")))
+}
+
+/// A flag that is a value here, or a value that belongs to a flag.
+fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let word = word.clone();
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    if let Some(flag) = word.strip_prefix("--") {
+        let flag = flag.split('=').next().unwrap_or(flag);
+        let is_named = |argument: &&Arg| argument.get_id().as_str().eq_ignore_ascii_case(flag);
+        command.get_positionals().find(is_named)?;
+        error.remove(ContextKind::SuggestedArg);
+        return Some(format!("{} stands alone, without --{flag}", flag.to_uppercase()));
+    }
+    if command.get_positionals().next().is_some() || word.starts_with('-') {
+        return None;
+    }
+    let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
+    let flags: Vec<String> = command
+        .get_arguments()
+        .filter(takes_value)
+        .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
+        .collect();
+    (!flags.is_empty()).then(|| format!("a value stands behind its flag here: {}", flags.join(", ")))
 }
 
 /// Where the wrong word belongs.
@@ -97,7 +148,10 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
 fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
-    if word.starts_with("--") || command.has_subcommands() {
+    let has_values = command
+        .get_arguments()
+        .any(|argument| argument.is_positional() || argument.get_action().takes_values() && !argument.is_global_set());
+    if word.starts_with("--") || command.has_subcommands() || !has_values {
         return None;
     }
     let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
@@ -116,6 +170,11 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     if let Some(range) = values.iter().find(|value| value.contains("..")) {
         let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
         return has_flag.then(|| format!("a range belongs to its flag: --ranges {range}"));
+    }
+    let takes_numbers =
+        is_of_flag || command.get_positionals().last().is_some_and(|last| last.get_value_delimiter().is_some());
+    if values.iter().all(is_number) && !takes_numbers {
+        return None;
     }
     Some(if values.iter().all(is_number) {
         format!("write numbers with commas and without blanks: {}", values.join(","))
@@ -166,7 +225,11 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
-    let values = command.get_arguments().find(is_missing)?.get_possible_values();
+    let argument = command.get_arguments().find(is_missing);
+    if missing.iter().any(|argument| argument.starts_with("--until")) {
+        return Some("--for is how long --until waits: add a condition such as --until idle".to_owned());
+    }
+    let values = argument?.get_possible_values();
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => Some(format!("say {} or {last}", others.join(", "))),
@@ -192,10 +255,21 @@ fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec
     (command, path)
 }
 
+/// What reads is not meant to be what writes: `get` is no misspelled `set`.
+const READS: [&str; 5] = ["get", "list", "show", "read", "ls"];
+
 /// Takes out of the similar words those of dangerous commands.
 fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
-    let is_safe = |word: &String| !may_do_harm(&[path, &[word.as_str()]].concat(), whole);
+    let typed = match error.get(ContextKind::InvalidSubcommand) {
+        Some(ContextValue::String(typed)) => typed.clone(),
+        _ => String::new(),
+    };
+    let reads = READS.contains(&typed.as_str());
+    let is_safe = |word: &String| {
+        let writes = reads && matches!(word.as_str(), "set" | "put");
+        !writes && !may_do_harm(&[path, &[word.as_str()]].concat(), whole)
+    };
     let safe = match similar {
         ContextValue::String(word) => Some(ContextValue::String(word)).filter(|value| {
             let ContextValue::String(word) = value else { return false };
@@ -257,7 +331,20 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
     ]
     .into_iter()
     .find(|lines| !lines.is_empty())
+    .map(|lines| for_all(lines, whole))
     .unwrap_or_default()
+}
+
+/// The same words behind each family are one command, where that needs no family.
+fn for_all(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
+    let shared = match &lines[..] {
+        [Suggestion(first, _), _, ..] => first.split_once(' ').map(|(_, words)| words.to_owned()),
+        _ => None,
+    };
+    let Some(shared) = shared else { return lines };
+    let is_same = |line: &Suggestion| line.0.split_once(' ').is_some_and(|(_, words)| words == shared);
+    let exists = words_of(&shared).iter().try_fold(whole, |command, word| command.find_subcommand(word)).is_some();
+    if exists && lines.iter().all(is_same) { vec![Suggestion::new(shared)] } else { lines }
 }
 
 /// A verb before its noun.
@@ -339,7 +426,7 @@ mod tests {
         for (line, expected) in [
             ("armctl get file", "`armctl yerc file get`"),
             ("armctl yerc get file A.JBI", "`armctl yerc file get`"),
-            ("armctl list alarm", "`armctl yerc alarm list` or `armctl yrcx alarm list` or `armctl toyo alarm list`"),
+            ("armctl list alarm", "`armctl alarm list`"),
             ("armctl yerc file ls", "`armctl yerc file list`"),
             ("armctl yerc io read 1", "`armctl yerc io get`"),
             ("armctl yerc start COUNT", "one that moves or powers the robot: see `armctl yerc job -h`"),
@@ -347,12 +434,13 @@ mod tests {
             ("armctl job run", "one that moves or powers the robot: see `armctl yerc job -h`"),
             ("armctl yerc file rm A.JBI", "one that deletes or overwrites: see `armctl yerc file -h`"),
             ("armctl yrcx error", "`armctl yrcx alarm list`"),
+            ("armctl error", "`armctl alarm list`"),
             (
                 "armctl version",
                 "`armctl --version` or `armctl yerc info` or `armctl yrcx info version` or `armctl toyo info`",
             ),
             ("armctl toyo version", "`armctl --version` or `armctl toyo info`"),
-            ("armctl stop", "`armctl yerc hold on` or `armctl yrcx stop` or `armctl toyo stop`"),
+            ("armctl pause", "`armctl yerc hold on` or `armctl yrcx stop` or `armctl toyo stop`"),
         ] {
             assert_eq!(tip(line), Some(format!("the command is {expected}")), "{line}");
         }
@@ -412,10 +500,13 @@ mod tests {
             ("armctl yerc file get A.JBI --output saved", "--output is the format; the folder is --dir"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
             ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
+            ("armctl yerc job start --name WELD", "NAME stands alone, without --name"),
+            ("armctl toyo io get 1", "the command is `armctl toyo io in` or `armctl toyo io out`"),
+            ("armctl explain 12.600", "say whose code it is: `armctl explain yrcx 12.600`"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
-        for line in ["armctl yerc file delete", "armctl yerc status x"] {
+        for line in ["armctl yerc file delete", "armctl yerc status x", "armctl toyo program get 5 6 7"] {
             assert_eq!(tip(line), None, "{line}");
         }
     }

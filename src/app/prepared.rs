@@ -10,8 +10,11 @@ use crate::command::common::Common;
 use crate::command::face::words::{Typed, Wish};
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
+use crate::command::fleet::shared;
+use crate::command::fleet::status::Overview;
 use crate::command::fleet::teach::Teach;
 use crate::command::frame::batch::Batch;
+use crate::command::frame::condition::Condition;
 use crate::command::frame::run::{Repeat, Run, RunError};
 use crate::command::frame::script_line::Line;
 use crate::command::{AnyCommand, Own};
@@ -81,13 +84,15 @@ impl PreparedCommand {
     pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
         flags::check(&globals, &task)?;
         let globals = match all {
+            // The list is of the inventory, also in the prompt of a robot.
+            Some(all) if matches!(task, Task::Common(Common::Robots(Robots::List))) => {
+                globals.within(&all.clone().without_robot())
+            }
             Some(all) => globals.within(all),
             None => globals,
         };
         let need = match task.need() {
-            Need::Names if matches!(task, Task::Common(Common::Explain(_))) && names_robots(&globals) => {
-                Need::Inventory
-            }
+            Need::Names if matches!(task, Task::Common(Common::Explain(_))) && globals.names_robot() => Need::Inventory,
             need => need,
         };
         let mut run = prepare(globals, need, line)?;
@@ -97,6 +102,7 @@ impl PreparedCommand {
                 run.sources.widen();
                 run.sources.selection.every_simulator = true;
             }
+            Task::Common(Common::Wait(wait)) => run.repeat = wait.repeat(&run.repeat)?,
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
@@ -115,6 +121,10 @@ impl PreparedCommand {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
             Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
+            Task::Common(Common::Wait(_)) => self.run.check_gate(&Overview {}),
+            Task::Common(Common::Alarm(alarm)) => self.run.check_gate(&*alarm.command()),
+            Task::Common(Common::Position) => self.run.check_gate(&shared::position()),
+            Task::Common(Common::Stop) => self.run.check_gate(&shared::stop()),
             Task::Common(_) => Ok(()),
         }
     }
@@ -153,12 +163,6 @@ impl Task {
     }
 }
 
-/// Whether flags name robots.
-fn names_robots(globals: &Globals) -> bool {
-    let Globals { sim, target, robot, all, tag, .. } = globals;
-    *sim || target.is_some() || !robot.is_empty() || *all || !tag.is_empty()
-}
-
 /// What a command wants of inventory and environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
@@ -176,9 +180,10 @@ pub enum Need {
 fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
     let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
-    let until = globals.until.as_deref().map(Filter::new).transpose()?;
+    let until = globals.until.as_deref().map(Condition::new).transpose()?;
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
-    let repeat = Repeat { every: globals.watch, count: globals.count, until, within: globals.within };
+    let repeat =
+        Repeat { every: globals.watch, count: globals.count, until, within: globals.within, ..Repeat::default() };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
@@ -255,7 +260,8 @@ pub fn wants_json() -> bool {
 const OUTPUT: &str = "ARMCTL_OUTPUT";
 
 fn format(name: &str) -> Result<Format, String> {
-    Format::from_str(name, true).map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl and csv"))
+    Format::from_str(name, true)
+        .map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl, csv and value"))
 }
 
 /// Where the inventory is.

@@ -24,10 +24,12 @@ mod watcher;
 pub mod yerc;
 pub mod yrcx;
 
-/// How long a stop is tried that nobody confirms.
-const STOP_WITHIN: Duration = Duration::from_secs(3);
 /// The silence after which a stop is sent again.
 const STOP_EVERY: Duration = Duration::from_millis(200);
+/// How often a stop is sent that nobody confirms.
+const STOP_TRIES: u32 = 15;
+/// How long a stop is tried that nobody confirms.
+const STOP_WITHIN: Duration = STOP_EVERY.saturating_mul(STOP_TRIES);
 
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};

@@ -3,7 +3,9 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
+use super::fleet::shared::{self, alarm};
 use super::fleet::status::Overview;
+use super::fleet::wait::Wait;
 use super::fleet::{backup, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
@@ -17,6 +19,15 @@ pub enum Common {
     Setup(setup::Setup),
     /// Show a one-line status per robot
     Status(Overview),
+    /// Alarms of robots: list, history, reset
+    #[command(subcommand)]
+    Alarm(alarm::Alarm),
+    /// Show where robots stand
+    Position,
+    /// Stop robots, whatever moves them
+    Stop,
+    /// Wait until robots are idle, homed, faulted, or as a condition says
+    Wait(Wait),
     /// Full-screen live monitor
     Top(top::Top),
     /// Publish robots to an MQTT broker
@@ -62,9 +73,16 @@ impl Common {
         match self {
             #[cfg(feature = "plant")]
             Self::Publish(_) => true,
-            Self::Setup(_) | Self::Status(_) | Self::Top(_) | Self::Robots(_) | Self::Session(_) | Self::Restore(_) => {
-                true
-            }
+            Self::Setup(_)
+            | Self::Status(_)
+            | Self::Alarm(_)
+            | Self::Position
+            | Self::Stop
+            | Self::Wait(_)
+            | Self::Top(_)
+            | Self::Robots(_)
+            | Self::Session(_)
+            | Self::Restore(_) => true,
             #[cfg(feature = "plant")]
             Self::Serve(_) => true,
             Self::Backup(backup) => backup.takes_robot(),
@@ -76,7 +94,8 @@ impl Common {
     /// Whether it is for all robots of the inventory where none is named, and for the simulators of all families.
     pub fn is_for_all(&self) -> bool {
         match self {
-            Self::Status(_) | Self::Top(_) => true,
+            Self::Status(_) | Self::Position | Self::Top(_) => true,
+            Self::Alarm(alarm) => alarm.reads(),
             #[cfg(feature = "plant")]
             Self::Serve(_) | Self::Publish(_) => true,
             _ => false,
@@ -98,6 +117,10 @@ impl Common {
             Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
             Self::Status(_)
+            | Self::Alarm(_)
+            | Self::Position
+            | Self::Stop
+            | Self::Wait(_)
             | Self::Robots(_)
             | Self::Session(_)
             | Self::Decode(_)
@@ -113,6 +136,10 @@ impl Common {
         match self {
             Self::Setup(setup) => Box::pin(setup.run(run)).await,
             Self::Status(overview) => run.robots(&overview).await,
+            Self::Alarm(alarm) => run.robots(&*alarm.command()).await,
+            Self::Position => run.robots(&shared::position()).await,
+            Self::Stop => run.robots(&shared::stop()).await,
+            Self::Wait(_) => run.robots(&Overview {}).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,
             Self::Diff(diff) => run.robots(&diff).await,

@@ -19,6 +19,7 @@ pub mod families;
 pub mod fleet;
 pub mod frame;
 pub mod leaves;
+pub mod robot;
 pub mod serve;
 pub mod toyo;
 pub mod yerc;

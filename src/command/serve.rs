@@ -6,9 +6,10 @@ pub mod terminal_link;
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 
+use anyhow::Context as _;
 use schemars::JsonSchema;
 use serde::Serialize;
-use tokio::io::{AsyncBufReadExt as _, BufReader, Lines, Stdin};
+use tokio::io::{AsyncBufReadExt as _, AsyncRead, AsyncReadExt as _, BufReader};
 
 use super::frame::interrupt::interruptible;
 use super::frame::run::{Run, RunError};
@@ -88,12 +89,12 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
         let console = if with_console { " or `quit`; `help` lists what this console takes" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
     }
-    let mut console = with_console.then(|| BufReader::new(tokio::io::stdin()).lines());
+    let mut console = with_console.then(|| Console::new(tokio::io::stdin()));
     loop {
         let turn = interruptible(async {
             tokio::select! {
                 turned = server.turn() => turned.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
-                line = next_line(&mut console) => Ok(Some(line)),
+                line = next_line(&mut console) => line.map(Some),
             }
         });
         let line = match turn.await {
@@ -114,10 +115,39 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     }
 }
 
-/// The next line of the console; `None` at its end.
-async fn next_line(console: &mut Option<Lines<BufReader<Stdin>>>) -> Option<String> {
+/// Lines that somebody types to a simulator.
+struct Console<R> {
+    from: BufReader<R>,
+    /// What came of the next line so far: a turn of the simulator does not lose it.
+    held: Vec<u8>,
+}
+
+impl<R: AsyncRead + Unpin> Console<R> {
+    /// More than any command takes.
+    const LONGEST: usize = 1 << 16;
+
+    fn new(from: R) -> Self {
+        Self { from: BufReader::new(from), held: Vec::new() }
+    }
+
+    /// The next line; `None` at the end.
+    async fn next(&mut self) -> Result<Option<String>, Failure> {
+        let room = u64::try_from(Self::LONGEST.saturating_sub(self.held.len())).unwrap_or_default();
+        (&mut self.from).take(room).read_until(b'\n', &mut self.held).await.context("stdin")?;
+        if self.held.len() >= Self::LONGEST {
+            return Err(
+                Failure::usage("a line of the console is longer than 64 KiB").hint("`help` lists what it takes")
+            );
+        }
+        let line = std::mem::take(&mut self.held);
+        Ok((!line.is_empty()).then(|| String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned()))
+    }
+}
+
+/// The next line of the console, if there is one.
+async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Result<Option<String>, Failure> {
     match console {
-        Some(lines) => lines.next_line().await.unwrap_or(None),
+        Some(console) => console.next().await,
         None => std::future::pending().await,
     }
 }
@@ -141,4 +171,19 @@ pub fn cannot_listen(on: &str, error: &io::Error) -> Failure {
         _ => "choose an address of this machine with --bind",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_console_takes_lines_and_no_endless_one() {
+        let mut console = Console::new(&b"state\r\nquit"[..]);
+        assert_eq!(console.next().await.unwrap().as_deref(), Some("state"));
+        assert_eq!(console.next().await.unwrap().as_deref(), Some("quit"), "the last one needs no end");
+        assert_eq!(console.next().await.unwrap(), None);
+        let failure = Console::new(tokio::io::repeat(b'x')).next().await.unwrap_err();
+        assert!(failure.message.contains("64 KiB"), "{failure:?}");
+    }
 }

@@ -193,6 +193,11 @@ impl Sheet {
         self.head.cells.iter().map(|cell| cell.text.trim())
     }
 
+    /// Where a column is, whatever others there are.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.head.cells.iter().position(|cell| cell.text.trim().eq_ignore_ascii_case(name))
+    }
+
     /// Where each of these columns is, if it is there. Others but comments are mistakes.
     pub fn columns<S: AsRef<str>>(&self, known: &[S], expected: &str, findings: &mut Findings) -> Vec<Option<usize>> {
         let mut places = vec![None; known.len()];

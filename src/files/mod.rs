@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use tempfile::NamedTempFile;
 
@@ -47,12 +47,20 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "this is not UTF-8"))
 }
 
-/// What stands on stdin, whatever that is, up to so many bytes.
+/// What stands on stdin, whatever that is, up to so many bytes. It is kept: a command that asks is planned before it runs,
+/// and finds the same both times.
 ///
 /// # Errors
 /// `FileTooLarge` if there are more.
 pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
-    bounded(io::stdin().lock(), most)
+    static KEPT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bytes) = &*kept {
+        return bounded(&**bytes, most);
+    }
+    let bytes = bounded(io::stdin().lock(), most)?;
+    *kept = Some(bytes.clone());
+    Ok(bytes)
 }
 
 /// The bytes of a regular file, or of stdin for `-`, up to so many.
@@ -102,6 +110,26 @@ const DRAFT: (&str, &str) = (".armctl-", ".part");
 /// How often a draft is begun anew that somebody swept away as it was made.
 const TRIES: u32 = 10;
 
+/// What is done before a draft is made.
+static BEFORE_DRAFT: OnceLock<fn()> = OnceLock::new();
+
+/// Has this done before every draft of this process: it sees to it that a signal does not end the process while a draft
+/// is there. The first one counts.
+pub fn before_drafts(prepare: fn()) {
+    BEFORE_DRAFT.get_or_init(|| prepare);
+}
+
+/// Drafts of this process.
+static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Removes the drafts of this process that are there yet, which is about to end at once.
+pub fn remove_drafts() {
+    for path in DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+        // It may have become a file.
+        let _ = std::fs::remove_file(path);
+    }
+}
+
 /// A temporary file that later has the rights of any new file, not those of a secret. While it lives, it is locked.
 pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
     static SWEPT: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
@@ -113,6 +141,9 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
     if is_new {
         sweep(folder);
     }
+    if let Some(prepare) = BEFORE_DRAFT.get() {
+        prepare();
+    }
     let mut tries = 0;
     loop {
         let mut builder = tempfile::Builder::new();
@@ -121,6 +152,12 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         let file = builder.tempfile_in(folder)?;
         tries += 1;
+        {
+            let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
+            // The others have become files.
+            drafts.retain(|path| path.exists());
+            drafts.push(file.path().to_owned());
+        }
         // Between its making and its locking, another run may have taken it for a dead one's.
         if (lock(file.as_file()) && is_there(file.as_file())) || tries >= TRIES {
             return Ok(file);
@@ -128,16 +165,17 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
     }
 }
 
-/// Removes the drafts of runs that were killed: those that nobody has locked.
-pub fn sweep(folder: &Path) {
-    for path in abandoned_drafts(folder) {
-        // What cannot be removed is in nobody's way.
-        let _ = std::fs::remove_file(&path);
-    }
+/// Removes the drafts of runs that were killed, those that nobody has locked. Returns how many were removed, and how many
+/// could not be.
+pub fn sweep(folder: &Path) -> (usize, usize) {
+    let drafts = abandoned_drafts(folder);
+    // What cannot be removed is in nobody's way.
+    let removed = drafts.iter().filter(|path| std::fs::remove_file(path).is_ok()).count();
+    (removed, drafts.len() - removed)
 }
 
 /// The drafts of runs that were killed: those that nobody has locked.
-pub fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
+fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let drafts = entries.map(|entry| entry.path()).filter(|path| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
@@ -297,7 +335,7 @@ mod tests {
         for name in kept.iter().chain(&[".armctl-dead.part"]) {
             std::fs::write(folder.path().join(name), "half").unwrap();
         }
-        sweep(folder.path());
+        assert_eq!(sweep(folder.path()), (1, 0));
         assert_eq!(names(), 3);
         assert!(living.path().exists() && !folder.path().join(".armctl-dead.part").exists());
         drop(living);

@@ -12,6 +12,8 @@ use super::escape;
 
 /// How deep fields are followed. What nests deeper is one cell.
 const DEEPEST: usize = 5;
+/// The column of what an entry holds.
+const VALUE: &str = "value";
 /// The longest list that is a column for each place.
 const LONGEST: u64 = 16;
 
@@ -48,7 +50,7 @@ impl Sheet {
         let mut sheet = Self { common: Vec::new(), lists: Vec::new() };
         let all = fields(schema, &[schema]);
         if all.is_empty() {
-            sheet.common.push(Column { name: "value".to_owned(), pointer: String::new() });
+            sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new() });
         }
         for (name, variants) in all {
             let entries: Vec<&Value> = variants.iter().flat_map(|one| items(schema, one)).collect();
@@ -97,6 +99,32 @@ impl Sheet {
         let mut out = String::new();
         line(&mut out, before.iter().copied().chain(self.columns()));
         out
+    }
+
+    /// Adds the values of a report alone, with tabs between them: a line, or one for each entry of its lists. Of entries
+    /// that have a value, that is all, and of positions what can be typed; how each was answered is no value.
+    pub fn values(&self, before: &[&str], data: &Value, out: &mut String) {
+        let mut add = |columns: &[Column], entry: &Value| {
+            let is_position = columns.iter().any(|column| column.name == "frame");
+            let is_value = |column: &&Column| {
+                column.name == VALUE || column.name.starts_with("value_") || (is_position && column.name == "text")
+            };
+            let is_outcome = |column: &&Column| column.name == "ok" || column.name.starts_with("error_");
+            let has_values = columns.iter().any(|column| is_value(&column));
+            let chosen =
+                columns.iter().filter(|column| if has_values { is_value(column) } else { !is_outcome(column) });
+            let told = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
+            let before = before.iter().map(|text| escape::line(text).into_owned());
+            let cells: Vec<String> = before.chain(chosen.map(told)).collect();
+            out.push_str(cells.join("\t").trim_end_matches('\t'));
+            out.push('\n');
+        };
+        if self.lists.is_empty() {
+            return add(&self.common, data);
+        }
+        for (list, columns) in &self.lists {
+            data[list].as_array().into_iter().flatten().for_each(|entry| add(columns, entry));
+        }
     }
 
     /// Adds the rows of a report: one, or one for each entry of its lists. `before` are the cells of other columns.
@@ -213,22 +241,25 @@ fn pointer(place: &str, field: &str) -> String {
 
 /// A value as a cell. What has columns of its own leaves this one empty.
 fn cell(value: &Value) -> String {
+    harmless(&text(value))
+}
+
+/// A value on a line that has tabs between values.
+fn plain(value: &Value) -> String {
+    escape::line(&text(value)).into_owned()
+}
+
+fn text(value: &Value) -> String {
     let is_scalar = |value: &Value| !value.is_object() && !value.is_array();
     match value {
         Value::Null => String::new(),
-        Value::String(text) => harmless(text),
-        Value::Bool(_) | Value::Number(_) => value.to_string(),
+        Value::String(text) => text.clone(),
         Value::Array(values) if values.iter().all(is_scalar) => {
             let between = if values.iter().any(Value::is_string) { "; " } else { " " };
-            harmless(
-                &values
-                    .iter()
-                    .map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned))
-                    .collect::<Vec<_>>()
-                    .join(between),
-            )
+            let texts = values.iter().map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
+            texts.collect::<Vec<_>>().join(between)
         }
-        Value::Array(_) | Value::Object(_) => harmless(&value.to_string()),
+        _ => value.to_string(),
     }
 }
 
@@ -305,6 +336,33 @@ mod tests {
         let mut out = String::new();
         sheet.rows(&[], data, &mut out);
         out
+    }
+
+    #[test]
+    fn values_stand_alone() {
+        #[derive(serde::Serialize, JsonSchema)]
+        struct Item {
+            name: &'static str,
+            value: i32,
+        }
+        #[derive(serde::Serialize, JsonSchema)]
+        struct Items {
+            items: Vec<Item>,
+        }
+        #[derive(serde::Serialize, JsonSchema)]
+        struct Place {
+            x_mm: f64,
+            text: &'static str,
+        }
+        let values = |schema: schemars::Schema, data: Value, before: &[&str]| {
+            let mut out = String::new();
+            Sheet::of(&schema.to_value(), RowsOf::Lists).values(before, &data, &mut out);
+            out
+        };
+        let items = Items { items: vec![Item { name: "B0", value: -5 }, Item { name: "B1", value: 7 }] };
+        assert_eq!(values(schema_for!(Items), serde_json::to_value(&items).unwrap(), &[]), "-5\n7\n");
+        let place = serde_json::to_value(Place { x_mm: 1.5, text: "=a\tb" }).unwrap();
+        assert_eq!(values(schema_for!(Place), place, &["cell3"]), "cell3\t1.5\t=a\\tb\n");
     }
 
     #[test]

@@ -17,6 +17,8 @@ use ratatui::{Frame, Terminal};
 
 pub use ratatui::crossterm::event::{Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
+#[cfg(unix)]
+use super::leave;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
@@ -99,11 +101,8 @@ impl Fullscreen {
     /// Gives the terminal back and suspends the process, as Ctrl-Z does. Returns when it goes on.
     #[cfg(unix)]
     pub fn suspend(&mut self) -> Result<(), Failure> {
-        use rustix::process::{Signal, kill_current_process_group};
-
         restore();
-        // Where nobody could let the process go on, the system does not suspend it.
-        kill_current_process_group(Signal::TSTP).map_err(|error| lost(&error.into()))?;
+        leave::suspend();
         self.refresh()
     }
 

@@ -7,6 +7,7 @@ use std::time::Duration;
 use super::envelope::Envelope;
 use super::{Screen, fullscreen, prompt};
 use crate::failure::{Failure, Kind, end};
+use crate::files;
 
 /// How failures are told, once that is known.
 static SCREEN: Mutex<Option<Screen>> = Mutex::new(None);
@@ -38,5 +39,23 @@ pub fn at_once(why: &str) -> ! {
         let _ = done.send(());
     });
     let _ = is_done.recv_timeout(LAST_WORDS);
+    files::remove_drafts();
     end(Kind::Interrupted)
+}
+
+/// Suspends the process and those beside it, as a shell expects it of Ctrl-Z. Returns when it goes on; at once where no
+/// shell is there that could let it go on.
+#[cfg(unix)]
+pub fn suspend() {
+    use rustix::process::{Signal, getpgid, getppid, getsid, kill_current_process_group};
+
+    let is_shell = |parent| {
+        let (its, own) = (getsid(parent).ok()?, getsid(None).ok()?);
+        let (its_group, own_group) = (getpgid(parent).ok()?, getpgid(None).ok()?);
+        Some(its == own && its_group != own_group)
+    };
+    if is_shell(getppid()) == Some(true) {
+        // A process that hears SIGTSTP is not suspended by it.
+        let _ = kill_current_process_group(Signal::STOP);
+    }
 }

@@ -39,6 +39,15 @@ pub enum Format {
     Jsonl,
     /// Comma-separated values.
     Csv,
+    /// Values alone, with tabs between them, for a shell.
+    Value,
+}
+
+impl Format {
+    /// Whether a report is written as rows whose columns come from its schema.
+    pub fn is_rows(self) -> bool {
+        matches!(self, Self::Csv | Self::Value)
+    }
 }
 
 /// When to use colour.

@@ -45,9 +45,9 @@ const FILE_NAME: &str = "robots.toml";
 /// Settings that a robot, the `[defaults]` of the file, a flag or the environment can give.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Longest wait for an answer.
+    /// Longest wait of one try for its answer.
     pub timeout: Option<Duration>,
-    /// Repetitions of a read after silence.
+    /// Further tries of a read after silence.
     pub retries: Option<u32>,
     /// Encoding of names and texts on the controller.
     pub encoding: Option<Encoding>,

@@ -76,9 +76,9 @@ pub struct Robot {
     pub family: Family,
     /// Where it is.
     pub target: Setting<Target>,
-    /// Longest wait for an answer; in a transfer, longest time without progress.
+    /// Longest wait of one try for its answer.
     pub timeout: Setting<Duration>,
-    /// Repetitions of a read after silence.
+    /// Further tries of a read after silence.
     pub retries: Setting<u32>,
     /// Encoding of names and texts.
     pub encoding: Setting<Encoding>,
@@ -102,6 +102,8 @@ pub struct Robot {
     pub alarms: Alarms,
     /// Names of its signals, variables and registers.
     pub names: RobotNames,
+    /// The inventory, which may make it read-only at any time.
+    pub inventory: Option<PathBuf>,
 }
 
 /// The folder for what this program remembers of its user between two runs, if he has a home.
@@ -216,7 +218,7 @@ pub struct Sources {
     pub inventory: Inventory,
 }
 
-/// Repetitions of a read unless set.
+/// Further tries of a read unless set.
 const RETRIES: u32 = 3;
 
 impl Sources {
@@ -250,7 +252,8 @@ impl Sources {
         let address = family.map_or("udp://HOST", Family::address);
         Err(Failure::usage("no robot selected").hint(format!(
             "use --sim for the built-in simulator, -t {address} for an address, -r NAME for a robot of the inventory, or \
-             set ARMCTL_TARGET or ARMCTL_ROBOT"
+             set ARMCTL_TARGET or ARMCTL_ROBOT{}",
+            if self.inventory.robots.is_empty() { "; `armctl setup` adds a robot step by step" } else { "" }
         )))
     }
 
@@ -453,6 +456,8 @@ impl Sources {
             tags,
             sessions: self.selection.sessions,
             alarms: self.alarms(),
+            // As it is seen from any folder.
+            inventory: self.inventory.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
         };
         self.bind(&mut robot);
         robot

@@ -60,7 +60,7 @@ impl Family {
         }
     }
 
-    /// Longest wait for an answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within
+    /// Longest wait of one try for its answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within
     /// seconds; over a serial line, within one second (TO 1-3).
     pub const fn timeout(self) -> Duration {
         match self {
@@ -112,7 +112,7 @@ pub struct Target {
 /// What a target URL leads to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
-    /// `udp://HOST[:10040][?file_port=10041&model=auto|fs100|dx100|dx200|yrc1000&move_words=25|26]`.
+    /// `udp://HOST[:10040][?file_port=PORT+1&model=auto|fs100|dx100|dx200|yrc1000&move_words=25|26]`.
     Udp(Udp),
     /// `serial:///dev/ttyUSB0[?baud=9600&parity=even|odd|none&data_bits=7|8&stop_bits=1|2]`, `serial://COM3`.
     Serial(Serial),
@@ -195,8 +195,6 @@ pub struct Sim {
 
 /// Port of the robot server (spec: frame table; UDP).
 const ROBOT_PORT: u16 = 10040;
-/// Port of the file server.
-const FILE_PORT: u16 = 10041;
 /// Speed of a serial line (TO 1-2).
 const BAUD: u32 = 9600;
 
@@ -289,6 +287,9 @@ impl FromStr for Target {
         if scheme.is_empty() && url.contains('.') && url.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.') {
             return Err(wrong("it is no IPv4 address, which has four numbers from 0 to 255".into()));
         }
+        if scheme.contains('.') && !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit()) {
+            return Err(wrong(format!("port {rest} is not one of 1 to 65535")));
+        }
         if scheme.is_empty() {
             return Err(wrong("there is no scheme such as udp:// in it".into()));
         }
@@ -325,7 +326,7 @@ fn hint(scheme: &str) -> String {
 
 /// What other URLs look like.
 const FORMS: [(&str, &str); 4] = [
-    ("udp", "udp://HOST[:10040][?file_port=10041&model=auto]"),
+    ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
     ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
@@ -340,7 +341,8 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     };
     let file_port = match query.take("file_port") {
         Some(port) => self::port("file_port", &port)?,
-        None => FILE_PORT,
+        // A controller behind a forwarded port has its file server beside it.
+        None => port.checked_add(1).ok_or("port 65535 leaves none above it for files; file_port=PORT says which")?,
     };
     Ok(Udp { host, port, file_port, traits: traits(query)? })
 }
@@ -442,6 +444,9 @@ mod tests {
     fn ports_default_to_those_of_the_protocol() {
         let Place::Udp(udp) = target("udp://10.0.0.2").place else { panic!("not udp") };
         assert_eq!((udp.host.as_str(), udp.port, udp.file_port), ("10.0.0.2", 10040, 10041));
+        let Place::Udp(udp) = target("udp://10.0.0.2:20040").place else { panic!("not udp") };
+        assert_eq!((udp.port, udp.file_port), (20040, 20041), "files are one port above");
+        assert!("udp://10.0.0.2:65535".parse::<Target>().is_err_and(|failure| failure.message.contains("file_port")));
     }
 
     #[test]
@@ -460,6 +465,11 @@ mod tests {
             ("http://x", "unknown scheme"),
             ("udp:x", "slashes"),
             ("udp://", "host is missing"),
+            ("udp://0.0.0.0", "0.0.0.0 is the address of no robot"),
+            ("udp://0", "0 is the address of no robot"),
+            ("udp://0x0.0:10040", "is the address of no robot"),
+            ("udp://[::]", ":: is the address of no robot"),
+            ("udp://[::ffff:0.0.0.0]", "is the address of no robot"),
             ("udp://h:0", "1 to 65535"),
             ("udp://h:70000", "1 to 65535"),
             ("udp://h?modle=fs100", "modle"),
@@ -482,6 +492,7 @@ mod tests {
             ("tcp:h:1", "slashes"),
             ("tcp://h", "port is missing"),
             ("tcp://:4001", "host is missing"),
+            ("tcp://0.0.0.0:4001", "is the address of no robot"),
             ("tcp://h:0", "1 to 65535"),
             ("tcp://h:4001?parity=odd", "unknown parameter 'parity'; there are baud"),
         ] {

@@ -1,13 +1,17 @@
 //! Hands out a few texts over HTTP/1.1, and no more than that: one request a connection, no bodies, everything bounded.
 //!
-//! A peer gets nothing for being slow or greedy: a connection has `WITHIN` for all of it, a request `HEAD` bytes, and
-//! no more than `MOST` connections are served at the same time; others wait with the system.
+//! Connections are bounded: each has `WITHIN` for all of it, a request has `HEAD` bytes, and at most `MOST` are open at the
+//! same time. A new one is served at once: the oldest that has no answer under way is closed for it.
 
+use std::cell::Cell;
+use std::collections::VecDeque;
 use std::io;
 use std::net::SocketAddr;
+use std::rc::Rc;
 use std::time::Duration;
 
 use futures_util::StreamExt as _;
+use futures_util::future::{AbortHandle, abortable};
 use futures_util::stream::FuturesUnordered;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
@@ -109,26 +113,96 @@ impl Server {
     /// Nobody can be let in any more.
     pub async fn run(&self, answer: impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
         let mut peers = FuturesUnordered::new();
+        let mut seats = Seats::default();
         loop {
             tokio::select! {
-                accepted = self.listener.accept(), if peers.len() < MOST => match accepted {
-                    Ok((stream, _)) => peers.push(timeout(WITHIN, serve(stream, &answer))),
+                biased;
+                // Requests that have arrived are read before a new connection may close theirs.
+                Some(ended) = peers.next() => {
+                    if let Ok(number) = ended {
+                        seats.free(number);
+                    }
+                }
+                accepted = self.listener.accept() => match accepted {
+                    Ok((stream, _)) => {
+                        let (number, is_answered) = (seats.next, Rc::new(Cell::new(false)));
+                        let served = serve(stream, &answer, Rc::clone(&is_answered));
+                        let (served, close) = abortable(async move {
+                            // How it went is the peer's concern.
+                            let _served = timeout(WITHIN, served).await;
+                            number
+                        });
+                        seats.take(Seat { number, is_answered, close });
+                        peers.push(served);
+                    }
                     Err(error) if is_passing(&error) => {}
-                    Err(error) if is_full(&error) => sleep(FULL).await,
+                    Err(error) if is_full(&error) => {
+                        seats.evict();
+                        sleep(FULL).await;
+                    }
                     Err(error) => return Err(error),
                 },
-                // How it went is the peer's concern.
-                Some(_served) = peers.next() => {}
             }
         }
     }
 }
 
-/// Whether it is about the one peer that was about to come in.
-fn is_passing(error: &io::Error) -> bool {
-    use io::ErrorKind::{ConnectionAborted, ConnectionReset, Interrupted, TimedOut, WouldBlock};
+/// An open connection.
+struct Seat {
+    number: u64,
+    /// Whether its request is whole, and the answer is on its way.
+    is_answered: Rc<Cell<bool>>,
+    close: AbortHandle,
+}
 
-    matches!(error.kind(), ConnectionAborted | ConnectionReset | Interrupted | TimedOut | WouldBlock)
+/// The open connections, the oldest first.
+#[derive(Default)]
+struct Seats {
+    taken: VecDeque<Seat>,
+    /// The number of the next one.
+    next: u64,
+}
+
+impl Seats {
+    fn take(&mut self, seat: Seat) {
+        if self.taken.len() >= MOST {
+            self.evict();
+        }
+        self.next += 1;
+        self.taken.push_back(seat);
+    }
+
+    fn free(&mut self, number: u64) {
+        self.taken.retain(|seat| seat.number != number);
+    }
+
+    /// Closes the oldest one without an answer on its way, or else the oldest: it has had the most time.
+    fn evict(&mut self) {
+        let idle = self.taken.iter().position(|seat| !seat.is_answered.get());
+        if let Some(seat) = self.taken.remove(idle.unwrap_or(0)) {
+            seat.close.abort();
+        }
+    }
+}
+
+/// Whether it is about the one peer that was about to come in, or the network to it: `accept(2)` reports both.
+fn is_passing(error: &io::Error) -> bool {
+    use io::ErrorKind::{
+        ConnectionAborted, ConnectionReset, HostUnreachable, Interrupted, NetworkDown, NetworkUnreachable, TimedOut,
+        WouldBlock,
+    };
+
+    let kinds = [
+        ConnectionAborted,
+        ConnectionReset,
+        HostUnreachable,
+        Interrupted,
+        NetworkDown,
+        NetworkUnreachable,
+        TimedOut,
+        WouldBlock,
+    ];
+    kinds.contains(&error.kind())
 }
 
 /// Whether this process, or the machine, has no room for another connection at the moment (EMFILE, ENFILE, ENOBUFS).
@@ -144,8 +218,13 @@ enum Asked {
     Nothing,
 }
 
-async fn serve(mut stream: TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
+async fn serve(
+    mut stream: TcpStream,
+    answer: &impl Fn(&Request<'_>) -> Answer,
+    is_answered: Rc<Cell<bool>>,
+) -> io::Result<()> {
     let Asked::Text(Answer { status, kind, body }, is_head) = asked(&mut stream, answer).await? else { return Ok(()) };
+    is_answered.set(true);
     let allow = if status == Status::MethodNotAllowed { "Allow: GET, HEAD\r\n" } else { "" };
     let head = format!(
         "HTTP/1.1 {}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{allow}Cache-Control: no-store\r\n\
@@ -158,6 +237,7 @@ async fn serve(mut stream: TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) 
         stream.write_all(body.as_bytes()).await?;
     }
     stream.shutdown().await?;
+    is_answered.set(false);
     // What comes after an answer would make the system forget it, were the connection closed on it.
     tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
 }
@@ -200,7 +280,8 @@ fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) 
 #[cfg(test)]
 mod tests {
     use std::net::Ipv4Addr;
-    use std::pin::pin;
+
+    use futures_util::FutureExt as _;
 
     use super::*;
 
@@ -260,8 +341,8 @@ mod tests {
         }
     }
 
-    #[tokio::test(start_paused = true)]
-    async fn who_says_nothing_is_let_go_and_keeps_nobody_out() {
+    #[tokio::test]
+    async fn silent_connections_hold_up_no_new_one() {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
         let asked = async {
@@ -278,16 +359,50 @@ mod tests {
             stream.write_all(b"GET /a HTTP/1.1\r\n\r\n").await.unwrap();
             let mut said = String::new();
             stream.read_to_string(&mut said).await.unwrap();
-            let mut ended = [0; 1];
-            let closed = silent[0].read(&mut ended).await;
-            (said, closed.map_or(true, |read| read == 0))
+            assert!(said.ends_with("anything\n"), "{said}");
+            // The oldest five have given way; the others still have their time.
+            let mut byte = [0; 1];
+            for stream in &mut silent[..5] {
+                assert!(stream.read(&mut byte).await.map_or(true, |read| read == 0));
+            }
+            for stream in &mut silent[5..] {
+                assert!(stream.read(&mut byte).now_or_never().is_none(), "it is open");
+            }
         };
-        let mut running = pin!(server.run(texts));
-        let (said, is_closed) = tokio::select! {
-            said = asked => said,
-            ended = &mut running => panic!("{ended:?}"),
+        tokio::select! {
+            () = asked => {}
+            ended = server.run(texts) => panic!("{ended:?}"),
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn a_silent_connection_has_its_time_and_no_more() {
+        let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
+        let address = server.local().unwrap();
+        let silent = async {
+            let mut stream = TcpStream::connect(address).await.unwrap();
+            stream.read(&mut [0; 1]).await.map_or(true, |read| read == 0)
         };
-        assert!(said.ends_with("anything\n"), "{said}");
-        assert!(is_closed, "it had ten seconds");
+        tokio::select! {
+            is_closed = silent => assert!(is_closed),
+            ended = server.run(texts) => panic!("{ended:?}"),
+        }
+    }
+
+    #[test]
+    fn an_answer_on_its_way_is_the_last_to_give_way() {
+        let mut seats = Seats::default();
+        for number in 0..3 {
+            let (close, _) = AbortHandle::new_pair();
+            seats.take(Seat { number, is_answered: Rc::new(Cell::new(number != 1)), close });
+        }
+        let numbers = |seats: &Seats| seats.taken.iter().map(|seat| seat.number).collect::<Vec<_>>();
+        seats.evict();
+        assert_eq!(numbers(&seats), [0, 2]);
+        seats.evict();
+        assert_eq!(numbers(&seats), [2], "the oldest has had the most time");
+        seats.free(2);
+        seats.evict();
+        assert!(seats.taken.is_empty());
     }
 }

@@ -47,6 +47,32 @@ pub enum PortKind {
 const TERMINALS: &str = "/sys/class/tty";
 const STABLE_NAMES: &str = "/dev/serial/by-id";
 
+/// A process that has a port open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PortUser {
+    /// Process.
+    pub pid: u32,
+    /// Name of its program.
+    pub name: String,
+}
+
+/// Where Linux shows what processes have open.
+const PROCESSES: &str = "/proc";
+
+/// Another process that has a port open, where the system tells: on Linux, of processes of the same user.
+pub fn user(path: &str) -> Option<PortUser> {
+    let port = std::fs::canonicalize(path).ok()?;
+    let has_it = |process: &Path| {
+        let open = std::fs::read_dir(process.join("fd")).into_iter().flatten().flatten();
+        open.map(|file| file.path()).any(|file| std::fs::read_link(file).is_ok_and(|target| target == port))
+    };
+    let processes = std::fs::read_dir(PROCESSES).ok()?.flatten();
+    let numbered = processes.filter_map(|entry| Some((entry.file_name().to_str()?.parse().ok()?, entry.path())));
+    let (pid, process) = numbered.filter(|(pid, _)| *pid != std::process::id()).find(|(_, process)| has_it(process))?;
+    let name = files::text(&process.join("comm"), files::SETTINGS).ok()?;
+    Some(PortUser { pid, name: name.trim().to_owned() })
+}
+
 /// All serial ports, by name (`ttyUSB2` before `ttyUSB10`).
 ///
 /// # Errors

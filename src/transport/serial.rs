@@ -256,6 +256,7 @@ mod tests {
     async fn only_one_has_a_port() {
         let (_master, serial, path) = pair();
         assert!(matches!(Serial::open(&line(&path)), Err(OpenError::Busy)));
+        assert_eq!(crate::ports::user(&path), None, "this process is no other");
         drop(serial);
         Serial::open(&line(&path)).unwrap();
     }

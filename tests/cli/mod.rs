@@ -7,6 +7,7 @@
 mod csv;
 mod exits;
 mod json;
+mod served;
 mod transcript;
 
 use std::collections::BTreeSet;

@@ -11,7 +11,7 @@ use armctl::transport::eip::discovery::list_identity;
 use armctl::transport::eip::error::EipError;
 use armctl::transport::eip::explicit::{Answer, Message};
 use armctl::transport::eip::originator::State;
-use armctl::transport::eip::probe::{self, Connectable, Instances, probe};
+use armctl::transport::eip::probe::{self, Connectable, Instances, Presence, probe};
 use armctl::transport::eip::reader::{Assembly, Reader, Reading};
 use armctl::transport::eip::scanner::Scanner;
 use armctl::transport::eip::settings::{Multiplier, Settings};
@@ -86,15 +86,16 @@ async fn what_a_device_shows_can_be_read_beside_its_owner() {
 }
 
 #[tokio::test]
-async fn a_connection_is_rehearsed_without_opening_it() {
+async fn a_survey_reads_assemblies_and_asks_for_no_connection() {
     let server = serve(setup());
     let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
     let right = Instances { output: 150, input: 100, configuration: Some(1) };
-    let found = probe::dry_run(&mut client, right).await.unwrap();
+    let absent = Instances { input: 7, ..right };
+    let found = probe::survey(&mut client, &[absent, right]).await.unwrap();
     let expected = Connectable { instances: right, output_size: Some(48), input_size: Some(48) };
-    assert_eq!(found.connectable, Some(expected));
-    let exchanged = Instances { output: 100, input: 150, ..right };
-    assert_eq!(probe::dry_run(&mut client, exchanged).await.unwrap().connectable, None);
+    assert_eq!((found.connectable, found.attempts), (Some(expected), Vec::new()));
+    assert_eq!(probe::survey(&mut client, &[absent]).await.unwrap().connectable, None);
+    assert_eq!(probe::assembly(&mut client, 7).await.unwrap(), Presence::Absent);
     let events = server.with(|adapter, _| adapter.application().events.len());
     assert_eq!(events, 0, "nothing was opened on the way");
     client.close().await;

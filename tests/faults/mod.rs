@@ -80,7 +80,9 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
     let run = link.run(&mut session, |_| unreachable!("an exchange asks for no content"));
     let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.lasted, session.counters());
 
-    assert!(run.lasted <= policy.deadline, "{what}");
+    // After a busy refusal at the last moment, a change still has its one try.
+    let last_try = if class == Class::Read { Duration::ZERO } else { policy.timeout };
+    assert!(run.lasted <= policy.patience() + last_try, "{what}");
     assert!(run.data.is_empty(), "{what}");
     match (&run.outcome, class) {
         (Ended::Answered(reply), _) if !reply.status.is_ok() => {
@@ -166,6 +168,8 @@ enum End {
     Violated,
     NoAnswer,
     Unknown,
+    /// The request for an upload was not answered. It leaves once.
+    Unopened,
 }
 
 /// Runs a transfer, checks all that must hold whatever happens, and tells how it ended.
@@ -184,7 +188,7 @@ fn download(link: &mut Link<impl Controller>, way: Way, content: &[u8], ids: &Id
     let Run { outcome, data, idle, .. } = link.run(&mut session, |_| unreachable!("a download asks for no content"));
     let what = format!("{} bytes: {outcome:?} idle for {idle:?}, {:?}", content.len(), session.counters());
 
-    assert!(idle <= policy.deadline, "{what}");
+    assert!(idle <= policy.patience(), "{what}");
     assert!(content.starts_with(&data), "what came is no beginning of the file; {what}");
     let got = data.len() as u64;
     match outcome {
@@ -230,7 +234,9 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
     });
     let what = format!("{} bytes: {outcome:?} idle for {idle:?}, {:?}", content.len(), session.counters());
 
-    assert!(idle <= policy.deadline, "{what}");
+    assert!(idle <= policy.patience(), "{what}");
+    let requests = sent.iter().filter(|frame| frame[10] == 0).count();
+    assert!(requests <= 1 + usize::try_from(session.counters().busy).expect("few"), "{requests} requests; {what}");
     let size = content.len() as u64;
     let stored = link.controller.stored();
     assert!(stored.as_deref() == Some(content) || stored == before, "a file that nobody sent; {what}");
@@ -249,9 +255,9 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
             assert!(is_busy(status) || link.controller.may_refuse(status), "{what}");
             End::Refused
         }
-        UploadEnd::NoAnswer(_) => {
+        UploadEnd::OutcomeUnknown { sent: 0, .. } => {
             assert!(sent.iter().all(|frame| frame[10] == 0), "data left; {what}");
-            End::NoAnswer
+            End::Unopened
         }
         UploadEnd::OutcomeUnknown { sent, taken, .. } => {
             assert!(taken < sent && sent <= size, "{what}");
@@ -279,6 +285,19 @@ fn successes(ends: &[End]) -> usize {
     ends.iter().filter(|end| **end == End::Success).count()
 }
 
+/// Moderate loss leaves the request of some uploads unanswered, and stops hardly any other transfer.
+fn check_moderate_loss(ends: &[End]) {
+    let unopened = ends.iter().filter(|end| **end == End::Unopened).count();
+    assert!(
+        (1..ends.len() / 15).contains(&unopened),
+        "{unopened} of {} transfers, one third of them uploads",
+        ends.len()
+    );
+    let others = ends.len() - unopened;
+    let good = successes(ends);
+    assert!(good * 1000 >= others * 995, "{good} of {others} transfers");
+}
+
 #[test]
 fn transfers_keep_their_promises_under_every_fault() {
     let mut seen = BTreeSet::new();
@@ -288,7 +307,14 @@ fn transfers_keep_their_promises_under_every_fault() {
         }
     }
     // Or the checks above have not been put to the test.
-    assert!(seen.into_iter().eq([End::Success, End::Refused, End::Violated, End::NoAnswer, End::Unknown]));
+    assert!(seen.into_iter().eq([
+        End::Success,
+        End::Refused,
+        End::Violated,
+        End::NoAnswer,
+        End::Unknown,
+        End::Unopened
+    ]));
 }
 
 #[test]
@@ -311,9 +337,7 @@ fn doubling_and_reordering_alone_stop_no_transfer_with_a_controller_that_resends
 
 #[test]
 fn moderate_loss_hardly_stops_a_transfer_with_a_controller_that_resends() {
-    let ends = transfers(MODERATE, Manners::Resends, TRANSFER_SEEDS);
-    let good = successes(&ends);
-    assert!(good * 1000 >= ends.len() * 995, "{good} of {} transfers", ends.len());
+    check_moderate_loss(&transfers(MODERATE, Manners::Resends, TRANSFER_SEEDS));
 }
 
 /// Transfers that follow each other over one link: what comes late from one meets the next.

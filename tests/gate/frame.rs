@@ -39,11 +39,47 @@ fn a_session_of_a_read_only_robot_passes_reads_and_stops_whoever_asks() {
     std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
     let around = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
     let refused = around("var set B0=1");
-    assert!(refused.exit != Some(0) && refused.stderr.contains("read-only"), "{refused:?}");
+    assert!(refused.exit == Some(7) && refused.stderr.contains("is read-only"), "{refused:?}");
     assert_eq!(around("hold on").exit, Some(0));
     assert_eq!(around("status").exit, Some(0));
     assert!(desk.data("-r line3 yerc var get B0").to_string().contains("\"value\":0"));
     assert_eq!(desk.run("session close line3").exit, Some(0));
+}
+
+/// A session that was opened before the robot became read-only passes no change from then on, and tells a client that
+/// knows nothing of it why.
+#[test]
+fn read_only_holds_in_a_session_that_is_open_already() {
+    for (family, changes, stop, read) in [
+        ("yerc", &["var set B0=1", "servo on --yes", "var set B0=2"][..], "hold on", "var get B0"),
+        ("toyo", &["host on", "point set 7 1 2 3 4 --yes", "home --yes", "jog X + inch --yes"], "stop", "status"),
+        (
+            "yrcx",
+            &["var set SGI1 1", "info version", "io set 20=on", "move --point 1 --yes", "jog pulse 1 + --for 1s --yes"],
+            "stop",
+            "io get",
+        ),
+    ] {
+        let controller = Simulator::start(family);
+        let desk = Desk::new(&entry("cell", &controller.url, ""));
+        assert_eq!(desk.run("-r cell session open --background").exit, Some(0), "{family}");
+        // An inventory of its own does not know what the other one says.
+        std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
+        let around = |words: &str| desk.run(&format!("--config other.toml -t {} {family} {words}", controller.url));
+        assert_eq!(around(changes[0]).exit, Some(0), "{family}");
+        assert_eq!(desk.run("robots set cell read_only=on").exit, Some(0));
+        for change in changes {
+            let refused = around(change);
+            assert_eq!(refused.exit, Some(7), "{family} {change}: {refused:?}");
+            assert!(refused.stderr.contains("is read-only: its session passed nothing on"), "{change}: {refused:?}");
+        }
+        assert_eq!(around(read).exit, Some(0), "{family}: {:?}", around(read));
+        // It never relaxes.
+        assert_eq!(desk.run("robots set cell read_only=off").exit, Some(0));
+        assert_eq!(around(changes[0]).exit, Some(7), "{family}");
+        assert_eq!(around(stop).exit, Some(0), "{family}");
+        assert_eq!(desk.run("session close cell").exit, Some(0));
+    }
 }
 
 #[test]
@@ -96,8 +132,8 @@ fn a_flag_that_means_nothing_is_a_mistake() {
     let desk = Desk::new("");
     for (line, part) in [
         ("robots add foo udp://127.0.0.1 --tag line1", "--tag means nothing"),
-        ("robots list -r foo", "--robot means nothing"),
-        ("robots list --tag line1", "--tag means nothing"),
+        ("robots list --sim", "the list has the robots of the inventory"),
+        ("robots path --tag line1", "--tag means nothing"),
         ("robots remove foo --dry-run", "--dry-run means nothing"),
         ("decode toyo @STOP --all", "--all means nothing"),
         ("decode toyo @STOP --timeout 1s", "--timeout means nothing"),

@@ -3,7 +3,9 @@
 #![cfg(unix)]
 
 mod desk;
+mod floods;
 mod frame;
+mod recorder;
 mod safety_page;
 mod toyo;
 mod yerc;

@@ -111,7 +111,7 @@ fn at_terminal(desk: &Desk, line: &str) -> Terminal {
 fn the_question_says_where_and_what_and_a_no_sends_nothing() {
     let controller = Simulator::start("yerc");
     let desk = Desk::new(&format!("[[robot]]\nname = \"cell3\"\ntarget = \"{}\"\n", controller.url));
-    let position = || desk.data("-r cell3 yerc position")["base"].clone();
+    let position = || desk.data("-r cell3 yerc position")["positions"][1].clone();
     let before = position();
     for (answer, exit) in [("n\r", 7), ("yo\r", 7), ("\r", 7), ("\x04", 7), ("y\r", 0)] {
         let mut asked = at_terminal(&desk, "-r cell3 yerc move relative --z -5 --speed 100mm/s");

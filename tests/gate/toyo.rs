@@ -19,13 +19,14 @@ fn blocks(desk: &Desk, line: &str) -> Vec<String> {
 fn what_somebody_wrote_is_asked_before_it_is_replaced() {
     let controller = Simulator::start("toyo");
     let desk = desk(&controller, "");
-    for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005"] {
+    for line in ["point set 7 1 2 3 4", "easy set 1 5 6 7", "program insert 1 TAG TAG=005 --yes"] {
         let came = desk.run(&format!("-r cell toyo {line}"));
         assert_eq!(came.exit, Some(0), "nobody wrote what is there: {line}: {came:?}");
     }
     for (line, part) in [
         ("point set 7 z=5", "overwrite a point of task 1 (point 7: z=3.00 mm -> z=5.00 mm)"),
         ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
+        ("program insert 1 HOME", "insert a step before step 1 of task 1 (step 1 (TAG TAG=005) and"),
         ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
         ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2="),
         ("init points", "clear the coordinate table"),
@@ -61,6 +62,42 @@ fn a_move_to_a_point_is_asked_about_in_numbers() {
         terminal.press(key);
         // It has not been at its origin, and refuses.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
+    }
+}
+
+#[test]
+fn a_run_at_the_desk_ends_after_its_time() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "");
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("loop.toyo");
+    std::fs::write(&program, "TAG TAG=001\nTIM TM=001.0\nJMP TAG=001\nEND\n").unwrap();
+    let came = desk.run(&format!("toyo sim run {} --for 5s", program.display()));
+    assert_eq!(came.exit, Some(8), "{came:?}");
+    assert!(came.stderr.contains("after 5.000 s, it still runs"), "{came:?}");
+}
+
+#[test]
+fn a_program_is_asked_about_with_its_number_step_place_and_speed() {
+    let controller = Simulator::start("toyo");
+    let desk = desk(&controller, "");
+    for line in ["program insert 1 TAG TAG=005", "palletizing select 3", "easy select 2"] {
+        assert_eq!(desk.run(&format!("-r cell --yes toyo {line}")).exit, Some(0), "{line}");
+    }
+    for (line, which) in [
+        ("run sequential 1", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
+        ("run sequential", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
+        ("run palletizing", "It is palletizing program 3, at step"),
+        ("run palletizing 4", "It is palletizing program 4."),
+        ("run easy", "It is easy program 2, at step"),
+    ] {
+        let mut terminal = Terminal::start(desk.command(&format!("-r cell toyo {line}")), 100, 24).unwrap();
+        terminal.says(which);
+        terminal.says("The axes are at X 0.00, Y 0.00, Z 0.00, R 0.00 (mm).");
+        terminal.says("The speed override is 100 %.");
+        terminal.says("Continue?");
+        terminal.press("n\n");
+        assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
 }
 

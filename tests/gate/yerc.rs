@@ -106,6 +106,54 @@ fn variables_are_restored_after_a_yes_with_old_and_new() {
 }
 
 #[test]
+fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
+    let controller = Simulator::start("yerc");
+    let desk = desk(&controller);
+    let sets = "-r cell yerc var set";
+    let setup = desk.run(&format!("{sets} P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6 BP6=pulse:1=1 EX3=pulse:1=9"));
+    assert_eq!(setup.exit, Some(0), "nobody taught what is there: {setup:?}");
+    let held = || desk.data("-r cell yerc var get P9 BP6 EX3")["variables"].to_string();
+    let before = held();
+    let seven = "07000000";
+    for (line, old_and_new) in [
+        ("var set P9=pulse:s=7,l=2,u=3,r=4,b=5,t=6".to_owned(), "(P9: pulse:s=1,l=2,u=3,r=4,b=5,t=6"),
+        ("var set B1=1 P9.tool=3".to_owned(), "tool=0,user=0 -> pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=3"),
+        ("var set BP6.axis1=7".to_owned(), "(BP6: pulse:1=1 -> pulse:1=7)"),
+        ("var set EX3=pulse:1=7".to_owned(), "(EX3: pulse:1=9 -> pulse:1=7)"),
+        ("teach P9".to_owned(), "overwrite P9"),
+        (format!("raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {seven}"), "-> pulse:s=7"),
+        (
+            format!("raw --command 0x81 --instance 3 --service 0x02 --data 00000000{}", seven.repeat(8)),
+            "(EX3: pulse:1=9",
+        ),
+        (
+            format!("raw --command 0x309 --instance 3 --service 0x34 --data 0100000000000000{}", seven.repeat(8)),
+            "(EX3: ",
+        ),
+        // What cannot be taken apart is asked about as a whole.
+        ("raw --command 0x309 --instance 3 --service 0x34 --data 01".to_owned(), "send a raw request"),
+    ] {
+        desk.fails(&format!("-r cell yerc {line}"), 7, old_and_new);
+    }
+    assert_eq!(held(), before);
+    assert_eq!(desk.data("-r cell yerc var get B1")["variables"][0]["value"], 0, "nothing of the line was written");
+    // What is there already, and what is new, wants no yes.
+    for line in ["P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "P9.tool=0 BP6.axis1=1", "EX4=pulse:1=9"] {
+        assert_eq!(desk.run(&format!("{sets} {line}")).exit, Some(0), "{line}");
+    }
+    let data = desk.data(&format!("{sets} BP6.axis1=7 --yes"));
+    assert_eq!((&data["parts"][0]["old"], &data["parts"][0]["new"]), (&1.into(), &7.into()));
+    assert_eq!(
+        desk.run(&format!(
+            "-r cell yerc raw --command 0x7F --instance 9 --attribute 6 --service 0x10 --data {seven} --yes"
+        ))
+        .exit,
+        Some(0)
+    );
+    assert_eq!(desk.data("-r cell yerc var get P9")["variables"][0]["value"]["s_pulses"], 7);
+}
+
+#[test]
 fn a_job_is_started_by_its_name() {
     let controller = Simulator::start("yerc");
     let desk = desk(&controller);
@@ -164,7 +212,7 @@ fn a_motion_is_asked_about_in_numbers() {
         assert!(written.contains("\u{1b}[1;31mREAL CONTROLLER:\u{1b}[0m"), "{written}");
         assert_eq!(written.contains("has moved since the question"), exit == 7 && meanwhile.is_some(), "{written}");
     }
-    assert_eq!(desk.data("-r cell yerc position --coordinates base")["base"]["y_mm"], 40.0);
+    assert_eq!(desk.data("-r cell yerc position --coordinates base")["positions"][0]["y_mm"], 40.0);
 }
 
 #[test]

@@ -223,3 +223,19 @@ pub fn hostile(answer: &'static [u8], closes: bool) -> String {
     });
     format!("mqtt://127.0.0.1:{port}")
 }
+
+/// A broker that takes each client, and then repeats a packet for as long as the connection is open.
+pub fn flooding(packet: &'static [u8]) -> String {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+    let port = listener.local_addr().unwrap().port();
+    // It ends with the test.
+    thread::spawn(move || {
+        let flood = packet.repeat(4096);
+        for stream in listener.incoming() {
+            let Ok(mut stream) = stream else { return };
+            let taken = stream.read(&mut [0; 4096]).and_then(|_| stream.write_all(&[0x20, 2, 0, 0]));
+            while taken.is_ok() && stream.write_all(&flood).is_ok() {}
+        }
+    });
+    format!("mqtt://127.0.0.1:{port}")
+}

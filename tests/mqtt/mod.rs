@@ -7,13 +7,15 @@ mod broker;
 mod sparkplug;
 mod tls;
 
+use std::fs::Permissions;
 use std::io::{BufRead as _, BufReader, Read as _};
+use std::os::unix::fs::PermissionsExt as _;
 use std::process::{Child, ChildStderr, Command, Output, Stdio};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use self::broker::{ABSENT, Mosquitto, hostile};
+use self::broker::{ABSENT, Mosquitto, flooding, hostile};
 use crate::support::schemas;
 
 /// A user with an inventory.
@@ -64,13 +66,15 @@ impl Publisher {
         Self { process, stderr }
     }
 
-    /// Waits until it has said this.
-    pub fn says(&mut self, part: &str) {
-        let mut line = String::new();
+    /// Waits until it has said this; the number of lines up to it.
+    pub fn says(&mut self, part: &str) -> usize {
+        let (mut line, mut lines) = (String::new(), 0);
         while !line.contains(part) {
             line.clear();
             assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{part}'");
+            lines += 1;
         }
+        lines
     }
 
     pub fn signal(&self, signal: &str) {
@@ -313,6 +317,42 @@ fn a_user_needs_the_right_password_and_nobody_sees_it() {
     assert!(said.contains("--password-file") && said.matches("hunter2").count() <= 1, "{said}");
 }
 
+/// What is said of a password in this file, sent to this URL; in a network of its own, where nothing is.
+fn said_of_password(url: &str, rights: u32, more: &[&str]) -> String {
+    let desk = fleet();
+    let file = desk.folder.path().join("password");
+    std::fs::write(&file, "hunter2\n").unwrap();
+    std::fs::set_permissions(&file, Permissions::from_mode(rights)).unwrap();
+    let words = ["publish", url, "--count", "1", "--user", "plant", "--password-file", file.to_str().unwrap()];
+    let own = desk.command(&[&words[..], more].concat());
+    let mut command = Command::new("unshare");
+    command.arg("-Urn").arg(own.get_program()).args(own.get_args()).stdin(Stdio::null());
+    command.envs(own.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    stderr(&command.output().unwrap())
+}
+
+#[test]
+fn a_password_that_others_can_read_is_warned_of_once() {
+    let alone = Command::new("unshare").args(["-Urn", "true"]).output();
+    if !alone.is_ok_and(|output| output.status.success()) {
+        return eprintln!("skipped: there are no user namespaces here");
+    }
+    let (file, network) =
+        ("other users of this machine can read this password", "goes over the network without encryption");
+    for (url, rights, more, warnings) in [
+        ("mqtt://127.0.0.1", 0o600, &[][..], [0, 0]),
+        ("mqtt://127.0.0.1", 0o640, &[], [1, 0]),
+        ("mqtt://127.0.0.1", 0o604, &["--insecure"], [1, 0]),
+        ("mqtt://192.0.2.1", 0o600, &[], [0, 1]),
+        ("mqtt://192.0.2.1", 0o600, &["--insecure"], [0, 0]),
+    ] {
+        let said = said_of_password(url, rights, more);
+        let counts = [file, network].map(|warning| said.matches(warning).count());
+        assert_eq!(counts, warnings, "{url} {rights:o} {more:?}: {said}");
+        assert!(said.contains(&format!("{url}:")) && !said.contains("hunter2"), "{said}");
+    }
+}
+
 #[test]
 fn brokers_that_are_none_are_told_in_words() {
     let desk = fleet();
@@ -333,6 +373,29 @@ fn brokers_that_are_none_are_told_in_words() {
         let said = stderr(&output);
         assert!(said.contains(why) && said.contains("hint:"), "{why}: {said}");
         assert_eq!(output.status.code(), Some(code), "{why}: {said}");
+    }
+}
+
+#[test]
+fn brokers_that_flood_are_left_tried_again_and_hold_up_no_end() {
+    /// Lines of two connections: taken, lost, back, lost; each time with messages that waited or were refused.
+    const LINES: usize = 8;
+
+    for (packet, why) in [
+        (&[0x20, 2, 0, 0][..], "it breaks the MQTT protocol: a second CONNACK; trying again in "),
+        (&[0x30, 3, 0, 1, b'a'], "it sends too much: "),
+        (&[0xd0, 0], "it sends too much: "),
+    ] {
+        let desk = fleet();
+        let words = ["publish", &flooding(packet), "--protocol", "3.1.1", "--buffer-memory", "64K", "--json"];
+        let mut publisher = Publisher::start(desk.command(&words));
+        let mut lines = publisher.says("connected to");
+        lines += publisher.says(why);
+        lines += publisher.says("is back after");
+        publisher.signal("-TERM");
+        let (code, report) = publisher.end();
+        assert_eq!((code, &report["data"]["reconnects"]), (Some(0), &1.into()), "{report}");
+        assert!(lines <= LINES, "{lines} lines");
     }
 }
 

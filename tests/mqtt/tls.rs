@@ -1,11 +1,13 @@
 //! TLS with certificates that are right, and with those that are wrong. `openssl` makes them.
 #![cfg(feature = "plant-tls")]
 
+use std::fs::Permissions;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::broker::{self, ABSENT, Mosquitto};
-use super::{Desk, fleet, stderr};
+use super::{Desk, Publisher, fleet, stderr};
 
 fn has_openssl() -> bool {
     Command::new("openssl").arg("version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
@@ -79,7 +81,10 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     let strict = Mosquitto::with(&settings("broker", "require_certificate true\n"), certificates);
     let client = ["--ca", "ca.pem", "--cert", "client.pem", "--key", "client.key"];
     let (code, said) = publish(&desk, &strict, &client);
-    assert_eq!(code, Some(0), "{said}");
+    assert!(code == Some(0) && !said.contains("can read"), "{said}");
+    std::fs::set_permissions(strict.folder().join("client.key"), Permissions::from_mode(0o640)).unwrap();
+    let (code, said) = publish(&desk, &strict, &client);
+    assert!(code == Some(0) && said.matches("users of this machine can read this private key").count() == 1, "{said}");
     let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
@@ -89,4 +94,32 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     assert!(code == Some(2) && said.contains("does not speak TLS"), "{code:?} {said}");
     let output = desk.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
     assert!(output.status.code() == Some(4) && stderr(&output).contains("mqtts://"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_service_waits_for_a_broker_to_get_the_right_certificate() {
+    if !broker::is_there() || !has_openssl() {
+        return eprintln!("{ABSENT}, or there is no openssl");
+    }
+    let settings = "allow_anonymous true\ncertfile FOLDER/now.pem\nkeyfile FOLDER/now.key\n";
+    let put = |folder: &Path, name: &str| {
+        for end in ["pem", "key"] {
+            std::fs::copy(folder.join(format!("{name}.{end}")), folder.join(format!("now.{end}"))).unwrap();
+        }
+    };
+    let mut broker = Mosquitto::with(settings, |folder| {
+        certificates(folder);
+        put(folder, "elsewhere");
+    });
+    let (desk, ca) = (fleet(), broker.folder().join("ca.pem").display().to_string());
+    let url = broker.url().replace("mqtt:", "mqtts:");
+    let mut publisher = Publisher::start(desk.command(&["publish", &url, "--ca", &ca, "--json"]));
+    publisher
+        .says("its certificate is for another name (write the name that is in the certificate into the URL); trying");
+    broker.kill();
+    put(broker.folder(), "broker");
+    broker.start_again();
+    publisher.says("connected to mqtts://");
+    publisher.signal("-TERM");
+    assert_eq!(publisher.end().0, Some(0));
 }

@@ -26,7 +26,7 @@ const JOG: Motion = Motion {
     words: "toyo jog X + low --for 60s",
     moves: "",
     look: "toyo status",
-    stands: |status| status["executing"] == false,
+    stands: |status| status["running"] == false,
 };
 
 const MOVE: Motion = Motion {
@@ -131,6 +131,17 @@ fn a_yrcx_motion_whose_client_is_killed_or_frozen_is_stopped_by_the_session() {
     }
 }
 
+#[test]
+fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
+    let (_simulators, desk) = two(&MOVE);
+    desk.data("-r a session open --background");
+    let moving = starts(&desk, &MOVE, "direct");
+    moving.signal("KILL");
+    moving.end();
+    let log = desk.files("log").remove(0);
+    while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
+}
+
 /// What ends in order is not stopped once more: HOLD stays off.
 #[test]
 fn a_motion_that_ends_in_order_is_not_stopped() {
@@ -156,5 +167,55 @@ fn a_move_that_is_to_be_left_goes_on_when_its_process_is_killed() {
         }
         let status = desk.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
+    }
+}
+
+/// Keys that would end or suspend the process stop the robot, as Ctrl-C does.
+#[test]
+fn keys_that_end_or_suspend_a_process_stop_what_it_moves() {
+    for signal in ["QUIT", "TSTP"] {
+        for motion in [&MOVE, &JOG] {
+            let (_simulators, desk) = two(motion);
+            let _session = Running::session(&desk, "a");
+            let moving = starts(&desk, motion, "direct");
+            moving.signal(signal);
+            let (code, said) = moving.end();
+            assert_eq!(code, Some(130), "{signal} {}: {said}", motion.words);
+            assert!(said.contains("the robot was stopped"), "{signal} {}: {said}", motion.words);
+            let state = desk.data(&format!("-r a {}", motion.look));
+            assert!((motion.stands)(&state), "{signal} {}: {state}", motion.words);
+        }
+        let (_simulator, desk) = super::cell();
+        let _session = Running::session(&desk, "cell");
+        let moving = super::moving(&desk);
+        moving.signal(signal);
+        let (code, said) = moving.end();
+        assert!(code == Some(130) && said.contains("the robot was stopped"), "{signal}: {code:?}: {said}");
+    }
+}
+
+/// A controller on UDP takes a stop from anybody; whoever else wants the link is told who has it.
+#[test]
+fn a_stop_goes_around_a_session_that_does_not_respond() {
+    for (motion, stop) in [(&MOVE, "yerc hold on"), (&JOG, "toyo stop")] {
+        let (_simulators, desk) = two(motion);
+        let session = Running::session(&desk, "a");
+        let pid = session.process.id();
+        session.signal("STOP");
+        let blocked = desk.run(&format!("-r a {}", motion.look));
+        assert_eq!(blocked.status.code(), Some(4), "{}", stderr(&blocked));
+        for part in [format!("its session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
+            assert!(stderr(&blocked).contains(&part), "{part}: {}", stderr(&blocked));
+        }
+        let stopped = desk.run(&format!("-r a {stop}"));
+        if motion.family == "yerc" {
+            assert!(stopped.status.success(), "{}", stderr(&stopped));
+            assert!(stderr(&stopped).contains("so the stop goes without it"), "{}", stderr(&stopped));
+            assert_eq!(desk.data("-r a --no-session yerc status")["held"], true);
+        } else {
+            assert_eq!(stopped.status.code(), Some(4), "{}", stderr(&stopped));
+            assert!(stderr(&stopped).contains(&format!("`kill -KILL {pid}`")), "{}", stderr(&stopped));
+        }
+        session.signal("CONT");
     }
 }

@@ -14,8 +14,14 @@ pub struct Simulator {
 impl Simulator {
     /// Starts one of a family, at a place of its own.
     pub fn start(family: &str) -> Self {
+        Self::start_with(family, &[])
+    }
+
+    /// The same with further arguments.
+    pub fn start_with(family: &str, arguments: &[&str]) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-        command.args(["sim", family, "--bind", "127.0.0.1:0", "-q"]).stdin(Stdio::null()).stdout(Stdio::piped());
+        command.args(["sim", family, "--bind", "127.0.0.1:0", "-q"]).args(arguments);
+        command.stdin(Stdio::null()).stdout(Stdio::piped());
         let mut process = command.spawn().expect("the simulator starts");
         let mut line = String::new();
         BufReader::new(process.stdout.take().expect("a pipe")).read_line(&mut line).expect("it says where it is");

@@ -67,14 +67,21 @@ impl Terminal {
 
     /// Reads until this text comes, after what was waited for before: for programs that write line after line.
     pub fn says(&mut self, text: &str) {
+        self.says_one_of(&[text]);
+    }
+
+    /// Reads until the first of these texts comes, likewise, and tells which.
+    pub fn says_one_of(&mut self, texts: &[&str]) -> usize {
         loop {
             let written = plain(&self.written);
-            if let Some(at) = written[self.heard..].find(text) {
-                self.heard += at + text.len();
-                return;
+            let places =
+                texts.iter().enumerate().filter_map(|(index, text)| Some((written[self.heard..].find(text)?, index)));
+            if let Some((at, index)) = places.min() {
+                self.heard += at + texts[index].len();
+                return index;
             }
             let read = self.read();
-            assert!(read, "it never said {text:?}, but\n{written}");
+            assert!(read, "it never said any of {texts:?}, but\n{written}");
         }
     }
 

@@ -86,9 +86,9 @@ impl Asker {
             return None;
         };
         let typed = Some(Arc::from("completion of a command line"));
-        let access = Access { typed, ..Access::reading(command.connect_mode()) };
-        let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let robot = &self.robot;
+        let access = Access { typed, ..Access::reading(command.connect_mode(robot)) };
+        let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let mut connection = command.connect(robot, access, &screen).await.ok()?;
         let authority = Authority::reading(&screen, robot);
         let context = AnyContext { robot, connection: &mut *connection, screen: &screen, several: false, authority };

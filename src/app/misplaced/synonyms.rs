@@ -4,7 +4,7 @@
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
     ("add", &["setup", "robots add"]),
-    ("alarm", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
+    ("alarms", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
     ("config", &["robots list", "robots edit"]),
     ("configure", &["setup"]),
     ("connect", &["repl", "session open"]),
@@ -18,6 +18,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("exporter", &["serve metrics"]),
     ("fault", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
     ("find", &["robots discover"]),
+    ("halt", &["yerc hold on", "yrcx stop", "toyo stop"]),
     ("home", &["toyo home", "yrcx origin"]),
     ("homing", &["toyo home", "yrcx origin"]),
     ("inventory", &["robots list"]),
@@ -50,20 +51,29 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("search", &["robots discover"]),
     ("shell", &["repl"]),
     ("start", &["yerc job start", "yrcx run", "toyo run"]),
-    ("stop", &["yerc hold on", "yrcx stop", "toyo stop"]),
     ("upload", &["yerc file put", "toyo program put"]),
     ("version", &["--version", "yerc info", "yrcx info version", "toyo info"]),
     ("watch", &["top", "status --watch"]),
     ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
 
-/// What a family has not, though others have: the family, the words for it, and what there is instead.
-pub const ABSENT: &[(&str, &[&str], &str)] = &[(
-    "yerc",
-    &["home", "homing", "origin"],
-    "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
-     origin is set at the pendant",
-)];
+/// What a family has not, though others have: the words before it, the words for it, and what there is instead.
+#[rustfmt::skip]
+pub const ABSENT: &[(&str, &[&str], &str)] = &[
+    ("yerc", &["home", "homing", "origin"],
+        "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
+         origin is set at the pendant"),
+    ("yrcx", &["hold"], "a YRCX has no hold; `armctl yrcx stop` stops the robot program"),
+    ("toyo", &["hold"], "the protocol has no hold; `armctl toyo stop` stops what moves"),
+    ("yrcx", &["job", "jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
+    ("toyo", &["job", "jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
+    ("yrcx program", &["list", "get", "put", "ls"],
+        "the fieldbus carries no names or texts of programs; `armctl yrcx program show` tells which one each task runs"),
+    ("yrcx run", &["point"], "a YRCX moves to a point with `armctl yrcx move`: see its -h"),
+    ("toyo io", &["get", "list", "read"], "the command is `armctl toyo io in` or `armctl toyo io out`"),
+    ("toyo run point", &["--speed"],
+        "a point has its speed, see `armctl toyo point get`, and all speeds are scaled by `armctl toyo override`"),
+];
 
 /// Other words for verbs, and what they are behind a noun that has one of these.
 pub const VERBS: &[(&str, &[&str])] = &[

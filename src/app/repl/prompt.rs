@@ -75,7 +75,7 @@ impl Prompt {
 fn states(robot: &Robot, seen: &Seen) -> Vec<Cell> {
     let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
     let seen = match seen {
-        Seen::State(seen) => seen,
+        Seen::State(seen) => &seen.state,
         Seen::Silent => return simulated.into_iter().chain([Cell::from("no answer").tone(Tone::Bad)]).collect(),
         Seen::NotAsked => return simulated.into_iter().chain(["dry run".into()]).collect(),
     };
@@ -85,14 +85,14 @@ fn states(robot: &Robot, seen: &Seen) -> Vec<Cell> {
         (_, Some(true)) => Some(Cell::from("running").tone(Tone::Good)),
         _ => None,
     };
-    let wrong =
-        |word: &str, is_so: Option<bool>| is_so.filter(|is_so| *is_so).map(|_| Cell::from(word).tone(Tone::Bad));
-    [simulated, servo, state, wrong("ALARM", seen.alarm), wrong("ERROR", seen.error)].into_iter().flatten().collect()
+    let alarm = (seen.fault.faulted == Some(true)).then(|| Cell::from("ALARM").tone(Tone::Bad));
+    [simulated, servo, state, alarm].into_iter().flatten().collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::robot::state::{Fault, State};
     use crate::settings::target::Family;
     use crate::settings::{Selection, Sources};
 
@@ -104,7 +104,8 @@ mod tests {
     #[test]
     fn it_tells_whom_a_line_is_for_and_how_that_one_is() {
         let yerc = ["yerc".to_owned()];
-        let seen = OverviewReport { servo_on: Some(true), alarm: Some(true), ..OverviewReport::default() };
+        let state = State { servo_on: Some(true), fault: Fault::new(true, None), ..State::default() };
+        let seen = OverviewReport { state, ..OverviewReport::default() };
         let prompt = Prompt::new(&yerc, Some(&simulated()), &Seen::State(Box::new(seen)), true);
         assert_eq!(prompt.plain, "sim [simulated, servo on, ALARM] yerc> ");
         assert_eq!(prompt.styled, "sim [simulated, \u{1b}[32mservo on\u{1b}[0m, \u{1b}[31mALARM\u{1b}[0m] yerc> ");

@@ -53,7 +53,19 @@ impl Client {
         let order = Request::bare(Command::Hson);
         granted.check(order.risk(), &order.text())?;
         self.watcher.event(Event::TakesHost(true));
-        match self.transact(&order, false).await? {
+        let answer = match self.transact(&order, false).await {
+            // The status tells what became of it.
+            Err(error @ Error::OutcomeUnknown(_)) => match self.status_of(&[HOST_PAGE]).await {
+                Ok(status) if status.host_on() => Answer::Done,
+                Ok(_) => {
+                    self.watcher.event(Event::TakesHost(false));
+                    return Err(Error::NotSent(Box::new(error)));
+                }
+                Err(_) => return Err(error),
+            },
+            answer => answer?,
+        };
+        match answer {
             Answer::Refused => {
                 self.watcher.event(Event::TakesHost(false));
                 Err(Error::PendantOn)
@@ -116,8 +128,7 @@ impl Client {
                 self.watcher.event(Event::NotPutBack(back));
                 continue;
             }
-            // A line that is still out of order shows in what follows.
-            self.fence().await.unwrap_or_default();
+            outcome = outcome.and(self.fence_at_end().await);
             let block = back.text();
             match undone(self.transact(&back, true).await) {
                 Ok(()) => self.watcher.event(Event::PutBack(back)),
@@ -141,10 +152,18 @@ impl Client {
             return Ok(());
         }
         self.host = Host::Unknown;
-        self.fence().await.unwrap_or_default();
+        let fenced = self.fence_at_end().await;
         undone(self.transact(&Request::bare(Command::Hsof), false).await).map_err(Error::HostKept)?;
         self.watcher.event(Event::TakesHost(false));
-        Ok(())
+        fenced
+    }
+
+    /// A line that is still out of order shows in what follows; a no to an order that had a yes shows only here.
+    async fn fence_at_end(&mut self) -> Result<(), Error> {
+        match self.fence().await {
+            Err(Error::NotSent(cause)) if matches!(*cause, Error::OutcomeUnknown(_)) => Err(*cause),
+            _ => Ok(()),
+        }
     }
 
     /// Notes in a dry run what puts things back.

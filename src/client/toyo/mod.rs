@@ -24,6 +24,7 @@ use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::commands::Command;
 use armctl_controller::{Risk, Session as _, Step};
 pub use armctl_transport::serial::OpenError;
+use armctl_transport::session::client::SessionBusy;
 use armctl_transport::tap::Direction;
 pub use armctl_transport::tcp::ConnectError;
 use tokio::time::Instant;
@@ -79,9 +80,9 @@ pub struct Client {
 pub struct Options {
     /// The most that may leave.
     pub granted: Grant,
-    /// From the last character sent to the answer; the manual says one second (TO 1-3).
+    /// The longest wait of one try, from the last character sent to the answer; the manual says one second (TO 1-3).
     pub timeout: Duration,
-    /// How often a request that changes nothing is sent again after silence.
+    /// Further tries, after silence, of a request that changes nothing.
     pub retries: u32,
 }
 
@@ -219,7 +220,11 @@ impl Client {
     /// needed. A dry run notes it: orders count as done then, and questions end in [`Error::NotKnown`].
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         if wants_host(request) {
-            self.take_host().await?;
+            match self.take_host().await {
+                // The host is taken although the manual does not ask for it (ambiguity C14): then it decides itself.
+                Err(Error::PendantOn) if !request.row().needs_host => {}
+                taken => taken?,
+            }
         }
         if request.risk() > Risk::Read {
             self.fence().await?;
@@ -270,6 +275,21 @@ impl Client {
         self.session.begin_raw(block);
         match self.drive(Risk::Motion).await? {
             Ended::Answered(answer) => Ok(answer),
+            ended => Err(self.unanswered(ended, Risk::Motion, None)),
+        }
+    }
+
+    /// Waits, where nobody looks at what an order does, until no contradiction to its yes can come any more.
+    ///
+    /// # Errors
+    /// [`Error::OutcomeUnknown`] if one came.
+    pub async fn settle(&mut self) -> Result<(), Error> {
+        if self.is_dry() || !self.session.confirm(self.started.elapsed()) {
+            return Ok(());
+        }
+        self.acquire(Risk::Read).await?;
+        match self.drive(Risk::Read).await? {
+            Ended::Answered(_) => Ok(()),
             ended => Err(self.unanswered(ended, Risk::Motion, None)),
         }
     }
@@ -380,11 +400,19 @@ impl Client {
         self.revive(risk).await?;
         self.acquire(risk).await?;
         self.is_fenced = false;
+        if risk == Risk::Destroy {
+            // It may write E01, or load it from a card.
+            self.letters = None;
+        }
         if risk == Risk::Motion {
             self.moves(Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program }));
         }
         self.session.begin(request, is_repeatable);
-        match self.drive(risk).await? {
+        let ended = self.drive(risk).await?;
+        if let Some((order, why)) = self.session.take_refuted() {
+            return Err(self.unanswered(why, order.risk(), Some(&order)));
+        }
+        match ended {
             Ended::Answered(block) => {
                 // An order's answer tells nothing of what was before it; that of a question came after all else.
                 self.is_fenced = risk == Risk::Read;
@@ -425,7 +453,8 @@ impl Client {
             let step = match self.session.poll(now) {
                 Step::Send(bytes) => {
                     let sent = self.send(&bytes).await;
-                    has_left = true;
+                    // A session takes a block whole or not at all; of another line nobody knows what it took.
+                    has_left |= sent.is_ok() || !self.transport.is_shared();
                     sent.map(|()| 0)
                 }
                 Step::Wait(until) => self.receive(&mut buffer, self.started + until.min(now + LONG)).await,
@@ -475,6 +504,10 @@ impl Client {
 
     /// The line has bad news, maybe while an order is open.
     fn broken(&mut self, error: io::Error, is_open: bool) -> Error {
+        // What the host did not pass on was not sent, and the line is as it was.
+        if let Some(busy) = SessionBusy::of(&error) {
+            return Error::Session(busy);
+        }
         self.is_gone = true;
         let error = Error::Io { is_shared: self.transport.is_shared(), error: Arc::new(error) };
         if is_open { Error::CutShort(Box::new(error)) } else { error }

@@ -65,6 +65,9 @@ pub const BAUD: u32 = 9600;
 /// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
 pub const BITS: u32 = 11;
 
+/// From one try to open a port that is busy to the next.
+const BUSY_EVERY: Duration = Duration::from_millis(20);
+
 /// A device server may take longer to accept than a controller to answer.
 const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 
@@ -100,7 +103,8 @@ impl Endpoint {
     /// [`Error::Port`] and [`Error::DeviceServer`].
     pub async fn open(&self, timeout: Duration) -> Result<Line, Error> {
         match self {
-            Self::Serial(line) => Serial::open(line)
+            Self::Serial(line) => open_port(line, timeout)
+                .await
                 .map(Stream::Serial)
                 .map_err(|error| Error::Port { path: line.path.clone(), error: Arc::new(error) }),
             Self::Tcp { host, port, .. } => {
@@ -113,6 +117,19 @@ impl Endpoint {
                 let line = InProcessLine::new(controller, baud.map(pace), faults.clone());
                 Ok(Stream::InProcess(Box::new(line)))
             }
+        }
+    }
+}
+
+/// Opens a port. One that another program uses is waited for, so long at most: a short command gives it back soon.
+async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, serial::OpenError> {
+    let until = Instant::now() + timeout;
+    loop {
+        match Serial::open(line) {
+            Err(serial::OpenError::Busy) if Instant::now() + BUSY_EVERY <= until => {
+                tokio::time::sleep(BUSY_EVERY).await;
+            }
+            opened => return opened,
         }
     }
 }

@@ -21,7 +21,7 @@ use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::query::{Coordinates, Hold, Query};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{
-    Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd,
+    Abandon, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
 };
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::Division;
@@ -39,7 +39,7 @@ pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_WITHIN, Watcher};
+use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, Watcher};
 
 /// A connection to one controller.
 ///
@@ -65,6 +65,8 @@ pub struct Client {
     totals: Totals,
     /// The last download, in case its final ACK got lost.
     finished: Option<Download>,
+    /// What ends the transfer that was broken off, or is under way.
+    open: Option<Abandon>,
     /// What the next request is for, in a dry run.
     purpose: Option<&'static str>,
     /// Which axes groups have, as far as it was asked.
@@ -78,9 +80,9 @@ pub struct Options {
     pub model: Option<Model>,
     /// The most that may leave.
     pub granted: Grant,
-    /// Patience: for an exchange as a whole, for a transfer without progress.
+    /// The longest wait of one try for its answer.
     pub timeout: Duration,
-    /// How often a request that changes nothing is sent again after silence.
+    /// Further tries, after silence, of a request that changes nothing, and of a block of a file.
     pub retries: u32,
 }
 
@@ -92,7 +94,7 @@ impl Options {
 
     /// The same of a controller of a model that it has to tell.
     pub fn auto() -> Self {
-        let Policy { deadline: timeout, retries, .. } = Policy::default();
+        let Policy { timeout, retries, .. } = Policy::default();
         Self { model: None, granted: Grant::default(), timeout, retries }
     }
 
@@ -109,6 +111,8 @@ impl Options {
 pub enum Event {
     /// An exchange or a transfer has ended, and more was on the line than what was asked and its answer.
     Disturbed(Counters),
+    /// A transfer was broken off, and the controller did not confirm its end: it may be busy with it until its timer ends.
+    LeftOpen,
 }
 
 /// What a client saw.
@@ -164,10 +168,9 @@ impl Client {
 
     fn over(transport: Transport, options: Options) -> Self {
         let Options { model, granted, timeout, retries } = options;
-        let usual = Policy::default();
         Self {
             transport,
-            policy: Policy { deadline: timeout, attempt: usual.attempt.min(timeout), retries, ..usual },
+            policy: Policy::default().with(timeout, retries),
             ids: Ids::default(),
             granted,
             has_moved: false,
@@ -179,6 +182,7 @@ impl Client {
             watcher: Box::new(()),
             totals: Totals::default(),
             finished: None,
+            open: None,
             purpose: None,
             fitted: Vec::new(),
         }
@@ -227,7 +231,7 @@ impl Client {
             return Ok(self.plan_next(&request)?);
         }
         let usual = self.policy;
-        self.policy = Policy { deadline: STOP_WITHIN, attempt: STOP_EVERY, doubles: false, retries: u32::MAX };
+        self.policy = Policy { timeout: STOP_EVERY, attempt: STOP_EVERY, doubles: false, retries: STOP_TRIES - 1 };
         let reply = self.transact(&request, true).await;
         self.policy = usual;
         match reply?.status {
@@ -274,6 +278,8 @@ impl Client {
             return Err(Error::NotKnown.into());
         }
         self.prepare(request).await?;
+        self.abandon().await;
+        let before = self.totals.sent;
         let mut session = Download::new(&request.into(), limit, self.policy, &self.ids);
         if let Some(wait) = first_wait {
             session = session.with_first_wait(wait);
@@ -286,13 +292,21 @@ impl Client {
             }
             Want::Feed(_) => Ok(()),
         });
-        let end = driven.await.map_err(|cause| TransferError { bytes, cause })?;
+        let end = match driven.await {
+            Ok(end) => end,
+            Err(cause) => return Err(TransferError { bytes, cause: self.cut_short(cause, request, before) }),
+        };
         self.exchanged(session.counters());
+        match &end {
+            DownloadEnd::Complete { .. } | DownloadEnd::Finished | DownloadEnd::Nothing(_) => self.open = None,
+            DownloadEnd::Refused { status, .. } if !is_busy(*status) => self.open = None,
+            _ => {}
+        }
         self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
             // Only the batch backup changes something, and it is the one with a long first wait.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
-                let waited = first_wait.unwrap_or(self.policy.deadline);
+                let waited = first_wait.unwrap_or(self.policy.timeout);
                 Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
             }
             DownloadEnd::NoAnswer { bytes, counters } => {
@@ -302,7 +316,8 @@ impl Client {
         }
     }
 
-    /// Sends a file. `give` returns the next piece, empty at the end.
+    /// Sends a file. `give` returns the next piece, empty at the end. The request leaves once; only blocks, which have a
+    /// number, are repeated after silence.
     pub async fn upload<E>(
         &mut self,
         request: &Request,
@@ -315,6 +330,8 @@ impl Client {
             return Err(Error::NotKnown.into());
         }
         self.prepare(request).await?;
+        self.abandon().await;
+        let before = self.totals.sent;
         // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
         self.transport.renew(channel(Division::File));
         self.finished = None;
@@ -326,12 +343,20 @@ impl Client {
             }
             Ok(())
         });
-        let end = driven.await.map_err(|cause| TransferError { bytes: session.sent(), cause })?;
+        let end = match driven.await {
+            Ok(end) => end,
+            Err(cause) => {
+                let cause = self.cut_short(cause, request, before);
+                return Err(TransferError { bytes: session.sent(), cause });
+            }
+        };
         self.exchanged(session.counters());
-        match end {
-            UploadEnd::NoAnswer(counters) => Err(self.silence(counters).into()),
-            end => Ok(end),
+        match &end {
+            UploadEnd::Complete { .. } | UploadEnd::Unnumbered { .. } | UploadEnd::Empty => self.open = None,
+            UploadEnd::Refused { status, .. } if !is_busy(*status) => self.open = None,
+            _ => {}
         }
+        Ok(end)
     }
 
     /// What it was like so far.
@@ -339,13 +364,24 @@ impl Client {
         self.totals
     }
 
-    /// Ends the connection, and says what it was like.
+    /// Ends the connection, and says what it was like. A transfer that was broken off is ended at the controller.
     pub async fn close(mut self) -> Result<Totals, Error> {
+        self.abandon().await;
         self.linger().await?;
         if let Transport::Session(session) = self.transport {
             session.leave().await;
         }
         Ok(self.totals)
+    }
+
+    /// Ends a transfer that was broken off at the controller, which else refuses others until its timer ends.
+    async fn abandon(&mut self) {
+        let Some(mut abandon) = self.open.take().filter(Abandon::is_open) else { return };
+        let ended = self.drive(Division::File, &mut abandon, |_| Ok::<(), Infallible>(())).await;
+        self.open = None;
+        if !matches!(ended, Ok(true)) {
+            self.watcher.event(Event::LeftOpen);
+        }
     }
 
     /// On a line that loses frames, waits a moment for the last block to come again, which means that its ACK got lost:
@@ -356,7 +392,7 @@ impl Client {
         };
         self.acquire(Division::File).await?;
         let channel = channel(Division::File);
-        let until = Instant::now() + self.policy.attempt;
+        let until = Instant::now() + self.policy.attempt.min(self.policy.timeout);
         while Instant::now() < until
             && let Some(len) = self.receive(channel, until).await?
         {
@@ -389,16 +425,19 @@ impl Client {
 
     /// One request, one answer.
     async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Reply, Error> {
+        if request.division() == Division::File {
+            self.abandon().await;
+        }
         let mut session = Exchange::new(&request.into(), is_repeatable, self.policy, &self.ids);
         let before = self.totals.sent;
         let driven = self.drive(request.division(), &mut session, |_| Ok::<(), Infallible>(())).await;
-        let ended = driven.map_err(|cause| self.cut_short(cause.into(), request, self.totals.sent > before))?;
+        let ended = driven.map_err(|cause| Error::from(self.cut_short(cause, request, before)))?;
         self.exchanged(session.counters());
         match ended {
             Ended::Answered(reply) => Ok(reply),
             Ended::NoAnswer(counters) => Err(self.silence(counters)),
             Ended::OutcomeUnknown(counters) => {
-                Err(Error::OutcomeUnknown { request: request.clone(), waited: self.policy.deadline, counters })
+                Err(Error::OutcomeUnknown { request: request.clone(), waited: self.policy.timeout, counters })
             }
         }
     }
@@ -420,7 +459,7 @@ impl Client {
 
     async fn acquire(&mut self, division: Division) -> Result<(), Error> {
         let Some(session) = self.transport.session() else { return Ok(()) };
-        let until = Instant::now() + self.policy.deadline;
+        let until = Instant::now() + self.policy.timeout;
         session.take_for(transport::number(channel(division)), until).await.map_err(Error::Session)
     }
 
@@ -450,6 +489,11 @@ impl Client {
                     // A frame that arrived in the last moment counts.
                     now = self.started.elapsed();
                     let Some(len) = received else { continue };
+                    if division == Division::File
+                        && let Some(open) = &mut self.open
+                    {
+                        open.answered();
+                    }
                     let again = self.finished.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
@@ -465,8 +509,11 @@ impl Client {
     }
 
     async fn send(&mut self, channel: usize, bytes: &[u8]) -> Result<(), Error> {
-        self.totals.sent += 1;
         self.transport.send(channel, bytes).await.map_err(|error| self.broken(channel, error))?;
+        self.totals.sent += 1;
+        if channel == simulated::channel(Division::File) {
+            self.open = Abandon::after(bytes);
+        }
         self.watcher.frame(Direction::Sent, self.transport.ends(channel), bytes);
         Ok(())
     }
@@ -491,23 +538,29 @@ impl Client {
 
     /// Nobody answered a question that does no harm.
     fn silence(&self, counters: Counters) -> Error {
-        let waited = self.policy.deadline;
+        let waited = self.policy.patience();
         if counters.is_garbage() { Error::Garbage { waited, counters } } else { Error::NoAnswer { waited, counters } }
     }
 
-    /// A session that ends in the middle takes the answer with it.
-    fn cut_short(&self, cause: Error, request: &Request, has_left: bool) -> Error {
-        if self.transport.ended().is_none() || !has_left || request.risk() == Risk::Read {
+    /// A session that ends in the middle takes the answer with it. `before` is what had been sent before the request.
+    fn cut_short<E>(&self, cause: Cause<E>, request: &Request, before: u64) -> Cause<E> {
+        let (Some(why), Cause::Client(error)) = (self.transport.ended(), &cause) else { return cause };
+        if request.risk() == Risk::Read {
             return cause;
         }
-        Error::CutShort { request: request.clone(), cause: Box::new(cause) }
+        Cause::Client(if self.totals.sent > before {
+            Error::CutShort { request: request.clone(), cause: Box::new(error.clone()) }
+        } else {
+            Error::Session(SessionBusy::Ended(format!("{why}; nothing was sent")))
+        })
     }
 
     /// The socket has bad news.
     fn broken(&self, channel: usize, error: io::Error) -> Error {
-        match self.transport.ended() {
-            Some(why) => Error::Session(SessionBusy::Ended(why.to_owned())),
-            None => Error::Io { port: self.transport.port(channel), error: Arc::new(error) },
+        match (self.transport.ended(), SessionBusy::of(&error)) {
+            (Some(why), _) => Error::Session(SessionBusy::Ended(why.to_owned())),
+            (None, Some(busy)) => Error::Session(busy),
+            (None, None) => Error::Io { port: self.transport.port(channel), error: Arc::new(error) },
         }
     }
 }

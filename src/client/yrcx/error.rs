@@ -48,6 +48,8 @@ pub enum Error {
         stop: Option<bool>,
         /// Whether it was left off, because the end of a motion was not seen.
         is_stop_held: bool,
+        /// Why the session has ended that held the link, if it has.
+        ended: Option<String>,
     },
     /// Signals were not switched to the end.
     #[error("{name}: {outcome}")]
@@ -61,7 +63,7 @@ pub enum Error {
     #[error("{by}; the jog was ended for that")]
     Cut {
         /// What ended it.
-        by: Box<Cut>,
+        by: Box<Error>,
         /// The jog.
         order: Box<Order>,
         /// Where the robot stands, or what went wrong in stopping it.
@@ -71,7 +73,7 @@ pub enum Error {
     #[error("the axis may still move: nothing reaches the controller any more")]
     StillMoving {
         /// What ended the jog before its time.
-        cut: Option<Box<Cut>>,
+        cut: Option<Box<Error>>,
     },
     /// A remote command of this client, which goes on by itself, has not ended yet; the controller takes one at a time.
     #[error("{} is still under way", .command.row().id)]
@@ -135,17 +137,6 @@ pub enum Error {
     },
 }
 
-/// What ended a jog before its time.
-#[derive(Debug, Clone, Error)]
-pub enum Cut {
-    /// Whoever was to watch it went away, in these words ([`Client::let_go_at`](super::Client::let_go_at)).
-    #[error("{0}")]
-    Abandoned(&'static str),
-    /// The line.
-    #[error(transparent)]
-    Line(Error),
-}
-
 /// A controller's "no".
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("the controller refused {}: alarm {alarm}, {}", .order.row().id, .alarm.text())]
@@ -176,6 +167,7 @@ mod tests {
             why: Silence::LinkLost,
             stop: None,
             is_stop_held: false,
+            ended: None,
         };
         assert_eq!(lost.to_string(), "move-ptp was sent, and may or may not have been done: the link went down");
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };

@@ -9,9 +9,10 @@ use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::session::Outcome;
 use armctl_controller::yrcx::signal::input;
+use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
-use super::error::{Cut, Error};
+use super::error::Error;
 use super::turns::LONG;
 use super::{Client, Done, Transport};
 use crate::Reason;
@@ -25,7 +26,7 @@ pub(super) struct Seen {
     /// Whether it had not ended before it was stopped.
     is_stopped: bool,
     /// What ended it before its time.
-    cut: Option<Cut>,
+    cut: Option<Error>,
 }
 
 impl Client {
@@ -59,14 +60,9 @@ impl Client {
 
     /// Jogs, and stops. An exchange that does not end as it should leaves the stop input off.
     pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Error> {
-        let let_go = (self.let_go.0)();
         self.start(order).await?;
         self.bequeath_stop(true);
-        let cut = tokio::select! {
-            biased;
-            how = let_go => Some(Cut::Abandoned(how)),
-            gone = self.go_on(time) => gone.err().map(Cut::Line),
-        };
+        let cut = self.go_on(time).await.err();
         let (now, is_stopped) = (self.now(), self.exchange.is_some());
         if let Some(exchange) = &mut self.exchange {
             exchange.interrupt(now);
@@ -76,9 +72,16 @@ impl Client {
             faults += u32::from(self.turn().await.is_err());
         }
         let Some(outcome) = self.ended.take() else {
-            return Err(Error::StillMoving { cut: cut.map(Box::new) });
+            return Err(match cut {
+                // The session did not pass the jog on, so that there is nothing to stop.
+                Some(denied @ Error::Session(SessionBusy::ReadOnly)) if self.exchange.is_none() => {
+                    self.bequeath_stop(false);
+                    denied
+                }
+                cut => Error::StillMoving { cut: cut.map(Box::new) },
+            });
         };
-        self.await_link(&outcome).await;
+        self.await_link(&outcome, None).await;
         self.bequeath_stop(false);
         self.count(order, &outcome);
         Ok(Seen { outcome, is_stopped, cut })

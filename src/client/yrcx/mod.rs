@@ -23,9 +23,6 @@ mod tests;
 mod turns;
 mod words;
 
-use std::fmt;
-use std::future::{Future, pending};
-use std::pin::Pin;
 use std::time::Duration;
 
 use armctl_controller::Risk;
@@ -40,13 +37,13 @@ use armctl_controller::yrcx::table::Command;
 use armctl_transport::image::{ImageLink, LinkError, Traffic};
 use tokio::time::Instant;
 
-pub use self::error::{Cut, Error, Refusal};
+pub use self::error::{Error, Refusal};
 pub use self::hold::hold;
 pub use self::order::{Done, Reply};
 pub use self::plan::hex;
 pub use self::simulated::Simulated;
 pub use self::stop::Stopped;
-use crate::{Grant, Plan, Watcher};
+use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
 /// A connection to one controller.
 ///
@@ -92,8 +89,6 @@ pub struct Client {
     is_over: bool,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
-    /// What ends a jog before its time.
-    let_go: LetGo,
     totals: Totals,
 }
 
@@ -107,15 +102,6 @@ enum Transport {
     Nothing,
 }
 
-/// Begins to listen for whoever lets go of a jog.
-struct LetGo(fn() -> Pin<Box<dyn Future<Output = &'static str>>>);
-
-impl fmt::Debug for LetGo {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("LetGo")
-    }
-}
-
 /// How a client asks.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -126,10 +112,10 @@ pub struct Options {
     pub is_held: bool,
     /// The most that may leave.
     pub granted: Grant,
-    /// Patience: for the controller to be ready, to take a command, and to show something. What it carries out has
-    /// patience of its own: 10 s at least, 30 s for what switches motor power, and no end for motions.
+    /// The longest wait of one try: for the controller to be ready, to take a command, and to show something. What it
+    /// carries out has patience of its own: 10 s at least, 30 s for what switches motor power, and no end for motions.
     pub timeout: Duration,
-    /// How often a command that changes nothing is given again within `timeout`.
+    /// Further tries of a command that changes nothing. No try begins after `timeout` times (`retries` + 1).
     pub retries: u32,
 }
 
@@ -265,6 +251,7 @@ impl Client {
             ready: timeout,
             accept: timeout,
             release: timeout,
+            stop: STOP_WITHIN,
             quick: timeout.max(QUICK),
             power: timeout.max(POWER),
             ..Policy::default()
@@ -294,7 +281,6 @@ impl Client {
             is_over: false,
             started: Instant::now(),
             watcher: Box::new(()),
-            let_go: LetGo(|| Box::pin(pending())),
             totals: Totals::default(),
         }
     }
@@ -302,12 +288,6 @@ impl Client {
     /// Has this one told what happens from now on.
     pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
         self.watcher = Box::new(watcher);
-    }
-
-    /// Ends jogs before their time when what this begins to listen for has come, in whose words errors say so: for keys
-    /// that take a person's hand off the program.
-    pub fn let_go_at(&mut self, listen: fn() -> Pin<Box<dyn Future<Output = &'static str>>>) {
-        self.let_go = LetGo(listen);
     }
 
     /// What may leave from now on.

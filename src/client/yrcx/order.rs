@@ -10,6 +10,7 @@ use armctl_controller::yrcx::session::{Ended, Exchange, Outcome};
 use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::Pace;
 use armctl_controller::yrcx::value::Values;
+use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::{Error, Refusal};
@@ -79,12 +80,15 @@ impl Client {
             let answer = Answer::Done(Values::default());
             return Ok(Reply { answer, words: Words::default(), elapsed: Duration::ZERO });
         }
-        let until = Instant::now() + self.timeout;
+        let began = Instant::now();
+        let patience = self.timeout.saturating_mul(self.retries.saturating_add(1));
         let mut repetitions = if order.risk() == Risk::Read { self.retries } else { 0 };
         loop {
             let outcome = self.transact(order).await?;
             match outcome.ended {
-                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && Instant::now() < until => repetitions -= 1,
+                Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && began.elapsed() < patience => {
+                    repetitions -= 1;
+                }
                 _ => return self.reply(outcome),
             }
         }
@@ -121,7 +125,7 @@ impl Client {
             return Ok(self.see_through(order, None).await?.outcome);
         }
         self.start(order).await?;
-        let outcome = self.until_ended().await?;
+        let outcome = self.until_ended(None).await?;
         self.count(order, &outcome);
         Ok(outcome)
     }
@@ -158,7 +162,11 @@ impl Client {
             Ended::NoAnswer(why) => Error::NoAnswer { command, why },
             Ended::OutcomeUnknown(why) => {
                 let stop = self.is_up.then(|| input::STOP.is_on(&self.output.next));
-                Error::OutcomeUnknown { command, why, stop, is_stop_held: outcome.stop_held }
+                let ended = match self.still_there() {
+                    Err(Error::Session(SessionBusy::Ended(why))) => Some(why),
+                    _ => None,
+                };
+                Error::OutcomeUnknown { command, why, stop, is_stop_held: outcome.stop_held, ended }
             }
             Ended::Answered(_) | Ended::Stopped => Error::NoReport { what: outcome.row.id },
         }

@@ -10,6 +10,7 @@ use tokio::time::Instant;
 
 use super::Client;
 use super::error::Error;
+use crate::STOP_WITHIN;
 
 impl Client {
     /// Carries out a procedure of signals, such as [`Procedure::run`], and says how long it took. A dry run notes what
@@ -25,17 +26,18 @@ impl Client {
             self.note_steps(&procedure);
             return if procedure.risk == Risk::Read { Err(Error::NotKnown) } else { Ok(Duration::ZERO) };
         }
-        self.switch(procedure).await
+        let longest = if procedure.stops() { STOP_WITHIN } else { Duration::MAX };
+        self.switch(procedure, longest).await
     }
 
-    /// The same without the check: a stop is always allowed.
-    pub(super) async fn switch(&mut self, procedure: Procedure) -> Result<Duration, Error> {
+    /// The same in this time and without the check: a stop is always allowed.
+    pub(super) async fn switch(&mut self, procedure: Procedure, longest: Duration) -> Result<Duration, Error> {
         self.catch_up().await?;
         self.claim_motion(procedure.risk).await?;
         let name = procedure.name;
         self.has_started |= procedure.risk == Risk::Motion;
         let began = Instant::now();
-        self.start_sequence(Sequence::new(procedure, self.patience))?;
+        self.start_sequence(Sequence::new(procedure, self.patience).within(longest))?;
         match self.until_finished().await? {
             sequence::Outcome::Done => Ok(began.elapsed()),
             outcome => Err(Error::Unfinished { name, outcome }),

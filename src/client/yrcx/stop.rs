@@ -9,8 +9,11 @@ use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::{Command, Pace};
 use armctl_controller::yrcx::value::Values;
 
+use tokio::time::Instant;
+
 use super::error::Error;
 use super::{Client, Event};
+use crate::STOP_WITHIN;
 
 /// What there was to stop.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,12 +37,13 @@ pub enum Stopped {
 
 impl Client {
     /// Stops what this client set in motion, whatever was granted: the stop input SI(06) goes off, and on again once the
-    /// end is seen (chapter 1, 3.8).
+    /// end is seen (chapter 1, 3.8). Within 3 s it is known whether it was.
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the end was not seen: the stop input stays off.
     pub async fn stop(&mut self) -> Result<Stopped, Error> {
         self.abandon_sequence();
+        let until = Instant::now() + STOP_WITHIN;
         let now = self.now();
         if let Some(exchange) = &mut self.exchange {
             exchange.interrupt(now);
@@ -47,7 +51,7 @@ impl Client {
             if matches!(order.row().pace, Pace::Motion | Pace::Jog) {
                 self.watcher.event(Event::Stopping);
             }
-            let outcome = self.until_ended().await?;
+            let outcome = self.until_ended(Some(until)).await?;
             let command = order.command();
             return match outcome.ended {
                 Ended::Answered(Answer::Refused { alarm, positions }) if alarm == STOP_INPUT => {
@@ -65,7 +69,7 @@ impl Client {
         }
         self.watcher.event(Event::Stopping);
         for procedure in [Some(Procedure::stop()), Procedure::set(input::STOP, true)].into_iter().flatten() {
-            self.switch(procedure).await?;
+            self.switch(procedure, until.saturating_duration_since(Instant::now())).await?;
         }
         self.has_started = false;
         Ok(Stopped::Started)

@@ -14,7 +14,7 @@ use armctl_transport::session::host::Host;
 use armctl_transport::session::host::held::Held;
 use armctl_transport::session::place::Spot;
 use armctl_transport::session::wire::Info;
-use tokio::time::{sleep, timeout};
+use tokio::time::timeout;
 
 use super::*;
 
@@ -61,9 +61,57 @@ async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
     Client::connect(link, Options::default().granting(risk)).await.unwrap()
 }
 
+/// Takes a command, and runs from then on whatever it is shown.
+#[derive(Debug, Default)]
+struct Stuck {
+    runs: bool,
+}
+
+impl ImagePeer for Stuck {
+    fn input(&mut self, _: Duration, bytes: Option<&[u8]>) {
+        self.runs |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
+    }
+
+    fn output(&mut self, _: Duration) -> Option<Vec<u8>> {
+        let mut image = Image::default();
+        output::CPU_OK.set(&mut image, true);
+        output::PROGRAM_RUNNING.set(&mut image, true);
+        image.0[0] = if self.runs { 0x0100 } else { 0 };
+        Some(image.to_bytes().to_vec())
+    }
+
+    fn wake(&self) -> Option<Duration> {
+        None
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
+    let power = order(Command::ServoFree.order().with(Key::Axes, "1"));
+    for what in [motion(), jog(), power] {
+        let link = ImageLink::in_process(Box::<Stuck>::default());
+        let mut client = Client::connect(link, Options::default().granting(Risk::Motion)).await.unwrap();
+        assert!(timeout(Duration::from_secs(1), client.ask(&what)).await.is_err());
+        let began = Instant::now();
+        let stopped = client.stop().await;
+        assert!(matches!(stopped, Err(Error::OutcomeUnknown { .. })), "{stopped:?}");
+        assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
+    }
+    let link = ImageLink::in_process(Box::<Stuck>::default());
+    let mut client = Client::connect(link, Options::default().granting(Risk::Write)).await.unwrap();
+    for stop in [Procedure::stop(), Procedure::emergency_stop()] {
+        let began = Instant::now();
+        let stopped = client.carry_out(stop).await;
+        assert!(matches!(stopped, Err(Error::Unfinished { .. })), "{stopped:?}");
+        assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
+    }
+}
+
 /// A client of the session at a spot.
 async fn attached(spot: &Spot) -> Client {
-    let Found::Session(attached) = attach_at(spot, "cell", "test", false).await.unwrap() else {
+    let Found::Session(attached) =
+        attach_at(spot, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
+    else {
         panic!("nobody holds it")
     };
     Client::connect(ImageLink::in_session(attached), Options::default()).await.unwrap()
@@ -133,6 +181,21 @@ async fn silence_after_a_change_is_not_silence_after_a_question() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn a_read_is_tried_once_more_than_retries_says_each_as_long_as_the_timeout() {
+    for retries in [0, 4] {
+        let link = ImageLink::in_process(Box::new(Deaf(None)));
+        let options = Options { timeout: Duration::from_millis(300), retries, ..Options::default() };
+        let mut client = Client::connect(link, options).await.unwrap();
+        let (began, before) = (Instant::now(), client.totals().commands);
+        let silent = client.ask(&point(1)).await.unwrap_err();
+        assert!(matches!(&silent, Error::NoAnswer { why: Silence::NotTaken, .. }), "{silent}");
+        assert_eq!(client.totals().commands - before, retries + 1);
+        let (waited, patience) = (began.elapsed(), 300 * u128::from(retries + 1));
+        assert!((patience..patience + 300).contains(&waited.as_millis()), "{waited:?} with {retries} retries");
+    }
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_dry_run_notes_orders_and_knows_no_answers() {
     let mut client = Client::dry_run(Options::default().granting(Risk::Motion));
     client.ask(&motion()).await.unwrap();
@@ -163,21 +226,11 @@ async fn a_motion_that_is_dropped_goes_on_until_it_is_stopped() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_jog_ends_after_its_time_or_when_it_is_let_go() {
+async fn a_jog_ends_after_its_time() {
     let mut client = simulated(Risk::Motion).await;
     let jogged = client.jog(&jog(), Some(Duration::from_millis(500))).await.unwrap();
     let place = jogged.values.axes().unwrap();
     assert!(place[0] > 0, "{place:?}");
-    client.let_go_at(|| {
-        Box::pin(async {
-            sleep(Duration::from_millis(500)).await;
-            "gone for lunch"
-        })
-    });
-    let cut = client.jog(&jog(), None).await.unwrap_err();
-    let Error::Cut { by, ended: Ok(values), .. } = &cut else { panic!("{cut}") };
-    assert!(matches!(**by, Cut::Abandoned("gone for lunch")));
-    assert!(values.axes().unwrap()[0] > place[0]);
     assert!(!client.is_jogging());
 }
 

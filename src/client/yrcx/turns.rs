@@ -12,6 +12,7 @@ use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next,
 use armctl_controller::yrcx::signal::{input, output};
 use armctl_controller::yrcx::table::Pace;
 use armctl_transport::image::{Event as Passed, LinkError};
+use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
 
 use super::error::Error;
@@ -95,11 +96,11 @@ impl Client {
         Ok(())
     }
 
-    /// Turns until the remote command has ended.
-    pub(super) async fn until_ended(&mut self) -> Result<Outcome, Error> {
+    /// Turns until the remote command has ended. A link that was lost is waited for until then.
+    pub(super) async fn until_ended(&mut self, until: Option<Instant>) -> Result<Outcome, Error> {
         loop {
             if let Some(outcome) = self.ended.take() {
-                self.await_link(&outcome).await;
+                self.await_link(&outcome, until).await;
                 return Ok(outcome);
             }
             self.turn().await?;
@@ -108,12 +109,12 @@ impl Client {
 
     /// After a motion whose link was lost, waits for a while until it is up again: how the stop input stands then is
     /// worth knowing.
-    pub(super) async fn await_link(&mut self, outcome: &Outcome) {
+    pub(super) async fn await_link(&mut self, outcome: &Outcome, until: Option<Instant>) {
         let moves = matches!(outcome.row.pace, Pace::Motion | Pace::Jog);
         if !moves || outcome.ended != Ended::OutcomeUnknown(Silence::LinkLost) {
             return;
         }
-        let until = Instant::now() + self.timeout;
+        let until = until.unwrap_or_else(|| Instant::now() + self.timeout);
         // What goes wrong meanwhile is told by whatever comes next.
         while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
     }
@@ -281,6 +282,15 @@ impl Client {
                 self.watcher.event(Event::Reopened { stop });
             }
             Passed::Shown(change) => self.shown_by_others(now, &change),
+            Passed::Denied => {
+                self.in_flight = false;
+                // What was sent before has yet to end.
+                self.exchange.take_if(|exchange| exchange.sent().is_none());
+                self.sequence = None;
+                self.words = Words::default();
+                self.shown_now();
+                return Err(Error::Session(SessionBusy::ReadOnly));
+            }
         }
         Ok(true)
     }

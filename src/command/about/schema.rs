@@ -10,7 +10,7 @@ use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use crate::command::fleet::{robots, session, tools};
+use crate::command::fleet::{robots, session, shared, tools};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -53,6 +53,7 @@ impl SchemaOf {
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
+    all.extend(shared::schemas());
     all.extend(Backup::<Fleet>::schemas());
     all.extend(Restore::<Fleet>::schemas());
     all.extend(Diff::<Fleet>::schemas());

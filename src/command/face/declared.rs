@@ -11,6 +11,7 @@ use super::layers::Layer;
 use super::overview::OverviewReport;
 use super::panel::Panel;
 use super::sample::{Detail, Sample, Traffic};
+use super::shared::{self, Alike, SharedVerb};
 use super::tool::{Tool, ToolKind};
 use super::words::{self, Typed};
 use super::{Face, HeldLink, Watch};
@@ -19,6 +20,7 @@ use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::decode::Decode;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::connection;
+use crate::command::robot::alarm::Alarm;
 use crate::command::serve::Serve;
 use crate::command::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, Outcome, Own, SchemaEntry};
 use crate::controller::Risk;
@@ -39,7 +41,13 @@ pub trait Declaration: Backups {
     /// What lists the alarms that are present.
     type Alarms: Command<Family = Self, Report: Recorded> + Args;
     /// What lists those of the past.
-    type AlarmHistory: Command<Family = Self, Report: Recorded> + Args;
+    type AlarmHistory: Command<Family = Self, Report: Recorded + Alike> + Args;
+    /// What resets them.
+    type AlarmReset: Command<Family = Self, Report: Alike> + Args;
+    /// Where the robot stands.
+    type Position: Command<Family = Self, Report: Alike> + Args;
+    /// What stops the robot.
+    type Stop: Command<Family = Self, Report: Alike> + 'static;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Looks for the poller.
@@ -79,6 +87,10 @@ pub trait Declaration: Backups {
     fn read_arguments(_matches: &mut ArgMatches) -> Result<Own, clap::Error> {
         Ok(Own::default())
     }
+    /// What stops the robot, as [`STOP`](connection::Family::STOP) has it in words.
+    fn stop_command() -> Self::Stop;
+    /// The alarms that are present, the latest first, as far as they can be asked for.
+    async fn alarms(link: &mut Self::Link) -> Result<Vec<Alarm>, Failure>;
     /// What was counted on a link so far.
     fn traffic(link: &Self::Link) -> Traffic;
     /// A line for `status`.
@@ -176,6 +188,17 @@ impl<F: Declaration> Face for Declared<F> {
         connection: &'a mut dyn connection::Connection,
     ) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>> {
         async move { F::overview(connection::link::<F>(connection)?).await }.boxed_local()
+    }
+
+    fn alarms<'a>(
+        &self,
+        connection: &'a mut dyn connection::Connection,
+    ) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>> {
+        async move { F::alarms(connection::link::<F>(connection)?).await }.boxed_local()
+    }
+
+    fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand> {
+        shared::command::<F>(verb)
     }
 
     fn check<'a>(

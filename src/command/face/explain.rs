@@ -1,21 +1,23 @@
 //! `armctl explain FAMILY CODE`: what is known of a code, and what the controllers of the robots that are named have of it.
 
-use clap::{Args, Command as Words};
+use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::declared::Declaration;
+use super::shared::usual;
 use super::tool::ToolTask;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::run::{Run, RunError};
+use crate::command::robot::alarm::{Alarm, AlarmEntry, Alarms, Besides, Row};
 use crate::command::{Access, Command, ConnectMode, Context, Entry, Report};
 use crate::failure::Failure;
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Section, Table, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{Alarms, Origin};
+use crate::settings::alarms::{self, Explanation, Origin};
 
 /// A code as typed, of a family.
 pub trait Explain {
@@ -25,32 +27,102 @@ pub trait Explain {
     const ID: &'static str;
 
     /// Says what is known of it without asking anybody; `alarms` has what the site says.
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
+    fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
 
     /// The alarm as controllers list it; nothing where it is none.
     fn alarm(&self) -> Option<String>;
 }
 
+/// What is known of a code.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Codes<T> {
+    /// One or, for a short code that is in two tables, several.
+    pub codes: Vec<Known<T>>,
+}
+
+/// A code in words.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Known<T> {
+    /// Whether anybody knows this very code.
+    known: bool,
+    #[serde(flatten)]
+    alarm: Alarm,
+    /// What usually causes it, one by one.
+    causes: Vec<String>,
+    /// What to do, one by one.
+    remedies: Vec<String>,
+    /// What the family tells besides.
+    #[serde(flatten)]
+    own: T,
+}
+
+impl<T> Known<T> {
+    /// A code as this program knows it, and what `alarms.toml` says of it, which stands first.
+    pub fn new(known: bool, alarm: Alarm, [causes, remedies]: [&[&str]; 2], site: Option<Explanation>, own: T) -> Self {
+        let listed = |site: Option<&String>, own: &[&str]| -> Vec<String> {
+            site.cloned().into_iter().chain(own.iter().map(ToString::to_string)).collect()
+        };
+        let of = |part: fn(&Explanation) -> Option<&String>| site.as_ref().and_then(part);
+        let causes = listed(of(|site| site.cause.as_ref()), causes);
+        let remedies = listed(of(|site| site.remedy.as_ref()), remedies);
+        let told = |lines: &[String]| Some(lines.join("; ")).filter(|line| !line.is_empty());
+        let known = known || site.is_some();
+        let alarm = Alarm { cause: told(&causes), remedy: told(&remedies), ..alarm.with(site) };
+        Self { known, alarm, causes, remedies, own }
+    }
+}
+
+impl<T: Besides + Serialize + JsonSchema> Report for Codes<T> {
+    fn view(&self) -> View {
+        let section = |Known { alarm, own, .. }: &Known<T>| {
+            let Alarm { code, text, cause, remedy, .. } = alarm;
+            let own = own.cells().into_iter().filter_map(|(name, told)| Some((name, told?)));
+            let told = [("code", code), ("meaning", text), ("cause", cause), ("what to do", remedy)];
+            let told = told.into_iter().filter_map(|(name, told)| Some((name, told.clone()?)));
+            Section::Fields(told.chain(own).map(|(name, told)| (name, told.into())).collect())
+        };
+        View { sections: self.codes.iter().map(section).collect() }
+    }
+
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("codes")
+    }
+}
+
 /// A report of alarms, present or past.
 pub trait Recorded {
-    /// Each with what the controller says of it.
-    fn recorded(&self) -> Vec<Occurrence>;
+    /// Each with what the controller says of it; `what` names the list.
+    fn recorded(&self, what: &str) -> Vec<Occurrence>;
 }
+
+impl<T: Besides, S> Recorded for Alarms<T, S> {
+    fn recorded(&self, what: &str) -> Vec<Occurrence> {
+        let of = |(row, entry): (&Row<T>, &AlarmEntry<T>)| {
+            let place = match (what, row.list) {
+                (PRESENT, _) => what.to_owned(),
+                (_, list) => format!("{} {index}", list.unwrap_or(what), index = row.index),
+            };
+            let data: Vec<String> = entry.own.cells().into_iter().filter_map(|(_, told)| told).collect();
+            let data = Some(data.join(", ")).filter(|data| !data.is_empty());
+            Occurrence { place, data, alarm: entry.alarm.clone() }
+        };
+        self.known().map(of).collect()
+    }
+}
+
+/// The list of alarms that are present.
+const PRESENT: &str = "present";
 
 /// An alarm that a controller has or had.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Occurrence {
     /// `present`, or which one of which list of the past: `major 3`.
     pub place: String,
-    /// Its number.
-    #[serde(skip)]
-    pub code: String,
-    /// Its text; null where the controller has none.
-    pub text: Option<String>,
+    /// The alarm.
+    #[serde(flatten)]
+    pub alarm: Alarm,
     /// What it says beside: a sub-code, an axis, a task; null where it says nothing.
     pub data: Option<String>,
-    /// When, as the controller tells it; null where it does not.
-    pub time: Option<String>,
 }
 
 /// A code, and what controllers have of it.
@@ -86,7 +158,7 @@ impl<R: Report> Report for Explained<R> {
 impl Told {
     fn sections(&self) -> Vec<Section> {
         let mut table = Table::new(&["where", "text", "data", "time"], "");
-        for Occurrence { place, text, data, time, .. } in &self.alarms {
+        for Occurrence { place, data, alarm: Alarm { text, time, .. } } in &self.alarms {
             let [text, data, time] = [text, data, time].map(|text| Cell::maybe(text.as_deref()));
             table.row([place.as_str().into(), text, data, time]);
         }
@@ -135,9 +207,9 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
         Err(why) => return (Vec::new(), vec![why]),
     };
     let mut recall = Recall { alarm, found: Vec::new(), errors: Vec::new() };
-    recall.of::<F::Alarms>(run, robot, &mut link, "its alarms").await;
+    recall.of::<F::Alarms>(run, robot, &mut link, PRESENT, "its alarms").await;
     if recall.errors.is_empty() {
-        recall.of::<F::AlarmHistory>(run, robot, &mut link, "its history").await;
+        recall.of::<F::AlarmHistory>(run, robot, &mut link, "history", "its history").await;
     }
     if let Err(failure) = F::close(link, &run.screen.silenced()).await {
         run.screen.detail(1, &failure.message);
@@ -179,27 +251,20 @@ impl Recall<'_> {
         run: &Run,
         robot: &Robot,
         link: &mut <C::Family as crate::command::Family>::Link,
+        list: &str,
         what: &str,
     ) {
         let screen = run.screen.silenced();
         let authority = Authority::reading(&screen, robot);
         let context = Context { robot, link, screen: &screen, several: false, authority };
-        match usual::<C>() {
-            Ok(command) => match command.run(context).await {
-                Ok(report) => {
-                    let is_it = |alarm: &Occurrence| same(&alarm.code, self.alarm);
-                    self.found.extend(report.recorded().into_iter().filter(is_it));
-                }
-                Err(failure) => self.errors.push(format!("{what} could not be read: {}", failure.message)),
-            },
-            Err(error) => self.errors.push(error.to_string()),
+        match usual::<C>().run(context).await {
+            Ok(report) => {
+                let is_it = |found: &Occurrence| found.alarm.code.as_deref().is_some_and(|code| same(code, self.alarm));
+                self.found.extend(report.recorded(list).into_iter().filter(is_it));
+            }
+            Err(failure) => self.errors.push(format!("{what} could not be read: {}", failure.message)),
         }
     }
-}
-
-/// A command as it is without arguments.
-fn usual<C: Args>() -> Result<C, clap::Error> {
-    C::from_arg_matches(&C::augment_args(Words::new("usual")).try_get_matches_from(["usual"])?)
 }
 
 /// Whether these are the same code, whatever zeros are before it.

@@ -133,14 +133,16 @@ impl Layers {
     }
 }
 
-/// Half-written files of commands that were killed, in this folder; no layer where there are none.
+/// Removes half-written files of commands that were killed from this folder; no layer where there are none.
 pub fn drafts() -> Option<Layer> {
-    let count = files::abandoned_drafts(Path::new(".")).len();
-    (count > 0).then(|| Layer {
+    let (removed, left) = files::sweep(Path::new("."));
+    (removed + left > 0).then(|| Layer {
         layer: "left over here",
-        state: State::Warning,
-        found: format!("{count} half-written files of commands that were killed (.armctl-*.part)"),
-        advice: Some("the next command that writes a file into this folder removes them".to_owned()),
+        state: if left > 0 { State::Warning } else { State::Ok },
+        found: format!(
+            "half-written files of commands that were killed (.armctl-*.part): {removed} removed, {left} not"
+        ),
+        advice: (left > 0).then(|| "remove them as a user who may".to_owned()),
     })
 }
 

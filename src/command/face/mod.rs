@@ -6,6 +6,7 @@ pub mod layers;
 pub mod overview;
 pub mod panel;
 pub mod sample;
+pub mod shared;
 pub mod tool;
 pub mod words;
 
@@ -16,10 +17,12 @@ use self::layers::Layer;
 use self::overview::OverviewReport;
 use self::panel::Panel;
 use self::sample::{Detail, Sample, Traffic};
+use self::shared::SharedVerb;
 use self::tool::{Tool, ToolKind};
 use self::words::Typed;
 use super::backup::{BackedUp, Making, Restored, Restoring};
 use super::frame::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
+use super::robot::alarm::Alarm;
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -60,6 +63,10 @@ pub trait Face: Sync {
     fn driver(&self) -> &'static dyn Driver;
     /// A line for `status`.
     fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
+    /// The alarms that are present, for `alarm list`.
+    fn alarms<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>>;
+    /// What it does behind a verb that every family has.
+    fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand>;
     /// The keys of `armctl teach`.
     fn panel(&self) -> Panel;
     /// What `robots check` finds.

@@ -5,6 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 use crate::command::face::overview::OverviewReport;
+use crate::command::robot::alarm::Alarm;
 use crate::output::view::Tone;
 
 /// How much is asked, the least first.
@@ -66,22 +67,6 @@ pub struct Sample {
     pub alarms: Vec<Alarm>,
     /// What [`Detail::Full`] asks for, and [`Detail::Axes`] in part.
     pub whole: Option<Whole>,
-}
-
-/// An alarm or error.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Alarm {
-    /// As the controller writes it: `4315`, `28`, `12.600`.
-    pub code: String,
-    /// What it says.
-    pub text: String,
-    /// What to do about it; empty where nobody knows.
-    pub remedy: String,
-}
-
-impl Alarm {
-    /// The code of one that the controller has and does not tell.
-    pub const UNREADABLE: &str = "?";
 }
 
 /// All that a screen has room for.

@@ -6,6 +6,8 @@ pub mod metrics;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
+#[cfg(feature = "plant")]
+mod repeats;
 pub mod robots;
 #[cfg(feature = "plant")]
 pub mod serve;
@@ -13,7 +15,9 @@ pub mod serve;
 pub mod service;
 pub mod session;
 pub mod setup;
+pub mod shared;
 pub mod status;
 pub mod teach;
 pub mod tools;
 pub mod top;
+pub mod wait;

@@ -17,8 +17,9 @@ use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::frame::names::list;
 use crate::command::frame::run::{Run, RunError};
+use crate::failure::Failure;
 use crate::output::view::{Table, View};
-use crate::settings::inventory::Inventory;
+use crate::settings::inventory::{Entry, fits};
 use crate::settings::model::ToldModels;
 use crate::settings::{Origin, Robot, Setting, duration};
 
@@ -97,8 +98,11 @@ impl Robots {
     /// Does it.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
+        if let Some(path) = &inventory.path {
+            crate::files::sweep(&crate::files::folder_of(path));
+        }
         match self {
-            Self::List => run.local("robots.list", &List::of(inventory)),
+            Self::List => run.local("robots.list", &List::of(run)?),
             Self::Show(show) => show.run(run),
             Self::Names(names) => names.run(run),
             Self::Add(add) => add.run(run),
@@ -163,6 +167,9 @@ pub struct List {
     /// The file, whether it exists or not.
     file: Option<String>,
     robots: Vec<Listed>,
+    /// Whether the inventory has robots that were not chosen.
+    #[serde(skip)]
+    has_others: bool,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -177,8 +184,21 @@ struct Listed {
 }
 
 impl List {
-    fn of(inventory: &Inventory) -> Self {
-        let robots = inventory.robots.iter().map(|robot| Listed {
+    /// The robots that flags choose; all of them without.
+    fn of(run: &Run) -> Result<Self, Failure> {
+        let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
+        if selection.sim || selection.target.is_some() {
+            return Err(Failure::usage("the list has the robots of the inventory").hint("choose some with -r or --tag"));
+        }
+        let is_chosen = |robot: &&Entry| {
+            let is_named = selection.from_environment
+                || selection.robots.is_empty()
+                || selection.robots.iter().any(|pattern| fits(pattern, &robot.name));
+            is_named && selection.tags.iter().all(|tag| robot.tags.contains(tag))
+        };
+        let robots: Vec<&Entry> = inventory.robots.iter().filter(is_chosen).collect();
+        let has_others = robots.len() < inventory.robots.len();
+        let robots = robots.into_iter().map(|robot| Listed {
             name: robot.name.clone(),
             family: robot.family.name(),
             target: robot.target.url().to_owned(),
@@ -186,16 +206,22 @@ impl List {
             default: inventory.default.as_ref() == Some(&robot.name),
             tags: robot.tags.clone(),
         });
-        Self { file: inventory.path.as_ref().map(|path| path.display().to_string()), robots: robots.collect() }
+        Ok(Self {
+            file: inventory.path.as_ref().map(|path| path.display().to_string()),
+            robots: robots.collect(),
+            has_others,
+        })
     }
 }
 
 impl Report for List {
     fn view(&self) -> View {
-        let mut table = Table::new(
-            &["name", "family", "target", "default", "read-only", "tags"],
-            "no robots yet; `armctl setup` adds one step by step, `armctl robots add cell1 udp://192.168.1.31` at once",
-        );
+        let none = if self.has_others {
+            "no robot of the inventory has this name or tag"
+        } else {
+            "no robots yet; `armctl setup` adds one step by step, `armctl robots add cell1 udp://192.168.1.31` at once"
+        };
+        let mut table = Table::new(&["name", "family", "target", "default", "read-only", "tags"], none);
         let mark = |on: bool| if on { "yes" } else { "" };
         for robot in &self.robots {
             table.row([

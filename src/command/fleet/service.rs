@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use std::io;
 #[cfg(unix)]
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
+use super::repeats::{Line, Repeats};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::log::Level;
@@ -19,6 +20,9 @@ use crate::settings::Robot;
 #[cfg(unix)]
 use crate::transport::journal::{Journal, PLACE};
 use crate::transport::supervisor::Supervisor;
+
+/// How long a service may take to end, once it is asked to.
+pub const END: Duration = Duration::from_millis(800);
 
 /// A service as it runs: what it says, and who is told how it is.
 #[derive(Debug)]
@@ -66,6 +70,7 @@ impl Service {
         let mut told = true;
         loop {
             sleep(every).await;
+            self.log.summarize(false);
             let now = self.supervisor.alive(&status());
             if let (Err(error), true) = (&now, told) {
                 self.say(Level::Error, &format!("the service manager is not reached: {error}"), &[]);
@@ -76,6 +81,7 @@ impl Service {
 
     /// Tells it that this comes to its end.
     pub fn stopping(&self) {
+        self.log.summarize(true);
         // Nobody is left to be told that this cannot be told.
         let _told = self.supervisor.stopping();
     }
@@ -89,6 +95,7 @@ fn unreached(error: &io::Error) -> Failure {
 #[derive(Debug)]
 struct Log {
     screen: Screen,
+    repeats: RefCell<Repeats>,
     #[cfg(unix)]
     journal: Option<Journal>,
 }
@@ -98,16 +105,34 @@ impl Log {
     fn new(screen: Screen) -> Self {
         // One that is not reached has stderr, as it has of every process.
         let journal = log::is_journal_socket().then(|| Journal::at(Path::new(PLACE)).ok()).flatten();
-        Self { screen, journal }
+        Self { screen, repeats: RefCell::default(), journal }
     }
 
     #[cfg(not(unix))]
     fn new(screen: Screen) -> Self {
-        Self { screen }
+        Self { screen, repeats: RefCell::default() }
     }
 
     fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
-        if self.screen.wants(level) && !self.is_written(level, text, fields) {
+        if self.screen.wants(level) {
+            let line = Line::new(level, text, fields);
+            if self.repeats.borrow_mut().admits(&line, Instant::now()) {
+                self.print(level, text, fields);
+            }
+        }
+    }
+
+    /// Prints how often lines were repeated.
+    fn summarize(&self, is_end: bool) {
+        let due = self.repeats.borrow_mut().due(Instant::now(), is_end);
+        for Line { level, text, fields } in due {
+            let fields: Vec<_> = fields.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
+            self.print(level, &text, &fields);
+        }
+    }
+
+    fn print(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
+        if !self.is_written(level, text, fields) {
             self.screen.log(level, text, fields);
         }
     }

@@ -93,7 +93,7 @@ impl Command for Overview {
             found => found?,
         };
         let mut report = OverviewReport { family: context.robot.family.name(), ..report };
-        report.fault.explain(context.robot)?;
+        report.state.fault.explain(context.robot)?;
         Ok(report)
     }
 

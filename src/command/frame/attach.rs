@@ -5,16 +5,17 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
+use tokio::time::timeout;
 
 use crate::command::frame::{Access, Driver};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::target::{Address, Family, Target};
+use crate::settings::target::{self, Address, Family, Target};
 use crate::settings::{Robot, Sessions, Sources};
 use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
 use crate::transport::session::place::{Place, PlaceError, Spot, key};
 use crate::transport::session::process;
-use crate::transport::session::wire::Peer;
+use crate::transport::session::wire::{Info, Peer, Purpose};
 
 /// The session that holds the robot's link, if there is one and `--no-session` does not go around it.
 pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
@@ -30,7 +31,16 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
     if robot.sessions == Sessions::None || access.dry_run {
         return Ok(None);
     }
-    let attached = match client::attach(&key_of(robot), &command_line(access), access.leaves_motion).await {
+    let goes_around = access.is_stop && matches!(robot.target.value.place, target::Place::Udp(_));
+    let within = if goes_around { STOP_WAITS } else { Duration::MAX };
+    let purpose = match access {
+        Access { is_stop: true, .. } => Purpose::Stop,
+        Access { leaves_motion: true, .. } => Purpose::LeavesMotion,
+        _ => Purpose::Any,
+    };
+    let (key, typed) = (key_of(robot), command_line(access));
+    let attaching = client::attach(&key, &typed, purpose);
+    let attached = match timeout(within, attaching).await.unwrap_or(Err(AttachError::Silent)) {
         Ok(Found::Session(attached)) => attached,
         Ok(Found::Nothing) => return Ok(None),
         Ok(Found::Dead) => {
@@ -43,6 +53,12 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
             screen.note(&format!("warning: sessions are not used: {error}"));
             return Ok(None);
         }
+        // A controller on UDP takes the stop from anybody.
+        Err(AttachError::Silent) if goes_around => {
+            screen.note(&format!("{}: {} does not respond, so the stop goes without it", robot.label(), holder(robot)));
+            return Ok(None);
+        }
+        Err(AttachError::Silent) => return Err(frozen(robot)),
         Err(error) => return Err(refused(&robot.label(), &error)),
     };
     let welcome = &attached.welcome;
@@ -66,6 +82,27 @@ async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Res
     Ok(Some(attached))
 }
 
+/// How long a stop waits for a session that does not respond. One that lives answers within milliseconds.
+const STOP_WAITS: Duration = Duration::from_millis(300);
+
+/// The process that holds the link of a robot.
+fn owner(robot: &Robot) -> Option<Info> {
+    Place::find().ok().flatten()?.spot(&key_of(robot)).owner()
+}
+
+fn holder(robot: &Robot) -> String {
+    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("its session (process {})", owner.pid))
+}
+
+/// The session has the link, which takes one client, and does not respond.
+fn frozen(robot: &Robot) -> Failure {
+    let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
+    let Some(Info { pid, .. }) = owner(robot) else { return failure };
+    failure.hint(format!(
+        "it may be suspended: `kill -CONT {pid}` lets it go on, `kill -KILL {pid}` ends it and frees the link"
+    ))
+}
+
 /// Whether a session holds the robot's link, and commands may go through it.
 pub fn is_held(robot: &Robot) -> bool {
     robot.sessions != Sessions::None
@@ -74,12 +111,7 @@ pub fn is_held(robot: &Robot) -> bool {
 
 /// Whether a session of another process holds the robot's link, and commands may go through it.
 pub fn is_held_by_another(robot: &Robot) -> bool {
-    is_held(robot)
-        && Place::find()
-            .ok()
-            .flatten()
-            .and_then(|place| place.spot(&key_of(robot)).owner())
-            .is_some_and(|owner| owner.pid != process())
+    is_held(robot) && owner(robot).is_some_and(|owner| owner.pid != process())
 }
 
 /// What the robot's session is named by: by its address, or by the other one that a session was opened with.
@@ -179,6 +211,12 @@ pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
             let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
             Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
                 .hint("wait for its end; stops get through: `yrcx stop`, `toyo stop`, `yerc hold on`")
+        }
+        SessionBusy::ReadOnly => {
+            Failure::new(Kind::Rejected, format!("{label} is read-only: its session passed nothing on")).hint(
+                "it is so on purpose; where it may be changed: `armctl robots set NAME read_only=off`, then close the \
+                 session and open it again",
+            )
         }
         SessionBusy::Moved(holder) => {
             let message = format!("{label}: another client moves the robot: {}; nothing was sent", peer(holder));

@@ -160,7 +160,7 @@ pub trait AnyCommand {
         None
     }
     /// See [`Command::connect_mode`].
-    fn connect_mode(&self) -> ConnectMode {
+    fn connect_mode(&self, _robot: &Robot) -> ConnectMode {
         ConnectMode::default()
     }
     /// See [`Command::summary`].
@@ -179,7 +179,7 @@ impl dyn AnyCommand + '_ {
 
     /// What its connection does to a robot by being there.
     pub fn entry(&self, robot: &Robot) -> Entry {
-        self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode()))
+        self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode(robot)))
     }
 
     /// Connects to a robot.
@@ -229,7 +229,7 @@ impl<C: Command> AnyCommand for C {
         Command::takes_robot(self).then(connection::driver::<C::Family>)
     }
 
-    fn connect_mode(&self) -> ConnectMode {
+    fn connect_mode(&self, _robot: &Robot) -> ConnectMode {
         Command::connect_mode(self)
     }
 

@@ -33,13 +33,15 @@ pub struct Access {
     pub own: Own,
     /// Whether the robot moves on if this process dies.
     pub leaves_motion: bool,
+    /// Whether it is for a stop, which waits for nobody.
+    pub is_stop: bool,
 }
 
 impl Access {
     /// For what only looks.
     pub fn reading(mode: ConnectMode) -> Self {
         let (granted, own) = (Grant::of(Risk::Read), Own::default());
-        Self { granted, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false }
+        Self { granted, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
     }
 }
 

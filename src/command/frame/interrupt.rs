@@ -6,6 +6,7 @@
 
 use std::future::Future;
 use std::pin::pin;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -21,11 +22,13 @@ use crate::output::{busy, leave};
 type Asked = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
+#[cfg_attr(not(unix), cfg(test))]
 const TERMINATE: &str = "asked to end (SIGTERM)";
-#[cfg(unix)]
 const HANGUP: &str = "the terminal was closed (SIGHUP)";
 #[cfg(unix)]
 const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
+#[cfg(unix)]
+const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
 /// Of two requests closer than this the second is the first one again: `timeout`, for one, sends each twice.
 const TWICE: Duration = Duration::from_millis(100);
@@ -34,9 +37,6 @@ const PATIENCE: Duration = Duration::from_millis(500);
 
 /// One listener for the process, so that a signal between two waits is not lost.
 static ASKED: OnceLock<Result<Asked, String>> = OnceLock::new();
-/// Who waits for [`abandoned`]: while anybody does, Ctrl-\ is his.
-#[cfg(unix)]
-static GUARDS: OnceLock<watch::Sender<u64>> = OnceLock::new();
 
 /// Waits for `work`, or for Ctrl-C or another request to end. Of two that nest, the inner one hears it first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
@@ -135,13 +135,8 @@ async fn listen(mut signals: Signals, ask: Asked) {
             }
         };
         #[cfg(unix)]
-        if how == QUIT {
-            // Heard here alone, so that nobody who was told of it can be gone when it is looked who there is.
-            let guards = guards();
-            if guards.receiver_count() == 0 {
-                leave::at_once(how);
-            }
-            guards.send_modify(|count| *count += 1);
+        if how == SUSPEND && MOTIONS.load(Ordering::SeqCst) == 0 {
+            leave::suspend();
             continue;
         }
         if presses.are_enough(how, ask.borrow().is_some(), Instant::now()) {
@@ -173,7 +168,7 @@ impl Presses {
         if !is_waiting {
             *self = Self::default();
         }
-        if how != KEYS && how != TERMINATE {
+        if how == HANGUP {
             return false;
         }
         if self.last.is_none_or(|last| now.duration_since(last) >= TWICE) {
@@ -184,35 +179,27 @@ impl Presses {
     }
 }
 
-/// Ends at the keys that suspend a process or kill it outright, Ctrl-Z and Ctrl-\, which do neither any more from this
-/// call on: for what must not be left alone.
-#[cfg(unix)]
-pub fn abandoned() -> impl Future<Output = &'static str> {
-    use tokio::signal::unix::{SignalKind, signal};
+/// How many motions are under way.
+static MOTIONS: AtomicUsize = AtomicUsize::new(0);
 
-    /// SIGTSTP.
-    const SUSPEND: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
+/// A motion that this process watches over. While there is one, Ctrl-Z does not suspend the process: it ends the work, as
+/// Ctrl-C does.
+#[derive(Debug)]
+pub struct UnderWay;
 
-    let mut quit = guards().subscribe();
-    catch_interrupts();
-    let mut suspend = signal(SignalKind::from_raw(SUSPEND)).ok();
-    async move {
-        tokio::select! {
-            () = heard(&mut suspend) => "Ctrl-Z",
-            Ok(()) = quit.changed() => "Ctrl-\\",
-        }
+impl UnderWay {
+    /// From now on, until it is dropped.
+    pub fn begin() -> Self {
+        catch_interrupts();
+        MOTIONS.fetch_add(1, Ordering::SeqCst);
+        Self
     }
 }
 
-#[cfg(unix)]
-fn guards() -> &'static watch::Sender<u64> {
-    GUARDS.get_or_init(watch::Sender::default)
-}
-
-/// There are no such keys.
-#[cfg(not(unix))]
-pub fn abandoned() -> impl Future<Output = &'static str> {
-    std::future::pending()
+impl Drop for UnderWay {
+    fn drop(&mut self) {
+        MOTIONS.fetch_sub(1, Ordering::SeqCst);
+    }
 }
 
 #[cfg(unix)]
@@ -230,6 +217,7 @@ struct Signals {
     terminate: Option<tokio::signal::unix::Signal>,
     hangup: Option<tokio::signal::unix::Signal>,
     quit: Option<tokio::signal::unix::Signal>,
+    suspend: Option<tokio::signal::unix::Signal>,
 }
 
 #[cfg(unix)]
@@ -237,11 +225,15 @@ impl Signals {
     fn new() -> Self {
         use tokio::signal::unix::{SignalKind, signal};
 
+        /// The number of SIGTSTP.
+        const SIGTSTP: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
+
         Self {
             keys: signal(SignalKind::interrupt()).ok(),
             terminate: signal(SignalKind::terminate()).ok(),
             hangup: if hangup_is_ignored() { None } else { signal(SignalKind::hangup()).ok() },
             quit: signal(SignalKind::quit()).ok(),
+            suspend: signal(SignalKind::from_raw(SIGTSTP)).ok(),
         }
     }
 
@@ -251,6 +243,7 @@ impl Signals {
             () = heard(&mut self.terminate) => TERMINATE,
             () = heard(&mut self.hangup) => HANGUP,
             () = heard(&mut self.quit) => QUIT,
+            () = heard(&mut self.suspend) => SUSPEND,
         }
     }
 }

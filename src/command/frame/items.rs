@@ -68,6 +68,11 @@ impl<T> ItemOutcome<T> {
         }
     }
 
+    /// The same with something made of the data.
+    pub fn map<U>(&self, make: impl FnOnce(&T) -> U) -> ItemOutcome<U> {
+        ItemOutcome { ok: self.ok, data: self.data.as_ref().map(make), error: self.error.clone() }
+    }
+
     /// What there is.
     pub fn data(&self) -> Option<&T> {
         self.data.as_ref()
@@ -81,6 +86,18 @@ impl<T> ItemOutcome<T> {
     /// Why there is nothing.
     pub fn error(&self) -> Option<&ItemError> {
         self.error.as_ref()
+    }
+}
+
+impl<T> ItemOutcome<Option<T>> {
+    /// The same of what is there; nothing of what is empty.
+    pub fn filled(self) -> Option<ItemOutcome<T>> {
+        let Self { ok, data, error } = self;
+        let data = match data {
+            Some(None) => return None,
+            data => data.flatten(),
+        };
+        Some(ItemOutcome { ok, data, error })
     }
 }
 

@@ -10,6 +10,7 @@ pub mod background;
 pub mod batch;
 pub mod command;
 pub mod command_set;
+pub mod condition;
 pub mod connection;
 pub mod cycle;
 pub mod dry_run;

@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::report::Report;
+use crate::command::face::shared::Alike;
 use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
@@ -82,7 +83,7 @@ impl New {
 }
 
 /// One thing that the controller accepted: `{"set":"B0","old":1,"new":5}`. Programs get values, people a sentence.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Done {
     /// What was set, by the name that reads give it: `servo_on`.
     set: String,
@@ -100,6 +101,14 @@ impl Done {
     /// What was set, for people.
     pub fn words(&self) -> &str {
         &self.words
+    }
+}
+
+impl Alike for Done {
+    type Core = Self;
+
+    fn core(&self) -> Self {
+        self.clone()
     }
 }
 

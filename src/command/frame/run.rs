@@ -12,7 +12,7 @@ use futures_util::stream;
 use tokio::time::timeout_at;
 
 pub use self::print::as_value;
-use self::print::{ReportPosition, timed};
+use self::print::{ReportPosition, enveloped_all, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
 use super::attach::{identify, is_held_by_another};
@@ -21,7 +21,7 @@ use super::background;
 use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry, Own};
 use super::dry_run::{DryRun, Plan, is_end};
-use super::interrupt::{catch_interrupts, interruptible};
+use super::interrupt::{UnderWay, catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
 use crate::controller::Risk;
@@ -260,15 +260,23 @@ impl Run {
             let silence = match outcome {
                 Ok(report) => {
                     let place = self.round(rounds.is_first(), command.is_endless());
-                    self.print(robot, command.id(), &*report, place)?;
-                    if rounds.is_met(&Envelope::of(robot, command.id(), report.data()))? {
+                    if !self.repeat.is_quiet {
+                        self.print(robot, command.id(), &*report, place)?;
+                    }
+                    let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
+                    if self.repeat.is_quiet && (is_met || rounds.is_last()) {
+                        self.print(robot, command.id(), &*report, ReportPosition::Alone)?;
+                    }
+                    if is_met {
                         return Ok(());
                     }
                     None
                 }
                 // A robot that is silent for a while is what one watches for; anything else ends the watch.
                 Err(failure) if failure.kind == Kind::NoAnswer => {
-                    if self.is_for_people() {
+                    if self.repeat.is_quiet {
+                        // It is told at the end, if it is silent then.
+                    } else if self.is_for_people() {
                         self.screen.failure(&failure);
                         self.redraw.forget();
                     } else {
@@ -280,6 +288,7 @@ impl Run {
             };
             if !rounds.next().await.map_err(stopped)? {
                 return match silence {
+                    Some(failure) if self.repeat.is_quiet => Err(stopped(failure)),
                     Some(failure) => Err(RunError { failure, envelope: None, told: true }),
                     None => rounds.end().map_err(stopped),
                 };
@@ -330,11 +339,19 @@ impl Run {
             });
             let outcomes = at_a_time(attempts).await;
             let place = self.round(rounds.is_first(), false);
-            let envelopes = self.print_many(command, robots, &outcomes, place)?;
-            if rounds.is_met(&envelopes)? {
+            let is_met = if self.repeat.is_quiet {
+                rounds.is_met(&enveloped_all(robots, command.id(), &outcomes)?, &self.screen)?
+            } else {
+                rounds.is_met(&self.print_many(command, robots, &outcomes, place)?, &self.screen)?
+            };
+            let goes_on = !is_met && rounds.next().await?;
+            if self.repeat.is_quiet && !goes_on {
+                self.print_many(command, robots, &outcomes, ReportPosition::First)?;
+            }
+            if is_met {
                 return Ok(());
             }
-            if !rounds.next().await? {
+            if !goes_on {
                 self.verdict(&outcomes)?;
                 return rounds.end().map_err(RunError::from);
             }
@@ -387,10 +404,11 @@ impl Run {
             granted: Grant::of(command.intent(Some(robot)).granted_at_first()),
             dry_run: self.gate.dry_run,
             trace: self.trace.clone(),
-            mode: command.connect_mode(),
+            mode: command.connect_mode(robot),
             typed: None,
             own: self.own.clone(),
             leaves_motion: self.leaves_motion(command),
+            is_stop: command.intent(Some(robot)).is_stop,
         }
     }
 
@@ -446,7 +464,8 @@ impl Run {
         link: &mut dyn Connection,
         grant: &Grant,
     ) -> Outcome {
-        let risk = command.intent(Some(robot)).risk;
+        let Intent { risk, is_stop, .. } = command.intent(Some(robot));
+        let _under_way = (risk == Risk::Motion && !is_stop && !robot.target.value.is_simulated()).then(UnderWay::begin);
         let context = self.context(command, robot, link, (&self.screen, grant));
         match interruptible(command.run(context)).await {
             Ok(outcome) => outcome,

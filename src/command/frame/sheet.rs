@@ -87,6 +87,11 @@ impl SheetManner {
 }
 
 impl SheetTarget {
+    /// The file that is there, whose rows get new values.
+    pub fn old(&self) -> Option<&[u8]> {
+        self.old.as_deref()
+    }
+
     /// Writes rows, whole or not at all, and says where. The first column tells a row; `canonical` gives it one spelling.
     pub fn write(
         &self,

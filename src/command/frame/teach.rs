@@ -8,36 +8,33 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::report::Report;
+use crate::command::robot::position::Position;
 use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::view::{Cell, Tone, View};
 
 /// A taught point: what it was and is, and the position of the robot that was stored.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Taught<P, Q> {
+pub struct Taught {
     /// `P5`, or the number of the point.
     name: String,
     /// What it held; null where it was not defined.
-    old: Option<P>,
+    old: Option<Position>,
     /// What it holds, as read back.
-    new: P,
+    new: Position,
     /// Where the robot was.
-    position: Q,
+    position: Position,
     /// Whether it was written; false where it held that already.
     written: bool,
     /// Which point it is, in the words of the family.
     #[serde(flatten)]
     with: Map<String, Json>,
-    /// Old and new in words.
-    #[serde(skip)]
-    words: [String; 2],
 }
 
-impl<P, Q> Taught<P, Q> {
-    /// Of values and how they are shown.
-    pub fn new(name: impl Into<String>, old: Option<P>, new: P, position: Q, shown: impl Fn(&P) -> String) -> Self {
-        let words = [old.as_ref().map_or_else(|| "undefined".to_owned(), &shown), shown(&new)];
-        Self { name: name.into(), old, new, position, written: true, with: Map::new(), words }
+impl Taught {
+    /// Of what the point was and is, and where the robot is.
+    pub fn new(name: impl Into<String>, old: Option<Position>, new: Position, position: Position) -> Self {
+        Self { name: name.into(), old, new, position, written: true, with: Map::new() }
     }
 
     /// With a name or a number that belongs to it.
@@ -54,14 +51,15 @@ impl<P, Q> Taught<P, Q> {
     }
 }
 
-impl<P: Serialize + JsonSchema, Q: Serialize + JsonSchema> Report for Taught<P, Q> {
+impl Report for Taught {
     fn view(&self) -> View {
-        let [old, new] = &self.words;
+        let shown = |position: &Position| position.text.clone().unwrap_or_else(|| position.line());
+        let old = self.old.as_ref().map_or_else(|| "undefined".to_owned(), shown);
         let result = if self.written { "taught" } else { "unchanged: it was there already" };
         View::fields([
             ("point", self.name.as_str().into()),
-            ("old", old.as_str().into()),
-            ("new", new.as_str().into()),
+            ("old", old.into()),
+            ("new", shown(&self.new).into()),
             ("result", Cell::from(result).tone(Tone::Good)),
         ])
     }
@@ -83,8 +81,36 @@ pub fn not_read_back(name: &str, failure: Failure, command: &str) -> Failure {
 /// A position takes a kilobyte; this is room for a whole report around it.
 const MOST: u64 = 1 << 20;
 
+/// A position that another command printed into a file, or to stdin for `-`, as it can be typed: `text` of the concept, of
+/// `position --json`, an item of `get --json`, or the position alone. Where a robot stands in several frames, by axis.
+pub fn printed_position(path: &Path) -> Result<String, Failure> {
+    let json = printed(path)?;
+    let rows = ["positions", "items", "variables", "points"].iter().find_map(|list| json.get(*list)?.as_array());
+    let found = match rows.map(Vec::as_slice) {
+        Some([only]) => text(only),
+        Some(rows) => rows.iter().find(|row| row["frame"] == "joint").and_then(text),
+        None => text(&json),
+    };
+    let shown = path.display();
+    found.ok_or_else(|| {
+        Failure::usage(format!("{shown}: the file holds no position, or several"))
+            .hint("write one with `position --json`, or with `get --json` for a single point")
+    })
+}
+
+/// The text of a position, of the value of an item, or made of coordinates by name: `x=1.5 y=2`.
+fn text(json: &Json) -> Option<String> {
+    if let Some(text) = json.get("text").and_then(Json::as_str) {
+        return Some(text.to_owned());
+    }
+    let named = json.as_object()?.iter().filter(|(_, value)| value.is_number());
+    let named = named.filter_map(|(name, value)| Some(format!("{}={value}", name.strip_suffix("_mm")?)));
+    let typed = named.collect::<Vec<_>>().join(" ");
+    if typed.is_empty() { text(json.get("value")?) } else { Some(typed) }
+}
+
 /// The JSON of a file, or of stdin for `-`: what another command printed. Of an envelope its data.
-pub fn printed(path: &Path) -> Result<Json, Failure> {
+fn printed(path: &Path) -> Result<Json, Failure> {
     let shown = if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() };
     let bytes = files::input(path, MOST).with_context(|| shown.clone())?;
     let json: Result<Json, _> = serde_json::from_slice(&bytes);
@@ -93,4 +119,19 @@ pub fn printed(path: &Path) -> Result<Json, Failure> {
     })?;
     let data = json.as_object_mut().and_then(|envelope| envelope.remove("data"));
     Ok(data.unwrap_or(json))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_position_is_read_from_what_any_command_printed() {
+        assert_eq!(text(&json!({"frame": "base", "x_mm": 1.0, "text": "x=1.00"})).as_deref(), Some("x=1.00"));
+        assert_eq!(text(&json!({"name": "P1", "value": {"text": "pulse:s=1"}})).as_deref(), Some("pulse:s=1"));
+        assert_eq!(text(&json!({"point": 1, "x_mm": 1.5, "r_mm": -2.0, "ok": true})).as_deref(), Some("x=1.5 r=-2.0"));
+        assert_eq!(text(&json!({"name": "P1", "value": null})), None);
+    }
 }

@@ -45,7 +45,7 @@ pub fn planned<F: Family>(
 ) -> Result<Value, Failure> {
     let intent = command.intent(Some(robot));
     let grant = Grant::of(intent.granted_at_first());
-    let access = Access { granted: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode()) };
+    let access = Access { granted: grant.clone(), dry_run: true, ..Access::reading(command.connect_mode(robot)) };
     let connected = command.connect(robot, access, &QUIET).now_or_never().expect("a dry run opens nothing");
     let mut connection = connected?;
     prepare(connection::link::<F>(&mut *connection)?);

@@ -4,14 +4,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::explain::told;
 use super::link::Link;
 use super::link::Toyo;
-use super::status::ErrorCode;
 use super::waiting::{becomes, status_page};
-use crate::command::face::explain::{Occurrence, Recorded};
+use crate::command::face::shared::Alike;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
+use crate::command::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, Besides, Nothing, Row, Source};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::errors;
@@ -20,9 +21,9 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Table, Tone, View};
-use crate::settings::alarms::{self, Explanation};
+use crate::failure::{self, Failure};
+use crate::output::view::View;
+use crate::settings::{Robot, alarms};
 
 commands! {
     /// Alarms.
@@ -48,28 +49,25 @@ pub struct List {}
 
 impl Command for List {
     type Family = Toyo;
-    type Report = Present;
+    type Report = Alarms<Axis>;
     const ID: &'static str = "toyo.alarm.list";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Present, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
         if link.is_dry() {
             link.plan(&status_page(0), "whether there is an error");
             link.plan(&status_page(1), "which");
             return Err(unknown());
         }
-        let mut error = present(link).await?.map(Explained::of);
-        if let Some(error) = &mut error {
-            error.explained = alarms::find(context.robot, &error.code.code)?;
-        }
-        Ok(Present { alarms: error.iter().cloned().collect(), error })
+        let present = present(link).await?.map(|code| Row::new(1, "alarm", explained(entry(code), context.robot)));
+        Ok(Alarms { alarms: present.into_iter().collect(), standing: Nothing {}, asked: 1 })
     }
 }
 
 impl Watchable for List {
     const WATCH: &'static str = "toyo.alarm.watch";
     const WATCHED: Watched =
-        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
 /// The code of the error that is present. One that has none is code 00.
@@ -78,67 +76,57 @@ async fn present(link: &mut Link) -> Result<Option<u8>, Failure> {
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
 }
 
-/// The error that is present.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Present {
-    /// One at most.
-    alarms: Vec<Explained>,
-    /// The same one, as scripts know it that say `error show`; null if there is none.
-    error: Option<Explained>,
+/// The error that is present, as one of a list.
+pub(super) async fn now(link: &mut Link) -> Result<Vec<Told>, Failure> {
+    Ok(present(link).await?.map(told).into_iter().collect())
+}
+
+/// What the controller tells of an error besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Axis {
+    /// The axis it is about.
+    axis: Option<u8>,
+    /// In the history: power went off here, and there is no error and no time.
+    power_off: bool,
+    /// In the history: the alarm as it came; normally 00.
+    alarm: Option<String>,
+}
+
+impl Besides for Axis {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        // The text names it.
+        Vec::new()
+    }
 }
 
 /// An error with what may be behind it.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct Explained {
-    #[serde(flatten)]
-    code: ErrorCode,
-    /// What may have happened.
-    cause: &'static str,
-    /// What to do.
-    remedy: &'static str,
-    /// What `alarms.toml` says of it; null where it says nothing, and where it was not asked.
-    explained: Option<Explanation>,
+fn entry(code: u8) -> AlarmEntry<Axis> {
+    let errors::Explanation { axis, .. } = errors::explain(code);
+    AlarmEntry { alarm: told(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
-impl Explained {
-    fn of(code: u8) -> Self {
-        let explanation = errors::explain(code);
-        Self { code: ErrorCode::of(code), cause: explanation.cause, remedy: explanation.remedy, explained: None }
-    }
-}
-
-impl Report for Present {
-    fn view(&self) -> View {
-        let Some(Explained { code: ErrorCode { code, meaning, .. }, cause, remedy, explained }) = self.alarms.first()
-        else {
-            return View::text("no alarm");
-        };
-        let mut fields = vec![
-            ("alarm", Cell::from(format!("{code}: {meaning}")).tone(Tone::Bad)),
-            ("cause", (*cause).into()),
-            ("remedy", (*remedy).into()),
-        ];
-        fields.extend(Explanation::field(explained.as_ref()));
-        View::default().and(Section::Fields(fields))
-    }
+/// The same with what `alarms.toml` says of it.
+fn explained(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
+    let code = entry.alarm.code.clone().unwrap_or_default();
+    Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
 
 /// The errors of the past (TO 2-8, EHTR; KCA-20 and KCA-25).
 #[derive(Debug, Args)]
 pub struct History {
     /// At most N entries
-    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(i32).range(1..=99))]
-    limit: i32,
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u8).range(1..=99))]
+    limit: u8,
 }
 
 impl Command for History {
     type Family = Toyo;
-    type Report = Past;
+    type Report = Alarms<Axis>;
     const ID: &'static str = "toyo.alarm.history";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Past, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
-        let question = |number| Request::of(table::Command::Ehtr, [Value::Number(number)]);
+        let question = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
         if link.is_dry() {
             for number in 1..=self.limit {
                 match number {
@@ -149,7 +137,7 @@ impl Command for History {
             return Err(unknown());
         }
         let progress = context.screen.spinner("error history");
-        let mut entries = Vec::new();
+        let mut alarms = Vec::new();
         for number in 1..=self.limit {
             progress.say(&format!("error history {number} of {} at most", self.limit));
             let record = match link.try_ask(&question(number)).await? {
@@ -158,101 +146,30 @@ impl Command for History {
                 Err(_) if number > 1 => break,
                 Err(_) => link.ask(&question(number)).await?,
             };
-            match Entry::of(number, &record) {
-                Some(entry) => entries.push(entry),
-                None => break,
-            }
+            let Some(entry) = past(&record) else { break };
+            alarms.push(Row::new(number.into(), format!("alarm {number}"), explained(entry, context.robot)));
         }
-        Ok(Past { entries })
+        Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }
 }
 
-/// The errors of the past, the latest first.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Past {
-    entries: Vec<Entry>,
-}
-
-/// An entry of the history.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Entry {
-    /// 1 is the latest.
-    number: i32,
-    /// Power went off here: there is no error and no time.
-    power_off: bool,
-    /// Null where power went off.
-    error: Option<ErrorCode>,
-    /// As it came; normally 00.
-    alarm: Option<String>,
-    /// The controller's own time of the error.
-    hours: Option<i32>,
-    minutes: Option<i32>,
-    seconds: Option<i32>,
-}
-
-impl Entry {
-    /// An entry as it came; `None` if it is empty.
-    fn of(number: i32, record: &Record) -> Option<Self> {
-        if record.byte("error") == Some(errors::NONE) {
-            return None;
-        }
-        let error = record.byte("error").map(ErrorCode::of);
-        Some(Self {
-            number,
-            power_off: error.is_none(),
-            error,
-            alarm: record.byte("alarm").map(|alarm| format!("{alarm:02X}")),
-            hours: record.number("hours"),
-            minutes: record.number("minutes"),
-            seconds: record.number("seconds"),
-        })
+/// An entry of the history as it came; `None` if it is empty.
+fn past(record: &Record) -> Option<AlarmEntry<Axis>> {
+    if record.byte("error") == Some(errors::NONE) {
+        return None;
     }
-
-    fn time(&self) -> Option<String> {
-        Some(format!("{}:{:02}:{:02}", self.hours?, self.minutes?, self.seconds?))
-    }
-}
-
-impl Report for Past {
-    fn view(&self) -> View {
-        let mut table = Table::new(&["#", "code", "error", "time (h:m:s)"], "no error in the history");
-        for entry in &self.entries {
-            let (code, meaning) = match &entry.error {
-                Some(error) => (Cell::from(error.code.as_str()).tone(Tone::Bad), error.meaning.as_str().into()),
-                None => ("-".into(), "power was switched off".into()),
-            };
-            table.row([entry.number.into(), code, meaning, Cell::maybe(entry.time()).whole()]);
-        }
-        View::table(table)
-    }
-}
-
-impl Recorded for Present {
-    fn recorded(&self) -> Vec<Occurrence> {
-        let of = |error: &Explained| Occurrence {
-            place: "present".to_owned(),
-            code: error.code.code.clone(),
-            data: error.code.axis.map(|axis| format!("axis {axis}")),
-            ..Occurrence::default()
-        };
-        self.alarms.iter().map(of).collect()
-    }
-}
-
-impl Recorded for Past {
-    fn recorded(&self) -> Vec<Occurrence> {
-        let of = |entry: &Entry| {
-            let error = entry.error.as_ref()?;
-            Some(Occurrence {
-                place: format!("history {}", entry.number),
-                code: error.code.clone(),
-                text: None,
-                data: error.axis.map(|axis| format!("axis {axis}")),
-                time: entry.time(),
-            })
-        };
-        self.entries.iter().filter_map(of).collect()
-    }
+    let time = || {
+        let [hours, minutes, seconds] = ["hours", "minutes", "seconds"].map(|part| record.number(part));
+        Some(format!("{}:{:02}:{:02}", hours?, minutes?, seconds?))
+    };
+    let alarm = record.byte("alarm").map(|alarm| format!("{alarm:02X}"));
+    Some(match record.byte("error").map(entry) {
+        Some(error) => AlarmEntry { alarm: Told { time: time(), ..error.alarm }, own: Axis { alarm, ..error.own } },
+        None => AlarmEntry {
+            alarm: Told { text: Some("power was switched off".to_owned()), source: Source::Armctl, ..Told::default() },
+            own: Axis { axis: None, power_off: true, alarm },
+        },
+    })
 }
 
 /// Cancels the error, and looks whether it is gone (TO 2-7).
@@ -271,13 +188,12 @@ impl Command for Reset {
         let old = Old::read(link.status_before(1).await?.as_ref().and_then(code));
         link.ask(&Request::bare(table::Command::Cerr)).await?;
         let is_gone = becomes(link, (0, "whether it is gone"), |status| !status.has_error()).await?;
-        let left = if is_gone { None } else { present(link).await?.map(Explained::of) };
-        let words = match &left {
-            None => "no error any more".to_owned(),
-            Some(Explained { code, .. }) => format!("still there: {}: {}", code.code, code.meaning),
-        };
-        let new = New::of("fault_code", left.as_ref().map(|error| error.code.code.clone()), words);
-        Ok(Cancelled { done: new.replaces(old), left })
+        let left = if is_gone { None } else { present(link).await?.map(told) };
+        let words = left
+            .as_ref()
+            .map_or_else(|| "no error any more".to_owned(), |left| format!("still there: {}", left.line()));
+        let new = New::of("fault_code", left.as_ref().and_then(|left| left.code.clone()), words);
+        Ok(Cancelled { done: new.replaces(old), alarms: left.into_iter().collect() })
     }
 }
 
@@ -286,9 +202,16 @@ impl Command for Reset {
 pub struct Cancelled {
     #[serde(flatten)]
     done: Done,
-    /// An error that is still present; null if there is none.
-    #[serde(rename = "error")]
-    left: Option<Explained>,
+    /// The error that is still present; none where all is well.
+    alarms: Vec<Told>,
+}
+
+impl Alike for Cancelled {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
 }
 
 impl Report for Cancelled {
@@ -297,9 +220,10 @@ impl Report for Cancelled {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let Explained { code, remedy, .. } = self.left.as_ref()?;
-        let message = format!("the controller accepted it, but error {}: {} is present", code.code, code.meaning);
-        Some(Failure::new(Kind::ConditionNotMet, message).hint(*remedy).code(code.code.clone()))
+        let left = self.alarms.first()?;
+        let message = format!("the controller accepted it, but error {} is present", left.line());
+        let failure = Failure::new(failure::Kind::ConditionNotMet, message);
+        Some(failure.hint(left.remedy.clone().unwrap_or_default()).code(left.code.clone().unwrap_or_default()))
     }
 }
 
@@ -351,12 +275,11 @@ mod tests {
     fn an_error_is_shown_and_cancelled() {
         let (mut bench, _) = Bench::with_faults("error = \"28\"\n", |_, _| Fault::None);
         let data = bench.data(&["error", "show"]);
-        let error = &data["error"];
-        assert_eq!(data["alarms"], serde_json::json!([error]));
+        let error = &data["alarms"][0];
         assert_eq!((&error["code"], &error["axis"]), (&"28".into(), &1.into()));
         assert!(error["remedy"].as_str().unwrap().contains("toyo param get"));
-        assert_eq!(bench.data(&["alarm", "reset"])["error"], serde_json::Value::Null);
-        assert_eq!(bench.data(&["alarm", "list"]), serde_json::json!({ "alarms": [], "error": null }));
+        assert_eq!(bench.data(&["alarm", "reset"])["alarms"], serde_json::json!([]));
+        assert_eq!(bench.data(&["alarm", "list"]), serde_json::json!({ "alarms": [] }));
         assert_eq!(bench.data(&["alarm", "point"])["point"], serde_json::Value::Null);
     }
 
@@ -364,9 +287,9 @@ mod tests {
     fn an_error_that_stays_is_a_failure() {
         let stays = |block: &str, _| if block == "@CERR" { Fault::Answered("@OK") } else { Fault::None };
         let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["alarm", "reset"]).unwrap();
-        assert_eq!(data["error"]["code"], "24");
+        assert_eq!(data["alarms"][0]["code"], "24");
         let failure = failure.unwrap();
-        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
+        assert_eq!((failure.kind, failure.code.as_deref()), (failure::Kind::ConditionNotMet, Some("24")));
     }
 
     #[test]
@@ -374,22 +297,22 @@ mod tests {
         let state = "history = [{ code = \"13\", after_seconds = 3723 }, { power_cut = true }, { code = \"A1\" }]\n";
         let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
         let data = bench.data(&["alarm", "history"]);
-        let entries = data["entries"].as_array().unwrap();
+        let entries = data["alarms"].as_array().unwrap();
         assert_eq!(entries.len(), 3, "{data}");
         assert_eq!(
-            (&entries[0]["error"]["code"], &entries[0]["hours"], &entries[0]["minutes"]),
-            (&"13".into(), &1.into(), &2.into())
+            (&entries[0]["code"], &entries[0]["time"], &entries[0]["index"]),
+            (&"13".into(), &"1:02:03".into(), &1.into())
         );
-        assert_eq!((&entries[1]["power_off"], &entries[1]["error"]), (&true.into(), &serde_json::Value::Null));
+        assert_eq!((&entries[1]["power_off"], &entries[1]["code"]), (&true.into(), &serde_json::Value::Null));
         assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@EHTR")).count(), 4);
-        assert_eq!(bench.data(&["alarm", "history", "--limit", "1"])["entries"].as_array().unwrap().len(), 1);
+        assert_eq!(bench.data(&["alarm", "history", "--limit", "1"])["alarms"].as_array().unwrap().len(), 1);
     }
 
     #[test]
     fn a_controller_without_history_says_so() {
         let failure =
             Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["alarm", "history"]).unwrap_err();
-        assert_eq!(failure.kind, Kind::Refused);
+        assert_eq!(failure.kind, failure::Kind::Refused);
         assert!(failure.hint.unwrap().contains("KCA-25"));
     }
 }

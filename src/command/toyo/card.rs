@@ -83,7 +83,7 @@ async fn transfer(context: Context<'_, Toyo>, work: Accepted, no_wait: bool) -> 
     if no_wait {
         return Ok(Transferred { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }
-    let Some(end) = work.wait(link, context.screen).await.known()? else {
+    let Some(end) = work.wait(link, context.screen, crate::client::toyo::Letters::UNKNOWN).await.known()? else {
         link.status_of(&[0]).await?;
         return Err(unknown());
     };

@@ -4,14 +4,17 @@ use clap::Args;
 
 use super::link::Toyo;
 use super::link::wrong;
-use super::values::json;
+use super::position::Coordinates;
+use super::values::{Changes, assignment, json};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
+use crate::controller::toyo::bulk::points;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
+use crate::gate::{Change, Confirmation};
 
 commands! {
     /// Coordinates that the host supplies.
@@ -25,18 +28,10 @@ commands! {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Set {
-    /// X coordinate in mm, -8000.00 to 8000.00
-    #[arg(value_parser = |text: &str| read("x", text))]
-    x: Value,
-    /// Y coordinate in mm
-    #[arg(value_parser = |text: &str| read("y", text))]
-    y: Value,
-    /// Z coordinate in mm; 0 without such an axis
-    #[arg(value_parser = |text: &str| read("z", text))]
-    z: Value,
-    /// R coordinate; 0 without such an axis
-    #[arg(value_parser = |text: &str| read("r", text))]
-    r: Value,
+    /// X, Y, Z and R in mm, -8000.00 to 8000.00; or each by its name, such as z=12.5: the letter of the teach pendant, or
+    /// ax1 to ax4. 0 for an axis that is not there
+    #[arg(required = true, num_args = 4, value_names = ["X", "Y", "Z", "R"], value_parser = coordinate)]
+    values: Vec<String>,
     /// Which task
     #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
     task: Value,
@@ -50,21 +45,28 @@ fn read(name: &str, text: &str) -> Result<Value, String> {
     field(name).read(text).map_err(|error| error.to_string())
 }
 
+/// A coordinate with or without its name, in its range.
+fn coordinate(text: &str) -> Result<String, String> {
+    read("x", assignment(text).map_or(text, |(_, value)| value)).map(|_| text.to_owned())
+}
+
 fn field(name: &str) -> &'static Field {
     let fields = table::Command::Mrss.row().requests[0].fields;
     fields.iter().find(|field| field.name == name).expect("MRSS has these fields")
 }
 
 impl Set {
-    /// Where to, in words.
-    fn aim(&self) -> String {
-        let axes = [("x", &self.x), ("y", &self.y), ("z", &self.z), ("r", &self.r)];
-        let axes = axes.map(|(name, value)| format!("{} {}", name.to_uppercase(), field(name).meaning(value)));
-        let row = match self.speed {
+    /// At which speed, in words.
+    fn pace(&self) -> String {
+        match self.speed {
             Value::Number(0) => "the speed of its step".to_owned(),
             _ => format!("the speed of row {}", field("speed").meaning(&self.speed)),
-        };
-        format!("{} at {row}", axes.join(", "))
+        }
+    }
+
+    /// Completes "This will …".
+    fn in_words(&self, place: &str) -> String {
+        format!("have the next RSMV of task {} move to {place} at {}", field("task").meaning(&self.task), self.pace())
     }
 }
 
@@ -73,24 +75,33 @@ impl Command for Set {
     type Report = Done;
     const ID: &'static str = "toyo.coordinate.set";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
-        format!("have the next RSMV of task {} move to {}", field("task").meaning(&self.task), self.aim())
+        let axes = self.values.iter().zip(["X", "Y", "Z", "R"]).map(|(text, usual)| {
+            let (name, value) = assignment(text).unwrap_or((usual, text));
+            format!("{} {value} mm", name.to_uppercase())
+        });
+        self.in_words(&axes.collect::<Vec<_>>().join(", "))
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        let Self { x, y, z, r, task, speed } = self;
-        let values = [task, x, y, z, r, speed].map(Clone::clone).into();
+        let Self { values, task, speed } = self;
+        let Context { link, authority, .. } = context;
+        let letters = link.letters().await?;
+        let changes = Changes::read_by("coordinates", &points::table().body(), &letters, values)?;
+        let place = changes.whole().ok_or_else(|| {
+            Failure::usage("coordinates: each axis needs its value").hint("`toyo coordinate set -h` has examples")
+        })?;
+        let values = std::iter::once(task.clone()).chain(place).chain([speed.clone()]).collect();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
-        context.link.ask(&request).await?;
-        let number = |name: &str, value: &Value| json(field(name), value);
-        let mut new = serde_json::Map::new();
-        for (name, value) in [("x", x), ("y", y), ("z", z), ("r", r)] {
-            new.insert(format!("{name}_mm"), number(name, value));
-        }
-        let words = format!("task {} has {}", field("task").meaning(task), self.aim());
-        let new = New::of("coordinates", new, words).with("task", number("task", task));
-        let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", number("speed", speed)) };
+        let place = Coordinates::of(request.record(), letters);
+        let aim = format!("{} (mm)", place.in_a_line());
+        authority.confirm(&Change::new(self.in_words(&aim))).await?;
+        link.ask(&request).await?;
+        let words = format!("task {} has {aim} at {}", field("task").meaning(task), self.pace());
+        let new = New::of("coordinates", serde_json::json!(place), words).with("task", json(field("task"), task));
+        let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };
         Ok(new.replaces(Old::UNREAD))
     }
 }
@@ -105,7 +116,7 @@ mod tests {
         assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
         assert_eq!(
             intent(&line),
-            "have the next RSMV of task 2 move to X 100.00 mm, Y -20.50 mm, Z 0.00 mm, R 0.00 mm at the speed of row 5"
+            "have the next RSMV of task 2 move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm at the speed of row 5"
         );
         assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
         assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
@@ -120,6 +131,6 @@ mod tests {
         bench.data(&["run", "sequential", "1", "--no-wait"]);
         bench.data(&["coordinate", "set", "50", "20", "0", "0"]);
         bench.wait(std::time::Duration::from_secs(5));
-        assert_eq!(bench.data(&["position"])["x_mm"], 50.0);
+        assert_eq!(bench.data(&["position"])["positions"][0]["x_mm"], 50.0);
     }
 }

@@ -7,7 +7,8 @@ use super::eeprom::{Cells, is_blank};
 use super::link::Link;
 use super::numbers::ask_all;
 use super::refusal;
-use super::values::{Shown, in_a_line, shown};
+use super::values::{Shown, in_a_line, shown_by};
+use crate::client::toyo::Letters;
 use crate::command::Report;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
@@ -45,6 +46,7 @@ impl Copy {
                 Failure::usage(format!("{what} {from} cannot be copied to itself")).hint("name two different ones")
             );
         }
+        let letters = link.letters().await?;
         if link.is_dry() {
             for (reads, about) in [(&source, "what is copied"), (&target, "what it replaces")] {
                 for read in reads {
@@ -64,7 +66,7 @@ impl Copy {
         if differing == 0 {
             return Ok(Copied { what, from, to, cells: Cells { cells_written: 0, cells_unchanged: all } });
         }
-        authority.confirm(&replacing(what, (from, to), &target, (&wanted, &found))).await?;
+        authority.confirm(&replacing(what, (from, to), letters, &target, (&wanted, &found))).await?;
         link.ask(&order).await?;
         let found = ask_all(link, screen, "reading it back", &target).await.map_err(|failure| {
             let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
@@ -85,7 +87,13 @@ impl Copy {
 const DIFFER: &str = "whether they differ";
 
 /// What a copy replaces, for a person to confirm.
-fn replacing(what: &str, (from, to): (i32, i32), reads: &[Request], (wanted, found): (&[Record], &[Record])) -> Change {
+fn replacing(
+    what: &str,
+    (from, to): (i32, i32),
+    letters: Letters,
+    reads: &[Request],
+    (wanted, found): (&[Record], &[Record]),
+) -> Change {
     let lost = reads
         .iter()
         .zip(wanted.iter().zip(found))
@@ -95,7 +103,7 @@ fn replacing(what: &str, (from, to): (i32, i32), reads: &[Request], (wanted, fou
             let record = read.record().number("record").unwrap_or_default();
             let text = |record: &Record| {
                 let shown: Vec<Shown> =
-                    shown(record).into_iter().filter(|shown| !KEYS.contains(&&shown.name[..])).collect();
+                    shown_by(record, &letters).into_iter().filter(|shown| !KEYS.contains(&&shown.name[..])).collect();
                 in_a_line(&shown)
             };
             (usize::try_from(record).unwrap_or_default(), [text(found), text(wanted)])

@@ -4,13 +4,13 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::face::explain as face;
-use crate::command::{Report, ValueKind};
+use crate::command::ValueKind;
+use crate::command::face::explain::{self as face, Codes, Known};
+use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
 use crate::controller::toyo::errors;
 use crate::controller::typed;
 use crate::failure::Failure;
-use crate::output::view::{Section, View};
-use crate::settings::alarms::{Alarms, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target::Family;
 
 /// Error code of a Toyo controller
@@ -27,13 +27,18 @@ fn code(text: &str) -> Result<u8, String> {
 }
 
 impl face::Explain for Explain {
-    type Report = ToyoCode;
+    type Report = Codes<Axis>;
     const ID: &'static str = "explain.toyo";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<ToyoCode, Failure> {
-        let code = ToyoCode::from(self.code);
-        let explained = alarms.find(origin, &code.code)?;
-        Ok(ToyoCode { explained, ..code })
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Axis>, Failure> {
+        let found = errors::explain(self.code);
+        let none = Alarm { text: Some("no error".to_owned()), ..told(errors::NONE) };
+        let (known, alarm, [cause, remedy]) = match self.code {
+            errors::NONE => (true, none, ["nothing is wrong", "nothing is to be done"]),
+            code => (found.known, told(code), [found.cause, found.remedy]),
+        };
+        let site = alarms.find(origin, alarm.code.as_deref().unwrap_or_default())?;
+        Ok(Codes { codes: vec![Known::new(known, alarm, [&[cause], &[remedy]], site, Axis { axis: found.axis })] })
     }
 
     fn alarm(&self) -> Option<String> {
@@ -41,55 +46,31 @@ impl face::Explain for Explain {
     }
 }
 
-/// An error code of a Toyo controller in words.
+/// The axis that a code is about.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct ToyoCode {
-    /// `28`.
-    code: String,
-    /// Whether it is in the manual's table.
-    known: bool,
-    /// What it is called.
-    name: String,
-    /// The axis it is about, if it is about one.
+pub struct Axis {
+    /// Null where it is about none.
     axis: Option<u8>,
-    /// What may have happened.
-    cause: &'static str,
-    /// What to do.
-    remedy: &'static str,
-    /// What `alarms.toml` says of it; null where it says nothing.
-    explained: Option<Explanation>,
 }
 
-impl From<u8> for ToyoCode {
-    fn from(code: u8) -> Self {
-        if code == errors::NONE {
-            let (name, cause, remedy) = ("no error".to_owned(), "nothing is wrong", "nothing is to be done");
-            return Self { code: "00".to_owned(), known: true, name, axis: None, cause, remedy, explained: None };
-        }
-        let found = errors::explain(code);
-        let (cause, remedy) = (found.cause, found.remedy);
-        Self {
-            code: format!("{code:02X}"),
-            known: found.known,
-            name: found.name.into(),
-            axis: found.axis,
-            cause,
-            remedy,
-            explained: None,
-        }
+impl Besides for Axis {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        // The text names it.
+        Vec::new()
     }
 }
 
-impl Report for ToyoCode {
-    fn view(&self) -> View {
-        let mut fields = vec![
-            ("code", self.code.as_str().into()),
-            ("meaning", self.name.as_str().into()),
-            ("cause", self.cause.into()),
-            ("what to do", self.remedy.into()),
-        ];
-        fields.extend(Explanation::field(self.explained.as_ref()));
-        View::default().and(Section::Fields(fields))
+/// An error in this program's words.
+pub fn told(code: u8) -> Alarm {
+    let errors::Explanation { name, cause, remedy, .. } = errors::explain(code);
+    Alarm {
+        code: Some(format!("{code:02X}")),
+        text: Some(name.into_owned()),
+        kind: Some(Kind::Error),
+        cause: Some(cause.to_owned()),
+        remedy: Some(remedy.to_owned()),
+        source: Source::Armctl,
+        ..Alarm::default()
     }
 }
 

@@ -6,6 +6,7 @@ use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Toyo};
+use super::orders::Stop;
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, panel};
@@ -17,6 +18,7 @@ use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
 use crate::command::face::sample::Traffic;
+use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context};
 use crate::controller::Risk;
 use crate::controller::toyo::{errors, passing, simulator};
@@ -33,6 +35,9 @@ impl Declaration for Toyo {
     type Explain = Explain;
     type Alarms = alarm::List;
     type AlarmHistory = alarm::History;
+    type AlarmReset = alarm::Reset;
+    type Position = super::position::Position;
+    type Stop = Stop;
     type Serve = Serve;
     type Poller = Poller;
 
@@ -55,6 +60,14 @@ impl Declaration for Toyo {
 
     fn codes() -> Vec<(String, String)> {
         errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string())).collect()
+    }
+
+    fn stop_command() -> Self::Stop {
+        Stop::everything()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        alarm::now(link).await
     }
 
     fn traffic(link: &Link) -> Traffic {

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use super::ports;
 use super::refusal;
 use crate::client::toyo::{ConnectError, Error, OpenError, Refusal, Unanswered};
 use crate::command::frame::attach::session_busy;
@@ -126,9 +127,7 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
             format!("there is no port {path}"),
             "plug the adapter in; `armctl toyo ports` lists the ports there are",
         ),
-        OpenError::Busy => {
-            (Kind::NoAnswer, format!("another program uses {path}"), "close it: a line can have one host at a time")
-        }
+        OpenError::Busy => return ports::in_use(label, path),
         OpenError::Forbidden => (
             Kind::Local,
             format!("this user may not open {path}"),

@@ -256,6 +256,10 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
         ("speed-table set 1 77", "overwrite a row of the speed-table (row 1: speed=10.0 mm/s -> speed=77.0 mm/s)"),
         ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
         ("palletizing set 1 end 7", "overwrite a record of palletizing program 1 (end: 5 -> 7)"),
+        (
+            "program insert 1 HOME",
+            "insert a step before step 1 of task 1 (step 1 (TAG TAG=005) and the steps behind it move on by one)",
+        ),
         ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
         ("program delete 1 --to 3", "delete 3 steps of task 1 (step 1: TAG TAG=005, and 2 more)"),
         ("program delete 8", "delete a step of task 1 (step 8: NOP)"),
@@ -266,13 +270,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
     // What is as it shall be, and what nobody wrote, is no question.
-    for line in [
-        "param set P01 ax2=1000",
-        "point set 2 1 2 3 4",
-        "point set 1 9 9 9 9",
-        "easy set 5 1 2 3",
-        "program insert 5 HOME",
-    ] {
+    for line in ["param set P01 ax2=1000", "point set 2 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
         if let Err(failure) = bench.unasked(&words) {
             panic!("{line}: {failure}");

@@ -5,8 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::{Link, Toyo};
-use super::position::Coordinates;
+use super::position::{Coordinates, UNIT, titled};
 use super::waiting::{Accepted, Work};
+use crate::client::toyo::Letters;
+use crate::command::robot::motion::Motion;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::field::Value;
@@ -62,47 +64,48 @@ impl Command for Home {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport, Failure> {
         let Context { link, screen, authority, .. } = context;
         let (order, accepted) = self.order();
+        let letters = link.letters().await?;
         let change = Change::new(self.intent());
-        let change = if authority.asks() { from_where(link, change).await? } else { change };
+        let change = if authority.asks() { from_where(link, change, letters).await? } else { change };
         authority.confirm(&change).await?;
         link.ask(&order).await?;
         if self.no_wait {
-            return Ok(HomeReport { accepted: true, position: None, elapsed_ms: None });
+            return Ok(HomeReport { motion: Motion { accepted: true, ..Motion::default() } });
         }
-        let end = accepted.wait(link, screen).await?;
-        Ok(HomeReport { accepted: true, position: end.place, elapsed_ms: end.elapsed_ms })
+        let end = accepted.wait(link, screen, letters).await?;
+        let position = end.place.map(|place| place.position().of_group(UNIT));
+        let motion = Motion { accepted: true, group: Some(UNIT.to_owned()), ..Motion::default() };
+        Ok(HomeReport { motion: Motion { position, reached: Some(true), elapsed_ms: end.elapsed_ms, ..motion } })
     }
 }
 
 /// With each axis and where it is now, as far as the controller tells; a busy one may refuse to.
-async fn from_where(link: &mut Link, change: Change) -> Result<Change, Failure> {
+async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
     let place = match link.place().await {
-        Ok(record) => Coordinates::of(&record),
+        Ok(record) => Coordinates::of(&record, letters),
         Err(failure) if failure.kind == Kind::Refused => return Ok(change.note("Where the axes are was not told.")),
         Err(failure) => return Err(failure),
     };
-    let axes = ["X", "Y", "Z", "R"].into_iter().zip(place.mm());
-    Ok(axes.fold(change, |change, (axis, mm)| change.replaces(axis, &format!("{mm:.2} mm"), "origin")))
+    let axes = place.mm().into_iter().enumerate();
+    Ok(axes.fold(change, |change, (axis, mm)| {
+        change.replaces(&titled(axis, letters.of(axis)), &format!("{mm:.2} mm"), "origin")
+    }))
 }
 
 /// Result of a return to the origin.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct HomeReport {
-    /// The controller took the order.
-    accepted: bool,
-    /// Where the axes stand; null if nobody waited.
-    position: Option<Coordinates>,
-    /// From the acceptance to the end; null if nobody waited, or if it was over before the first look.
-    elapsed_ms: Option<u64>,
+    #[serde(flatten)]
+    motion: Motion,
 }
 
 impl Report for HomeReport {
     fn view(&self) -> View {
-        let Some(place) = self.position else { return View::fields([("origin", "on the way".into())]) };
+        let Some(place) = &self.motion.position else { return View::fields([("origin", "on the way".into())]) };
         View::fields([
             ("origin", Cell::from("done").tone(Tone::Good)),
-            ("at (mm)", place.in_a_line().into()),
-            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+            ("at", place.line().into()),
+            ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
         ])
     }
 }
@@ -116,7 +119,18 @@ mod tests {
     fn a_dry_run_shows_the_order_and_what_is_asked_meanwhile() {
         assert_eq!(
             all_blocks(&["home"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@HOME", "@STAS SNO=0", "@MPST", "@STAS SNO=1", "@HSOF"]
+            [
+                "@SYSP",
+                "@RPAR E01",
+                "@STAS SNO=2",
+                "@HSON",
+                "@STAS SNO=0",
+                "@HOME",
+                "@STAS SNO=0",
+                "@MPST",
+                "@STAS SNO=1",
+                "@HSOF"
+            ]
         );
         assert_eq!(blocks(&["home", "--no-wait"]).unwrap(), ["@HOME"]);
         assert_eq!(blocks(&["home", "--sync", "2", "--no-wait"]).unwrap(), ["@SORG 2"]);
@@ -131,7 +145,7 @@ mod tests {
         assert!(data["elapsed_ms"].as_u64().unwrap() > 1000, "{data}");
         assert_eq!(data["position"]["x_mm"], 0.0);
         let status = bench.data(&["status"]);
-        assert_eq!((&status["homed"], &status["executing"]), (&true.into(), &false.into()));
+        assert_eq!((&status["homed"], &status["running"]), (&true.into(), &false.into()));
         assert_eq!(heard.borrow().iter().filter(|block| *block == "@HOME").count(), 1);
     }
 

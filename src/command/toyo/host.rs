@@ -11,7 +11,7 @@ use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::Status;
 use crate::controller::toyo::table;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 
 /// Switches the host ON or OFF, and leaves it so.
 ///
@@ -35,7 +35,13 @@ impl Command for Host {
             Switch::Off => (table::Command::Hsof, false, "the start input commands again; the host does not"),
         };
         let old = Old::read(context.link.status_before(2).await?.map(Status::host_on));
-        context.link.ask(&Request::bare(command)).await?;
+        let ordered = context.link.ask(&Request::bare(command)).await;
+        // Of an answer that is lost, the status tells what came of the order.
+        ordered.map(|_| ()).or_else(
+            |failure| {
+                if failure.kind == Kind::OutcomeUnknown { Ok(()) } else { Err(failure) }
+            },
+        )?;
         context.link.choose_host(is_on);
         if becomes(context.link, (2, "whether it is"), |status| status.host_on() == is_on).await? {
             return Ok(New::of("host_on", is_on, done).replaces(old));
@@ -46,14 +52,40 @@ impl Command for Host {
 
 #[cfg(test)]
 mod tests {
-    use crate::command::toyo::testing::{Bench, all_blocks, blocks, intent, objection};
+    use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
 
     #[test]
     fn the_order_goes_out_alone() {
         assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
-        assert_eq!(blocks(&["position"]).unwrap(), ["@SYSP", "@RPAR E01", "@MPST"]);
+        assert_eq!(blocks(&["position"]).unwrap(), ["@MPST"]);
         assert!(objection(&["host", "maybe"]).contains("maybe"));
         assert_eq!(intent(&["host", "off"]), "");
+    }
+
+    #[test]
+    fn an_answer_that_is_lost_is_cleared_up_by_the_status() {
+        let lost = |fault| move |block: &str, _| if block == "@HSON" { fault } else { Fault::None };
+        // It was carried out, and is known to be.
+        assert_eq!(Bench::with_faults("", lost(Fault::Unanswered)).0.data(&["host", "on"])["new"], true);
+        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Unanswered));
+        bench.data(&["counter", "set", "1", "5"]);
+        bench.close().unwrap();
+        assert_eq!(heard.borrow().iter().filter(|block| *block == "@HSON").count(), 1);
+        assert_eq!(heard.borrow().last().unwrap(), "@HSOF", "it was taken, and is given back");
+        // It was not, and nothing else was sent.
+        let (mut bench, heard) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
+        let failure = bench.run(&["home"]).unwrap_err();
+        assert!(failure.message.starts_with("the order was not sent: "), "{failure}");
+        assert!(!heard.borrow().iter().any(|block| block == "@HOME"));
+    }
+
+    #[test]
+    fn what_needs_no_host_is_sent_while_the_pendant_is_on() {
+        let (mut bench, heard) = Bench::with_faults("pendant = true\n", |_, _| Fault::None);
+        bench.data(&["counter", "set", "1", "5"]);
+        assert!(heard.borrow().iter().any(|block| block.starts_with("@MCST")));
+        assert!(bench.run(&["home"]).unwrap_err().message.contains("the teach pendant is ON"));
+        assert!(!heard.borrow().iter().any(|block| block == "@HOME" || block == "@HSON"));
     }
 
     #[test]

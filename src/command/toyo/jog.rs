@@ -12,12 +12,14 @@ use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::link::Toyo;
 use super::link::{Link, Moving, jog};
-use super::position::{Coordinates, titled};
+use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
+use super::values::machine;
 use super::waiting::{LOOK_EVERY, position, present_error, status_page};
 use crate::client::toyo::Letters;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::interrupt::abandoned;
+use crate::command::robot::motion::Motion;
+use crate::command::robot::position::Position;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -30,8 +32,9 @@ use crate::settings::duration;
 /// Moves one axis, and stops it (TO 2-7, 3-2).
 ///
 /// The controller has no dead man's switch. This command stops the axis after its time, after an error, after an answer
-/// that is lost, when it is told to end, and at Ctrl-Z. It cannot when it is killed (SIGKILL), when the computer dies or
-/// sleeps, or when the cable is pulled: keep the emergency stop at hand. After such an end: `toyo stop --jog`.
+/// that is lost, and at Ctrl-C, Ctrl-\ and Ctrl-Z; its guardian does when it is killed or frozen. Nothing does when the
+/// computer dies or sleeps, or when the cable is pulled: keep the emergency stop at hand. After such an end: `toyo stop
+/// --jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
     /// The axis, by its letter on the teach pendant, or by its number
@@ -71,15 +74,12 @@ fn axis(text: &str) -> Result<Axis, String> {
 
 impl Axis {
     /// Its place, 0 to 3, on a machine with these letters.
-    fn place(&self, letters: &Letters) -> Result<usize, Failure> {
+    fn place(&self, letters: Letters) -> Result<usize, Failure> {
         match self {
             Self::Place(place) => Ok(*place),
             Self::Letter(letter) => letters.axis(letter).ok_or_else(|| {
-                Failure::usage(format!(
-                    "which axis {letter} is, is open: the letters of axes 1 to 4 are {}",
-                    letters.all().join(", ")
-                ))
-                .hint("name the axis by its number, 1 to 4; `toyo param get axis-letters` shows the letters")
+                Failure::usage(format!("which axis {letter} is, is not known: {}", machine(&letters)))
+                    .hint("name the axis by its number, 1 to 4; `toyo param get axis-letters` shows the letters")
             }),
         }
     }
@@ -99,12 +99,20 @@ impl fmt::Display for Axis {
 struct Known {
     /// 0 to 3.
     index: usize,
-    letter: String,
+    letters: Letters,
 }
 
 impl Known {
+    /// `2 (Z)`; without a letter where the controller tells none.
+    fn in_words(&self) -> String {
+        match self.letters.of(self.index) {
+            "" => (self.index + 1).to_string(),
+            letter => format!("{} ({letter})", self.index + 1),
+        }
+    }
+
     fn of(&self, place: &Coordinates) -> f64 {
-        [place.x_mm, place.y_mm, place.z_mm, place.r_mm][self.index]
+        place.mm()[self.index]
     }
 }
 
@@ -144,6 +152,8 @@ fn hold(text: &str) -> Result<Duration, String> {
 
 /// How long a step may take to begin.
 const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+/// An axis that moves, however slowly, is elsewhere after this.
+const AT_REST: Duration = Duration::from_millis(500);
 /// From one look at a step to the next.
 const STEP_LOOK_EVERY: Duration = Duration::from_millis(20);
 /// Looks that a busy controller may refuse in a row while an axis moves.
@@ -226,7 +236,7 @@ impl Jog {
         link.use_short_timeouts();
         let until = Instant::now() + time;
         let mut is_accepted = false;
-        match timeout_at(until, self.hold(link, live, axis, until, &mut is_accepted)).await {
+        match timeout_at(until, self.hold(link, live, axis, (start, until), &mut is_accepted)).await {
             Ok(Err(cut)) => Err(cut),
             Err(_) if is_accepted => Ok(0),
             Err(_) => Err(Cut::Failed(Failure::new(Kind::OutcomeUnknown, "the order was not answered in its time"))),
@@ -239,7 +249,7 @@ impl Jog {
         link: &mut Link,
         live: &Live,
         axis: &Known,
-        until: Instant,
+        (start, until): (Coordinates, Instant),
         is_accepted: &mut bool,
     ) -> Result<Infallible, Cut> {
         let began = Instant::now();
@@ -247,13 +257,18 @@ impl Jog {
         *is_accepted = true;
         // A look is two questions.
         let mut longest = 2 * began.elapsed();
+        let mut watch = Watch { start, last: start, was_busy: false, since: Instant::now() };
         loop {
             let began = Instant::now();
             if began + longest > until {
                 // The stop shall find the line at peace.
                 return std::future::pending().await;
             }
-            let (_, place) = look(link).await?;
+            let (is_busy, place) = look(link, axis).await?;
+            if watch.has_come_to_rest(is_busy, place) {
+                let message = "the axis came to rest before its time: somebody else stopped it";
+                return Err(Cut::Failed(Failure::new(Kind::ConditionNotMet, message)));
+            }
             live.say(format!("jogging {}", place.in_a_line()));
             longest = longest.max(began.elapsed());
             sleep_until(began + LOOK_EVERY.max(longest)).await;
@@ -281,7 +296,7 @@ impl Jog {
         link.try_ask(&self.order(axis)).await?.map_err(|_| Cut::Refused)?;
         let (mut last, began) = (start, Instant::now());
         loop {
-            let (is_busy, here) = look(link).await?;
+            let (is_busy, here) = look(link, axis).await?;
             let stands = !is_busy && here == last;
             last = here;
             if stands && here != start {
@@ -299,23 +314,46 @@ impl Jog {
     }
 }
 
+/// Whether an axis that moves for a time has come to rest.
+struct Watch {
+    start: Coordinates,
+    last: Coordinates,
+    was_busy: bool,
+    /// When it was seen to move last.
+    since: Instant,
+}
+
+impl Watch {
+    /// It does if nothing is executed any more, or if it stands for some looks, behind a part of its way.
+    fn has_come_to_rest(&mut self, is_busy: bool, place: Coordinates) -> bool {
+        if place != self.last {
+            self.since = Instant::now();
+        }
+        let stands = place == self.last && place != self.start;
+        let is_at_rest = stands && ((self.was_busy && !is_busy) || self.since.elapsed() >= AT_REST);
+        self.was_busy |= is_busy;
+        self.last = place;
+        is_at_rest
+    }
+}
+
 /// Whether something is executed, and where the axes are. A busy controller is asked again.
-async fn look(link: &mut Link) -> Result<(bool, Coordinates), Cut> {
+async fn look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut> {
     let mut refused = 0;
     loop {
-        match try_look(link).await {
+        match try_look(link, axis).await {
             Err(Cut::Failed(failure)) if failure.kind == Kind::Refused && refused < MOST_REFUSED => refused += 1,
             looked => return looked,
         }
     }
 }
 
-async fn try_look(link: &mut Link) -> Result<(bool, Coordinates), Cut> {
+async fn try_look(link: &mut Link, axis: &Known) -> Result<(bool, Coordinates), Cut> {
     let status = link.status_of(&[0]).await?;
     if status.has_error() {
         return Err(Cut::Error);
     }
-    Ok((status.executing(), Coordinates::of(&link.place().await?)))
+    Ok((status.executing(), Coordinates::of(&link.place().await?, axis.letters)))
 }
 
 impl Command for Jog {
@@ -343,22 +381,18 @@ impl Command for Jog {
         }
         let Context { link, screen, authority, .. } = context;
         let letters = link.letters().await?;
-        let index = self.axis.place(&letters)?;
-        let axis = Known { index, letter: letters.of(index).to_owned() };
-        authority.confirm(&Change::new(self.in_words(&format!("{} ({})", index + 1, axis.letter)))).await?;
+        let index = self.axis.place(letters)?;
+        let axis = Known { index, letters };
+        authority.confirm(&Change::new(self.in_words(&axis.in_words()))).await?;
         link.ask(&jog("RS", None)).await?;
         if link.is_dry() {
             self.plan(link);
             link.stop(Moving::Jog).await?;
         }
-        let start = Coordinates::of(&link.ask(&position()).await?);
+        let start = Coordinates::of(&link.ask(&position()).await?, letters);
         let live = Live::new(screen);
         let began = Instant::now();
-        let gone = tokio::select! {
-            biased;
-            key = abandoned() => Err(Cut::Failed(Failure::new(Kind::Interrupted, key))),
-            gone = self.go(link, &live, &axis, start) => gone,
-        };
+        let gone = self.go(link, &live, &axis, start).await;
         if let Err(Cut::Refused) = gone {
             // Nothing moves by this order: what is executed is somebody else's, and no reason to wait for a stop.
             link.give_up(Moving::Jog).await;
@@ -369,10 +403,11 @@ impl Command for Jog {
         let elapsed = began.elapsed();
         let end = Coordinates::of(
             &link.stop(Moving::Jog).await.map_err(|failure| still_moving(gone.as_ref().err(), failure))?,
+            letters,
         );
         live.end();
         match gone {
-            Ok(steps) => Ok(Jogged::of(self, axis, (start, end), elapsed, steps)),
+            Ok(steps) => Ok(Jogged::of(self, &axis, (start, end), elapsed, steps)),
             Err(cut) => Err(cut_short(link, cut, &end).await),
         }
     }
@@ -435,36 +470,39 @@ impl Live {
 /// Result of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jogged {
-    /// Its letter: `X`, `Y`, `Z` or `R`.
-    axis: String,
+    /// Its letter: `X`, `Y`, `Z` or `R`; empty where the controller does not tell.
+    axis: &'static str,
     /// Its number, 1 to 4.
     axis_number: usize,
     /// As on the line: `+L`.
     word: &'static str,
     /// Inching steps that were done; null for low and high.
     steps: Option<u8>,
-    /// From the start to the stop.
-    elapsed_ms: u64,
     /// How far the axis moved; negative in minus direction.
     moved_mm: f64,
-    /// Where the axes stood.
-    start: Coordinates,
-    /// Where they stand.
-    end: Coordinates,
+    #[serde(flatten)]
+    motion: Motion,
 }
 
 impl Jogged {
-    fn of(jog: &Jog, axis: Known, (start, end): (Coordinates, Coordinates), elapsed: Duration, steps: u8) -> Self {
+    fn of(jog: &Jog, axis: &Known, (start, end): (Coordinates, Coordinates), elapsed: Duration, steps: u8) -> Self {
         let moved = axis.of(&end) - axis.of(&start);
+        let place = |place: Coordinates| Some(place.position().of_group(UNIT));
+        let motion = Motion {
+            accepted: true,
+            group: Some(UNIT.to_owned()),
+            from: place(start),
+            position: place(end),
+            elapsed_ms: u64::try_from(elapsed.as_millis()).ok(),
+            ..Motion::default()
+        };
         Self {
             axis_number: axis.index + 1,
-            axis: axis.letter,
+            axis: axis.letters.of(axis.index),
             word: jog.word(),
             steps: (jog.speed == Speed::Inch).then_some(steps),
-            elapsed_ms: u64::try_from(elapsed.as_millis()).unwrap_or(u64::MAX),
             moved_mm: (moved * 100.0).round() / 100.0,
-            start,
-            end,
+            motion,
         }
     }
 }
@@ -472,13 +510,14 @@ impl Jogged {
 impl Report for Jogged {
     fn view(&self) -> View {
         let steps = self.steps.map_or_else(|| "-".into(), Cell::from);
+        let line = |place: &Option<Position>| Cell::maybe(place.as_ref().map(Position::line));
         View::fields([
-            ("axis", titled(self.axis_number - 1, &self.axis).into()),
+            ("axis", titled(self.axis_number - 1, self.axis).into()),
             ("moved (mm)", Cell::number(format!("{:.2}", self.moved_mm))),
             ("steps", steps),
-            ("elapsed (ms)", self.elapsed_ms.into()),
-            ("from (mm)", self.start.in_a_line().into()),
-            ("to (mm)", self.end.in_a_line().into()),
+            ("elapsed (ms)", Cell::maybe(self.motion.elapsed_ms)),
+            ("from", line(&self.motion.from)),
+            ("to", line(&self.motion.position)),
         ])
     }
 }

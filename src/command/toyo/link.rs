@@ -68,7 +68,8 @@ impl Family for Toyo {
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
-        let place = Coordinates::of(&link.stop(moving).await?);
+        let place = link.stop(moving).await?;
+        let place = link.coordinates(&place).await;
         Ok(format!("the robot was stopped ({stop}); it stands at {}", place.in_a_line()))
     }
 
@@ -207,6 +208,17 @@ impl Link {
     pub async fn letters(&mut self) -> Result<Letters, Failure> {
         self.tell_what_is_left().await;
         self.client.letters().await.map_err(|error| self.failure(error))
+    }
+
+    /// Waits, where nobody looks at what an order does, until no contradiction to its yes can come any more.
+    pub async fn settle(&mut self) -> Result<(), Failure> {
+        self.client.settle().await.map_err(|error| self.failure(error))
+    }
+
+    /// Where the axes are by a record, for a report. What has happened is told in any case: where the letters cannot be
+    /// asked, with the numbers of the axes.
+    pub async fn coordinates(&mut self, record: &Record) -> Coordinates {
+        Coordinates::of(record, self.letters().await.unwrap_or(Letters::UNKNOWN))
     }
 
     /// Changes something for a while: `back` makes it as it was, in [`Link::put_back`] or when the link ends.

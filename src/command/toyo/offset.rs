@@ -19,8 +19,9 @@ impl Command for Offset {
     const ID: &'static str = "toyo.offset";
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Coordinates, Failure> {
+        let letters = context.link.letters().await?;
         let record = context.link.ask(&Request::bare(table::Command::Moff)).await?;
-        Ok(Coordinates::of(&record))
+        Ok(Coordinates::of(&record, letters))
     }
 }
 
@@ -30,6 +31,6 @@ mod tests {
 
     #[test]
     fn the_offset_has_its_block() {
-        assert_eq!(all_blocks(&["offset"]).unwrap(), ["@MOFF"]);
+        assert_eq!(all_blocks(&["offset"]).unwrap(), ["@SYSP", "@RPAR E01", "@MOFF"]);
     }
 }

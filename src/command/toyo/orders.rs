@@ -6,9 +6,11 @@ use serde::Serialize;
 
 use super::link::Moving;
 use super::link::Toyo;
-use super::position::Coordinates;
+use super::position::UNIT;
 use super::waiting::becomes;
+use crate::command::face::shared::Alike;
 use crate::command::frame::orders::{Done, New, Old, Switch};
+use crate::command::robot::position::Position;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -185,6 +187,13 @@ pub struct Stop {
     jog: bool,
 }
 
+impl Stop {
+    /// Stops a program, or whatever moves.
+    pub const fn everything() -> Self {
+        Self { jog: false }
+    }
+}
+
 impl Command for Stop {
     type Family = Toyo;
     type Report = Stopped;
@@ -197,21 +206,37 @@ impl Command for Stop {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stopped, Failure> {
         let moving = if self.jog { Moving::Jog } else { Moving::Program };
-        let place = context.link.stop(moving).await?;
-        Ok(Stopped { position: Coordinates::of(&place) })
+        let place = context.link.stop(moving).await;
+        if context.link.is_dry() {
+            context.link.letters().await?;
+        }
+        let position = context.link.coordinates(&place?).await;
+        let words = format!("the axes stand at {}", position.in_a_line());
+        let position = position.position().of_group(UNIT);
+        Ok(Stopped { done: New::of("running", false, words).replaces(Old::UNREAD), position })
     }
 }
 
 /// What was stopped stands.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stopped {
+    #[serde(flatten)]
+    done: Done,
     /// Where the axes stand.
-    position: Coordinates,
+    position: Position,
+}
+
+impl Alike for Stopped {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
 }
 
 impl Report for Stopped {
     fn view(&self) -> View {
-        View::text(format!("the axes stand at {}", self.position.in_a_line()))
+        self.done.view()
     }
 }
 
@@ -246,7 +271,7 @@ mod tests {
     #[test]
     fn a_stop_waits_for_nothing() {
         // Only if a controller refuses to stop a jog without it.
-        let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@HSOF"];
+        let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@SYSP", "@RPAR E01", "@HSOF"];
         assert_eq!(
             all_blocks(&["stop"]).unwrap(),
             [&["@STOP", "@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"], &host[..]].concat()
@@ -263,8 +288,8 @@ mod tests {
         for (words, field, value) in [
             (["servo", "off"], "servo_on", false.into()),
             (["servo", "on"], "servo_on", true.into()),
-            (["mode", "program"], "mode", "program".into()),
-            (["mode", "auto"], "mode", "automatic".into()),
+            (["mode", "program"], "controller_mode", "program".into()),
+            (["mode", "auto"], "controller_mode", "automatic".into()),
             (["mode", "palletizing"], "program_kind", "palletizing".into()),
             (["mode", "sequential"], "program_kind", serde_json::Value::from("sequential")),
         ] {
@@ -301,7 +326,7 @@ mod tests {
         bench.data(&["home", "--no-wait"]);
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
-        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert_eq!(bench.data(&["status"])["running"], false);
         // Something is executed, so a jog is stopped in the same round.
         let heard = heard.borrow();
         let stop = heard.iter().position(|block| block == "@STOP").unwrap();
@@ -313,7 +338,7 @@ mod tests {
         let (mut bench, heard) = Bench::with_faults("host = true\n", |_, _| Fault::None);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop", "--jog"]);
-        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert_eq!(bench.data(&["status"])["running"], false);
         assert!(!heard.borrow().iter().any(|block| block == "@HSON"));
 
         // Somebody else's jog, on a controller whose JOG wants the host and does not stop without it.
@@ -330,7 +355,7 @@ mod tests {
         let (mut bench, _) = Bench::with_faults("host = true\n", deaf);
         bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
         bench.data(&["stop"]);
-        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert_eq!(bench.data(&["status"])["running"], false);
     }
 
     #[test]
@@ -347,7 +372,7 @@ mod tests {
             bench.left(&["jog", "X", "+", "low", "--for", "60s"], std::time::Duration::from_secs(1));
             heard.borrow_mut().clear();
             bench.data(&["stop"]);
-            assert_eq!(bench.data(&["status"])["executing"], false);
+            assert_eq!(bench.data(&["status"])["running"], false);
             let heard = heard.borrow();
             let of = |block: &str| heard.iter().position(|other| other == block).unwrap();
             assert!(of("@STOP") < of(jog) && of(jog) < of("@MPST"), "{heard:#?}");

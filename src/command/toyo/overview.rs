@@ -3,7 +3,8 @@
 use super::link::Link;
 use super::position::Coordinates;
 use super::top::alarms;
-use crate::command::face::overview::{Fault, LeftOver, OverviewReport, PositionMm};
+use crate::command::face::overview::{LeftOver, OverviewReport};
+use crate::command::robot::state::{Fault, Mode, PositionMm, State};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::{RunMode, Status};
 use crate::controller::toyo::table::Command;
@@ -12,23 +13,35 @@ use crate::failure::Failure;
 /// Asks for status and position.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let status = link.status_of(&[0, 1, 2, 3]).await?;
-    let place = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?);
-    Ok(report(status, fault(status), Some(place)))
+    let letters = link.letters().await?;
+    let place = Coordinates::of(&link.ask(&Request::bare(Command::Mpst)).await?, letters);
+    Ok(report(status, Some(place)))
 }
 
 /// What the answers say.
-pub(super) fn report(status: Status, fault: Fault, place: Option<Coordinates>) -> OverviewReport {
-    OverviewReport {
+pub(super) fn report(status: Status, place: Option<Coordinates>) -> OverviewReport {
+    // Where the axes are X, Y and Z by the letters of the pendant.
+    let position = place.and_then(|place| {
+        let of = |letter| place.of_letter(letter);
+        Some(PositionMm { x_mm: of("X")?, y_mm: of("Y")?, z_mm: of("Z")? })
+    });
+    let state = State { position, ..state(status) };
+    OverviewReport { state, left_over: left_over(status), ..OverviewReport::default() }
+}
+
+/// The state that the pages tell.
+pub(super) fn state(status: Status) -> State {
+    let mode = status.run_mode();
+    State {
         reachable: true,
-        mode: status.run_mode().map(RunMode::name),
+        mode: mode.map(|mode| Mode::automatic(mode == RunMode::Automatic)),
+        controller_mode: mode.map(RunMode::name),
         servo_on: Some(status.servo_on()),
         running: Some(status.executing() || status.homing()),
         held: Some(status.paused()),
-        error: Some(status.has_error()),
-        fault,
-        position: place.map(|place| PositionMm { x_mm: place.x_mm, y_mm: place.y_mm, z_mm: place.z_mm }),
-        left_over: left_over(status),
-        ..OverviewReport::default()
+        homed: Some(status.homed()),
+        fault: Fault::new(status.has_error(), alarms(status).first()),
+        ..State::default()
     }
 }
 
@@ -47,9 +60,4 @@ pub(super) fn left_over(status: Status) -> Vec<LeftOver> {
     .into_iter()
     .flatten()
     .collect()
-}
-
-/// What is wrong: the error that is present.
-pub(super) fn fault(status: Status) -> Fault {
-    Fault::new(status.has_error(), alarms(status).first())
 }

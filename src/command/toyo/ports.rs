@@ -6,10 +6,25 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::{OfflineCommand, Report};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Table, View};
-use crate::transport::ports::{self, PortInfo, PortKind};
+use crate::transport::ports::{self, PortInfo, PortKind, PortUser};
+
+/// Another program has the port. An armctl that is told to end stops first what it moves.
+pub fn in_use(label: &str, path: &str) -> Failure {
+    let failure = |by: &str| Failure::new(Kind::NoAnswer, format!("{label}: {by} uses {path}"));
+    match ports::user(path) {
+        Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => {
+            failure(&format!("another armctl, process {pid},")).hint(format!(
+                "`kill {pid}` ends it; what it moves, it stops first. `armctl session open` lets commands share a line"
+            ))
+        }
+        Some(PortUser { pid, name }) => failure(&format!("{}, process {pid},", name.escape_debug()))
+            .hint("close it: a line can have one host at a time"),
+        None => failure("another program").hint("close it: a line can have one host at a time"),
+    }
+}
 
 /// Lists the serial ports of this machine, without opening any.
 #[derive(Debug, Args)]

@@ -5,7 +5,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
-use crate::command::frame::plot::{Past, Plot};
+use crate::client::toyo::Letters;
+use crate::command::frame::plot::Past;
+use crate::command::robot::position::{self as robot, Positions};
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -25,43 +27,20 @@ pub struct Position {
 
 impl Command for Position {
     type Family = Toyo;
-    type Report = Stands;
+    type Report = Positions;
     const ID: &'static str = "toyo.position";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stands, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Positions, Failure> {
         let link = context.link;
         let letters = link.letters().await?;
         let record = link.ask(&Request::bare(table::Command::Mpst)).await?;
-        let (place, axes) = (Coordinates::of(&record), letters.all());
-        let values = axes.iter().zip(place.mm()).map(|(letter, mm)| (letter.clone(), "mm", 2, mm));
-        let plot = self.plot.then(|| self.past.add(values));
-        Ok(Stands { place, axes, plot })
+        let position = Coordinates::of(&record, letters).position();
+        Ok(Positions::one(UNIT, position).plotted(self.plot, &self.past))
     }
 }
 
-/// Where the axes are, with their letters.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Stands {
-    #[serde(flatten)]
-    place: Coordinates,
-    /// The letters that the teach pendant shows for axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the
-    /// coordinates in this order.
-    axes: [String; 4],
-    #[serde(skip)]
-    plot: Option<Plot>,
-}
-
-impl Report for Stands {
-    fn view(&self) -> View {
-        if let Some(plot) = &self.plot {
-            return View { sections: vec![plot.section()] };
-        }
-        let Coordinates { x_mm, y_mm, z_mm, r_mm } = self.place;
-        let axes = self.axes.iter().zip([x_mm, y_mm, z_mm, r_mm]).enumerate();
-        let fields = axes.map(|(index, (letter, mm))| (heading(index, letter), Cell::number(format!("{mm:.2}"))));
-        View { sections: vec![Section::Fields(fields.collect())] }
-    }
-}
+/// What has the axes: a controller has one robot.
+pub const UNIT: &str = "unit 1";
 
 /// What stands before or above the coordinates of an axis, 0 to 3.
 pub fn heading(index: usize, letter: &str) -> &'static str {
@@ -77,60 +56,107 @@ pub fn heading(index: usize, letter: &str) -> &'static str {
 
 /// How an axis (0 to 3) is called: by its letter, and by its number where others have it in another place.
 pub fn titled(index: usize, letter: &str) -> String {
-    if ["X", "Y", "Z", "R"].get(index) == Some(&letter) {
-        letter.to_owned()
-    } else {
-        format!("axis {} ({letter})", index + 1)
+    match letter {
+        _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
+        "" => format!("axis {}", index + 1),
+        _ => format!("axis {} ({letter})", index + 1),
     }
 }
 
-/// Coordinates of the four axes, which are X, Y, Z and R on the line whatever their letters are (the manual gives no unit; ambiguity R13).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+/// Coordinates of the four axes, each with the letter that the teach pendant shows for it. On the line they are X, Y, Z
+/// and R for axes 1 to 4 whatever their letters are (the manual gives no unit; ambiguity R13).
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates {
-    /// Axis 1.
-    pub x_mm: f64,
-    /// Axis 2.
-    pub y_mm: f64,
-    /// Axis 3.
-    pub z_mm: f64,
-    /// Axis 4, in the same unit as the others.
-    pub r_mm: f64,
+    /// Of axes 1 to 4.
+    mm: [f64; 4],
+    letters: Letters,
+}
+
+/// Coordinates by the letters that the teach pendant shows (E01). A machine that does not tell its letters, or has one of
+/// them twice, has `ax1_mm` to `ax4_mm` in place of those that no letter means alone.
+#[derive(JsonSchema)]
+#[schemars(rename = "Coordinates")]
+#[expect(dead_code, reason = "the shape of what is written below")]
+struct Shape {
+    /// Of the axis that is X.
+    x_mm: Option<f64>,
+    /// Of the axis that is Y.
+    y_mm: Option<f64>,
+    /// Of the axis that is Z.
+    z_mm: Option<f64>,
+    /// Of the axis that is R, in the same unit as the others.
+    r_mm: Option<f64>,
+}
+
+impl JsonSchema for Coordinates {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        Shape::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Shape::json_schema(generator)
+    }
+
+    fn inline_schema() -> bool {
+        Shape::inline_schema()
+    }
+}
+
+impl Serialize for Coordinates {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map((0..4).map(|axis| (format!("{}_mm", self.letters.name(axis)), self.mm[axis])))
+    }
 }
 
 impl Coordinates {
-    /// The fields `x`, `y`, `z` and `r` of a record; 0 for those it does not have.
-    pub fn of(record: &Record) -> Self {
+    /// The fields `x`, `y`, `z` and `r` of a record, of axes with these letters; 0 for those it does not have.
+    pub fn of(record: &Record, letters: Letters) -> Self {
         let mm = |name| f64::from(record.number(name).unwrap_or(0)) / 100.0;
-        Self { x_mm: mm("x"), y_mm: mm("y"), z_mm: mm("z"), r_mm: mm("r") }
+        Self { mm: ["x", "y", "z", "r"].map(mm), letters }
     }
 
-    /// Coordinates of the four axes in mm, to the hundredth as a controller tells them.
+    /// Coordinates of the four axes in mm, to the hundredth as a controller tells them, of a machine with the usual letters.
     pub fn at(mm: [f64; 4]) -> Self {
         // A tiny negative one is 0.
-        let [x_mm, y_mm, z_mm, r_mm] = mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0);
-        Self { x_mm, y_mm, z_mm, r_mm }
+        Self { mm: mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0), letters: Letters::USUAL }
     }
 
-    /// Coordinates of the four axes in mm.
+    /// As reports have them: X, Y and Z by the letters of the axes.
+    pub fn position(&self) -> robot::Position {
+        let name = |axis: usize| match self.letters.of(axis) {
+            "" => (axis + 1).to_string(),
+            letter => letter.to_owned(),
+        };
+        let text = (0..4).map(|axis| format!("{}={:.2}", self.letters.name(axis), self.mm[axis]));
+        let position = robot::Position::of_axes([0, 1, 2, 3].map(name), self.mm, 2);
+        let [x_mm, y_mm, z_mm] = ["x", "y", "z"].map(|letter| self.of_letter(letter));
+        robot::Position { x_mm, y_mm, z_mm, text: Some(text.collect::<Vec<_>>().join(" ")), ..position }
+    }
+
+    /// Of axes 1 to 4 in mm.
     pub fn mm(&self) -> [f64; 4] {
-        [self.x_mm, self.y_mm, self.z_mm, self.r_mm]
+        self.mm
+    }
+
+    /// Of the axis that has this letter alone.
+    pub fn of_letter(&self, letter: &str) -> Option<f64> {
+        self.letters.axis(letter).map(|axis| self.mm[axis])
     }
 
     /// With names, in a line.
     pub fn in_a_line(&self) -> String {
-        let Self { x_mm, y_mm, z_mm, r_mm } = self;
-        format!("X {x_mm:.2}, Y {y_mm:.2}, Z {z_mm:.2}, R {r_mm:.2}")
+        let axes = self.mm.iter().enumerate().map(|(axis, mm)| match self.letters.name(axis) {
+            numbered if numbered.starts_with("ax") => format!("{} {mm:.2}", titled(axis, self.letters.of(axis))),
+            letter => format!("{} {mm:.2}", letter.to_uppercase()),
+        });
+        axes.collect::<Vec<_>>().join(", ")
     }
 }
 
 impl Report for Coordinates {
     fn view(&self) -> View {
-        let mm = |value: f64| Cell::number(format!("{value:.2}"));
-        View::fields([
-            ("X (mm)", mm(self.x_mm)),
-            ("Y (mm)", mm(self.y_mm)),
-            ("Z (mm)", mm(self.z_mm)),
-            ("R (mm)", mm(self.r_mm)),
-        ])
+        let axes = self.mm.iter().enumerate();
+        let fields = axes.map(|(axis, mm)| (heading(axis, self.letters.of(axis)), Cell::number(format!("{mm:.2}"))));
+        View { sections: vec![Section::Fields(fields.collect())] }
     }
 }

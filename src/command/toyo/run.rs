@@ -6,11 +6,14 @@ use serde::Serialize;
 
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
-use super::position::{Coordinates, titled};
+use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
+use super::tasks;
 use super::waiting::{Accepted, End, Work, step};
+use crate::client::toyo::Letters;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::robot::position::Position;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::points;
@@ -58,6 +61,7 @@ impl Command for Sequential {
     type Report = Ran;
     const ID: &'static str = "toyo.run.sequential";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         match self.step {
@@ -66,11 +70,12 @@ impl Command for Sequential {
         }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat wants the step at which each run begins")
                 .hint("`toyo run sequential 1 --repeat 20` begins at step 1 each time; nothing was started"));
         }
+        ask_first(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
         go(context, &start, self.no_wait, self.repeat).await
     }
@@ -97,13 +102,16 @@ impl Command for Palletizing {
     type Report = Ran;
     const ID: &'static str = "toyo.run.palletizing";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         format!("run {}{}", chosen("palletizing", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
-        choose(context.link, table::Command::Spln, self.number.or(self.program)).await?;
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+        let program = self.number.or(self.program);
+        ask_first(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
+        choose(context.link, table::Command::Spln, program).await?;
         go(context, &Request::bare(table::Command::Ppst), self.no_wait, self.repeat).await
     }
 }
@@ -130,13 +138,16 @@ impl Command for Easy {
     type Report = Ran;
     const ID: &'static str = "toyo.run.easy";
     const RISK: Risk = Risk::Motion;
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     fn intent(&self) -> String {
         format!("run {}{}", chosen("easy", self.number.or(self.program)), self.repeat.in_words())
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Ran, Failure> {
-        choose(context.link, table::Command::Sesn, self.number.or(self.program)).await?;
+    async fn run(&self, mut context: Context<'_, Toyo>) -> Result<Ran, Failure> {
+        let program = self.number.or(self.program);
+        ask_first(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
+        choose(context.link, table::Command::Sesn, program).await?;
         go(context, &Request::bare(table::Command::Sesy), self.no_wait, self.repeat).await
     }
 }
@@ -188,13 +199,14 @@ impl Point {
     async fn place(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
         let request =
             Request::read_parameter(points::table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
-        Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record)))
+        let letters = link.letters().await?;
+        Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
     /// What the question says: each axis with where it is and where it goes.
     async fn change(&self, link: &mut Link, there: Option<Coordinates>) -> Result<Change, Failure> {
         let letters = link.letters().await?;
-        let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?);
+        let here = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
         let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
         let mut way = 0.0;
@@ -211,6 +223,62 @@ impl Point {
         };
         Ok(change.note(format!("The speed override is {percent} %.")))
     }
+}
+
+/// What is started: a step or a number, or what the controller is at.
+enum Program {
+    Sequential(Option<i32>),
+    Palletizing(Option<i32>),
+    Easy(Option<i32>),
+}
+
+impl Program {
+    /// Which one it is, with its step.
+    async fn note(&self, link: &mut Link) -> Result<String, Failure> {
+        match self {
+            Self::Sequential(step) => {
+                let task = tasks::choose(link, None).await?;
+                let number = u16::try_from(step.unwrap_or(0)).unwrap_or(0);
+                Ok(match steps::numbered(link, number).await? {
+                    Ok(record) => {
+                        let (step, text) =
+                            (record.number("step").unwrap_or(0), record.text("text").unwrap_or_default());
+                        format!("It is the program of task {task}; it begins at step {step}: {text}.")
+                    }
+                    Err(_) => format!("It is the program of task {task}; the step was not told."),
+                })
+            }
+            Self::Palletizing(Some(number)) => Ok(format!("It is palletizing program {number}.")),
+            Self::Easy(Some(number)) => Ok(format!("It is easy program {number}.")),
+            Self::Palletizing(None) => {
+                let at = link.ask(&Request::bare(table::Command::Rpld)).await?;
+                Ok(format!(
+                    "It is palletizing program {}, at step {}.",
+                    small(&at, "program"),
+                    at.number("step").unwrap_or(0)
+                ))
+            }
+            Self::Easy(None) => {
+                let at = link.ask(&Request::bare(table::Command::Resd)).await?;
+                Ok(format!("It is easy program {}, at step {}.", small(&at, "program"), at.number("step").unwrap_or(0)))
+            }
+        }
+    }
+}
+
+/// Asks before a program runs, with its number and step, each axis, and the speed.
+async fn ask_first(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
+    let Context { link, authority, .. } = context;
+    let mut change = change;
+    if authority.asks() {
+        let letters = link.letters().await?;
+        change = change.note(program.note(link).await?);
+        let place = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
+        let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
+        change = change.note(format!("The axes are at {} (mm).", place.in_a_line()));
+        change = change.note(format!("The speed override is {percent} %."));
+    }
+    authority.confirm(&change).await
 }
 
 fn chosen(kind: &str, program: Option<i32>) -> String {
@@ -231,12 +299,15 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
 async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: Repeat) -> Result<Ran, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
+    // Not after the start: a look at it must not wait for that.
+    let letters = if no_wait { Letters::UNKNOWN } else { link.letters().await? };
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
         if no_wait {
+            link.settle().await?;
             return Ok(Ran { accepted: true, ..Ran::default() });
         }
-        let ran = wait(link, screen, start.command()).await;
+        let ran = wait(link, screen, start.command(), letters).await;
         let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(ran);
@@ -254,9 +325,9 @@ async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: 
     }
 }
 
-async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result<Ran, Failure> {
+async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<Ran, Failure> {
     let work = Accepted { work: Work::Program, order, done: DONE, doing: "running" };
-    let ended = work.wait(link, screen).await.known()?;
+    let ended = work.wait(link, screen, letters).await.known()?;
     let Some(End { place, elapsed_ms, is_paused }) = ended else { return Err(plan_end(link, order)) };
     // A move to a point runs no steps.
     let last = match order {
@@ -267,8 +338,9 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command) -> Result
         return Err(stopped(last.as_ref(), place));
     }
     let (step, instruction) = last.unzip();
+    let position = place.map(|place| place.position().of_group(UNIT));
     let stopped = Some(is_paused);
-    Ok(Ran { accepted: true, stopped, step, instruction, position: place, elapsed_ms, ..Ran::default() })
+    Ok(Ran { accepted: true, stopped, step, instruction, position, elapsed_ms, ..Ran::default() })
 }
 
 /// Notes in a dry run what is asked at the end.
@@ -321,7 +393,7 @@ pub struct Ran {
     /// The instruction of that step.
     instruction: Option<String>,
     /// Where the axes stand; null if nobody waited.
-    position: Option<Coordinates>,
+    position: Option<Position>,
     /// From the acceptance to the end; null if nobody waited.
     elapsed_ms: Option<u64>,
     #[serde(flatten)]
@@ -330,7 +402,7 @@ pub struct Ran {
 
 impl Report for Ran {
     fn view(&self) -> View {
-        let (Some(stopped), Some(place)) = (self.stopped, self.position) else {
+        let (Some(stopped), Some(place)) = (self.stopped, &self.position) else {
             return View::fields([("run", Cell::from("started").tone(Tone::Good))]);
         };
         let run = if stopped {
@@ -342,7 +414,7 @@ impl Report for Ran {
         let mut fields = vec![
             ("run", run),
             ("step", Cell::maybe(step)),
-            ("at (mm)", place.in_a_line().into()),
+            ("at", place.line().into()),
             ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
         ];
         fields.extend(self.cycle.rows());
@@ -366,6 +438,8 @@ mod tests {
         assert_eq!(
             all_blocks(&["run", "sequential", "12"]).unwrap(),
             [
+                "@SYSP",
+                "@RPAR E01",
                 "@STAS SNO=2",
                 "@HSON",
                 "@STAS SNO=0",
@@ -508,7 +582,7 @@ mod tests {
                 let here = bench.data(&["position"]);
                 bench.wait(Duration::from_secs(10));
                 assert_eq!(bench.data(&["position"]), here, "{words:?} {ms}");
-                assert_eq!(bench.data(&["status"])["executing"], false);
+                assert_eq!(bench.data(&["status"])["running"], false);
             }
         }
     }
@@ -523,7 +597,7 @@ mod tests {
         });
         bench.interrupted(&["run", "sequential", "1"], Duration::from_millis(250)).unwrap();
         assert!(heard.borrow().iter().filter(|block| *block == "@STOP").count() >= 2);
-        assert_eq!(bench.data(&["status"])["executing"], false);
+        assert_eq!(bench.data(&["status"])["running"], false);
     }
 
     #[test]

@@ -5,11 +5,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::Toyo;
-use super::overview::fault;
-use crate::command::face::overview::Fault;
+use super::overview::state;
+use crate::command::robot::state::State;
 use crate::command::{Command, Context, Report};
-use crate::controller::toyo::errors;
-use crate::controller::toyo::status::{self, ProgramKind, RunMode};
+use crate::controller::toyo::status::{self, ProgramKind};
 use crate::failure::Failure;
 use crate::output::view::{Cell, Tone, View};
 
@@ -31,24 +30,16 @@ impl Command for Status {
 #[derive(Debug, Serialize, JsonSchema)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a bit of the status")]
 pub struct StatusReport {
+    #[serde(flatten)]
+    state: State,
     /// `sequential`, `palletizing`, `external_point` or `easy`.
     program_kind: &'static str,
-    /// `automatic`, `step` or `program`; null for the value that the manual does not list.
-    mode: Option<&'static str>,
     host_on: bool,
     pendant_on: bool,
-    servo_on: bool,
-    homed: bool,
     homing: bool,
-    executing: bool,
-    paused: bool,
     in_position: bool,
     single_movement: bool,
     waits_for_input: bool,
-    /// The error, if there is one.
-    error: Option<ErrorCode>,
-    #[serde(flatten)]
-    fault: Fault,
     /// Parameter 2 was changed: nothing is executed until the power was off.
     needs_power_cycle: bool,
     slave_not_ready: bool,
@@ -61,17 +52,6 @@ pub struct StatusReport {
     pages: [String; 5],
 }
 
-/// An error code with its meaning.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct ErrorCode {
-    /// `28`.
-    pub code: String,
-    /// In words.
-    pub meaning: String,
-    /// The axis it is about.
-    pub axis: Option<u8>,
-}
-
 /// The memory card.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Card {
@@ -80,31 +60,17 @@ struct Card {
     writing: bool,
 }
 
-impl ErrorCode {
-    /// A code in words.
-    pub fn of(code: u8) -> Self {
-        let explanation = errors::explain(code);
-        Self { code: format!("{code:02X}"), meaning: explanation.name.into_owned(), axis: explanation.axis }
-    }
-}
-
 impl StatusReport {
     fn of(status: status::Status) -> Self {
         Self {
+            state: state(status),
             program_kind: ProgramKind::name(status.program_kind()),
-            mode: status.run_mode().map(RunMode::name),
             host_on: status.host_on(),
             pendant_on: status.pendant_on(),
-            servo_on: status.servo_on(),
-            homed: status.homed(),
             homing: status.homing(),
-            executing: status.executing(),
-            paused: status.paused(),
             in_position: status.in_position(),
             single_movement: status.single_movement(),
             waits_for_input: status.waits_for_input(),
-            error: (status.has_error() || status.error != errors::NONE).then(|| ErrorCode::of(status.error)),
-            fault: fault(status),
             needs_power_cycle: status.needs_power_cycle(),
             slave_not_ready: status.slave_not_ready(),
             escape_input: status.escape_input(),
@@ -124,16 +90,18 @@ impl StatusReport {
 impl Report for StatusReport {
     fn view(&self) -> View {
         let yes = |is: bool, tone: Tone| if is { Cell::from("yes").tone(tone) } else { "no".into() };
-        let origin = match (self.homing, self.homed) {
+        let state = &self.state;
+        let is = |told: Option<bool>| told == Some(true);
+        let origin = match (self.homing, is(state.homed)) {
             (true, _) => Cell::from("on the way").tone(Tone::Warning),
             (_, true) => Cell::from("done").tone(Tone::Good),
             _ => Cell::from("not done").tone(Tone::Warning),
         };
-        let error = match &self.error {
-            Some(error) => Cell::from(format!("{}: {}", error.code, error.meaning)).tone(Tone::Bad),
+        let error = match state.fault.describe() {
+            Some(error) => Cell::from(error).tone(Tone::Bad),
             None => "none".into(),
         };
-        let running = match (self.paused, self.executing) {
+        let running = match (is(state.held), is(state.running)) {
             (true, _) => Cell::from("paused").tone(Tone::Warning),
             (_, true) if self.waits_for_input => Cell::from("waits for input").tone(Tone::Warning),
             (_, true) => Cell::from("yes").tone(Tone::Good),
@@ -150,12 +118,12 @@ impl Report for StatusReport {
         let inputs: Vec<&str> = inputs.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
         let fields = vec![
             ("runs", Cell::from(self.program_kind.replace('_', " "))),
-            ("mode", Cell::maybe(self.mode)),
+            ("mode", Cell::maybe(state.controller_mode)),
             ("host", Cell::switch(self.host_on)),
             ("teach pendant", Cell::switch(self.pendant_on)),
-            ("servo", Cell::switch(self.servo_on)),
+            ("servo", Cell::switch(is(state.servo_on))),
             ("origin", origin),
-            ("executing", running),
+            ("running", running),
             ("in position", if self.in_position { "yes".into() } else { "no".into() }),
             ("error", error),
             ("ready output", Cell::switch(self.ready_output)),

@@ -8,6 +8,7 @@ use super::eeprom::{Cell, Cells};
 use super::items::plan_twice;
 use super::link::Link;
 use super::values::{self, Shown};
+use crate::client::toyo::Letters;
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::orders::{Old, Written, unwritten};
 use crate::controller::toyo::field::Value;
@@ -42,6 +43,8 @@ pub struct Store {
     pub is_optional: bool,
     /// What it holds.
     pub found: CellState,
+    /// By which its coordinates are told.
+    pub letters: Letters,
 }
 
 /// What a cell holds.
@@ -69,7 +72,13 @@ pub type Replaced = [String; 3];
 impl Store {
     /// Something that every controller has.
     pub fn new(key: impl Into<String>, cell: Cell) -> Self {
-        Self { key: key.into(), cell, is_optional: false, found: CellState::NotAsked }
+        Self { key: key.into(), cell, is_optional: false, found: CellState::NotAsked, letters: Letters::USUAL }
+    }
+
+    /// With the letters of the axes, by which its coordinates are told.
+    #[must_use]
+    pub fn by(self, letters: Letters) -> Self {
+        Self { letters, ..self }
     }
 
     /// With what it holds; `None` in a dry run.
@@ -85,7 +94,7 @@ impl Store {
 
     /// What is replaced, if it holds something else that somebody wrote.
     fn replaced(&self, work: StoreTask) -> Option<Replaced> {
-        let Self { key, cell, found: CellState::This(found), .. } = self else { return None };
+        let Self { key, cell, found: CellState::This(found), letters, .. } = self else { return None };
         if cell.is(found) || cell.is_blank(found) {
             return None;
         }
@@ -94,17 +103,17 @@ impl Store {
             (None, "") => key.clone(),
             (None, noun) => format!("{noun} {key}"),
         };
-        let [old, new] = difference(cell, found);
+        let [old, new] = difference(cell, found, letters);
         Some([what, old, new])
     }
 }
 
 /// What differs in a cell from what it shall hold, in words.
-fn difference(cell: &Cell, found: &Record) -> [String; 2] {
+fn difference(cell: &Cell, found: &Record, letters: &Letters) -> [String; 2] {
     if cell.read.command() == table::Command::Rstx {
         return [found.written(), cell.wanted.written()];
     }
-    let (old, new) = (values::shown(found), values::shown(&cell.wanted));
+    let (old, new) = (values::shown_by(found, letters), values::shown_by(&cell.wanted, letters));
     let is_named = new.len() > 1;
     let differ = |one: &[Shown], other: &[Shown]| {
         let differing = one.iter().filter(|shown| !other.contains(shown)).cloned();
@@ -178,12 +187,12 @@ pub type WrittenCells = Vec<Written<Key>>;
 
 /// What cells held and hold, each value by its name.
 pub fn written(stores: &[Store]) -> WrittenCells {
-    let values = |record: &Record| -> serde_json::Map<String, Json> {
-        values::shown(record).into_iter().map(|shown| (shown.name, shown.value)).collect()
+    let values = |record: &Record, letters: &Letters| -> serde_json::Map<String, Json> {
+        values::shown_by(record, letters).into_iter().map(|shown| (shown.name, shown.value)).collect()
     };
     let of = |store: &Store| {
-        let old = if let CellState::This(found) = &store.found { Some(values(found)) } else { None };
-        Written::new(Key { name: store.key.clone() }, Old::read(old), values(&store.cell.wanted))
+        let old = if let CellState::This(found) = &store.found { Some(values(found, &store.letters)) } else { None };
+        Written::new(Key { name: store.key.clone() }, Old::read(old), values(&store.cell.wanted, &store.letters))
     };
     stores.iter().map(of).collect()
 }

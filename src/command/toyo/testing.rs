@@ -49,9 +49,15 @@ pub(super) fn intent(words: &[&str]) -> String {
 /// The blocks that `armctl toyo WORDS…` would send, those apart that go before and behind any order.
 pub(super) fn blocks(words: &[&str]) -> Result<Vec<String>, Failure> {
     let mut frames = frames(&plan(words)?);
-    frames.retain(|frame| frame["about"] != FENCE);
+    frames.retain(|frame| frame["about"] != FENCE && !asks_letters(frame));
     let blocks = frames.iter().map(text);
     Ok(blocks.filter(|block| !matches!(&block[..], "@STAS SNO=2" | "@HSON" | "@HSOF")).collect())
+}
+
+/// Whether a frame asks for the letters of the axes.
+fn asks_letters(frame: &Value) -> bool {
+    let is_system = frame["about"].as_str().is_some_and(|about| about.starts_with("the letters of the axes"));
+    is_system || (text(frame) == "@RPAR E01" && !frame["depends_on"].is_null())
 }
 
 /// All blocks that `armctl toyo WORDS…` would send.

@@ -1,14 +1,15 @@
 //! A robot of the family in a live view: status and position in a line; axes with their soft limits, the error and the
 //! first ports on a screen. The protocol has no torque.
 
+use super::explain::told;
 use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
 use super::link::{Link, Toyo};
-use super::overview::{fault, report};
+use super::overview::report;
 use super::position::Coordinates;
 use crate::command::face::declared;
-use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
+use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
+use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Family as _};
-use crate::controller::toyo::errors;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::status::Status;
@@ -45,12 +46,14 @@ impl declared::Poller for Poller {
             (_, false) => &[2, 3],
         };
         let status = self.link.status_of(rest).await?.with(0, first.state);
-        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok().map(|record| Coordinates::of(&record));
+        let letters = self.link.letters().await?;
+        let place = self.link.try_ask(&Request::bare(Command::Mpst)).await?.ok();
+        let place = place.map(|record| Coordinates::of(&record, letters));
         let whole = match detail {
             Detail::Summary => None,
             Detail::Axes | Detail::Full => Some(self.whole(detail, status, place).await?),
         };
-        Ok(Sample { line: report(status, fault(status), place), answered_in, alarms: alarms(status), whole })
+        Ok(Sample { line: report(status, place), answered_in, alarms: alarms(status), whole })
     }
 
     fn link(&mut self) -> &mut Link {
@@ -108,12 +111,7 @@ async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure>
 
 /// The error that is present, as one of a list.
 pub(super) fn alarms(status: Status) -> Vec<Alarm> {
-    if !status.has_error() {
-        return Vec::new();
-    }
-    let error = errors::explain(status.error);
-    let code = format!("{:02X}", error.code);
-    vec![Alarm { code, text: error.name.into_owned(), remedy: error.remedy.to_owned() }]
+    status.has_error().then(|| told(status.error)).into_iter().collect()
 }
 
 fn indicators(status: Status) -> Vec<Indicator> {
@@ -136,8 +134,9 @@ fn indicators(status: Status) -> Vec<Indicator> {
 }
 
 fn axes(place: Coordinates, letters: [String; 4], limits: Limits) -> Vec<Axis> {
-    let positions = [place.x_mm, place.y_mm, place.z_mm, place.r_mm];
-    let axes = letters.into_iter().zip(positions).zip(limits);
+    let names = letters.into_iter().enumerate();
+    let names = names.map(|(axis, letter)| if letter.is_empty() { (axis + 1).to_string() } else { letter });
+    let axes = names.zip(place.mm()).zip(limits);
     let axes = axes.map(|((name, position), limits)| Axis {
         name,
         position,

@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::link::Link;
+use crate::client::toyo::Letters;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Form, Number, Value};
@@ -52,8 +53,18 @@ pub struct Changes(Vec<Option<Value>>);
 /// In place of a meaning.
 pub use crate::controller::toyo::program::NOT_IN_MANUAL;
 
-/// The places of a layout.
-pub fn places(layout: &Layout) -> Vec<ValueSlot> {
+/// The axis (0 to 3) of which a field is the coordinate: X, Y, Z and R on the line are axes 1 to 4, whatever their letters.
+fn axis(field: &Field) -> Option<usize> {
+    ["x", "y", "z", "r"].iter().position(|name| *name == field.name)
+}
+
+/// Whether it has coordinates, whose names are the letters of the axes.
+pub fn has_coordinates(layout: &Layout) -> bool {
+    layout.fields.iter().any(|field| axis(field).is_some())
+}
+
+/// The places of a layout, coordinates by these letters.
+pub fn places(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
     let mut places = Vec::new();
     let mut words = layout.text.split("{}");
     let mut index = 0;
@@ -69,15 +80,21 @@ pub fn places(layout: &Layout) -> Vec<ValueSlot> {
             words.next();
             index += 3;
         } else {
-            places.push(ValueSlot { name: field.name.to_owned(), fields: index..index + 1 });
+            let name = axis(field).map_or(field.name, |axis| letters.name(axis));
+            places.push(ValueSlot { name: name.to_owned(), fields: index..index + 1 });
             index += 1;
         }
     }
     places
 }
 
-/// The values of a record, place by place.
+/// The values of a record without coordinates, place by place.
 pub fn shown(record: &Record) -> Vec<Shown> {
+    shown_by(record, &Letters::USUAL)
+}
+
+/// The values of a record, place by place, coordinates by these letters.
+pub fn shown_by(record: &Record, letters: &Letters) -> Vec<Shown> {
     let layout = record.layout();
     if layout == UNLISTED {
         let text = record.written();
@@ -85,7 +102,7 @@ pub fn shown(record: &Record) -> Vec<Shown> {
         let value = Json::from(text.as_str());
         return vec![Shown { name, value, unit: None, meaning, raw: text.clone(), in_manual: false, text }];
     }
-    places(&layout).into_iter().map(|place| place.shown(&layout, record.values())).collect()
+    places(&layout, letters).into_iter().map(|place| place.shown(&layout, record.values())).collect()
 }
 
 /// Values in a line as they may be typed, with their units behind: `low=10.0 high=100.0 mm/s`.
@@ -158,14 +175,25 @@ impl ValueSlot {
 }
 
 impl Changes {
-    /// What was typed for a layout: all values in their order, or some of them as `name=value`. `what` names it.
+    /// What was typed for a layout without coordinates: all values in their order, or some of them as `name=value`. `what`
+    /// names it.
     pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
-        let places = places(layout);
+        Self::read_by(what, layout, &Letters::USUAL, typed)
+    }
+
+    /// The same, coordinates by these letters. Where axes have other letters than the usual ones, an order of coordinates
+    /// could mean letters or axes: they need their names.
+    pub fn read_by(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
+        let places = places(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
         let misplaced = |error: String| wrong(error).hint(usage(&places, layout));
         let named: Vec<Option<(&str, &str)>> = typed.iter().map(|text| assignment(text)).collect();
         let mut changes = vec![None; layout.fields.len()];
         if named.iter().all(Option::is_none) {
+            if has_coordinates(layout) && !letters.are_usual() {
+                let message = format!("coordinates need names here: {}", machine(letters));
+                return Err(wrong(message).hint(by_name(&places)));
+            }
             if typed.len() != places.len() {
                 let values = if places.len() == 1 { "value" } else { "values" };
                 let message = format!("{} {values} needed, {} given", places.len(), typed.len());
@@ -179,7 +207,11 @@ impl Changes {
         for (assignment, text) in named.into_iter().zip(typed) {
             let (name, value) =
                 assignment.ok_or_else(|| misplaced(format!("'{text}' has no name, and others have")))?;
-            let place = places.iter().find(|place| place.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
+            let place = named_place(&places, layout, name).ok_or_else(|| {
+                if has_coordinates(layout) && ["x", "y", "z", "r"].iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
+                    let message = format!("which axis {} is, is not known: {}", name.to_uppercase(), machine(letters));
+                    return wrong(message).hint(by_name(&places));
+                }
                 let near = nearest(name, places.iter().map(|place| &place.name[..]));
                 let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
                 misplaced(format!("there is no value '{}'{near}", name.escape_debug()))
@@ -244,6 +276,31 @@ impl Changes {
     pub fn applied(&self, found: &[Value]) -> Vec<Value> {
         self.0.iter().zip(found).map(|(change, found)| change.as_ref().unwrap_or(found).clone()).collect()
     }
+}
+
+/// The place of that name. A coordinate also has the number of its axis: `ax2`.
+fn named_place<'p>(places: &'p [ValueSlot], layout: &Layout, name: &str) -> Option<&'p ValueSlot> {
+    let numbered = |place: &&ValueSlot| {
+        let field = layout.fields.get(place.fields.start)?;
+        Some(Letters::UNKNOWN.name(axis(field)?).eq_ignore_ascii_case(name)).filter(|is_it| *is_it)
+    };
+    let named = places.iter().find(|place| place.name.eq_ignore_ascii_case(name));
+    named.or_else(|| places.iter().find(|place| numbered(place).is_some()))
+}
+
+/// What letters the machine has.
+pub fn machine(letters: &Letters) -> String {
+    if *letters == Letters::UNKNOWN {
+        return "the controller does not tell the letters of its axes".to_owned();
+    }
+    let letters = letters.all().map(|letter| if letter.is_empty() { "?".to_owned() } else { letter });
+    format!("the letters of axes 1 to 4 are {}", letters.join(", "))
+}
+
+/// How coordinates are given by name.
+fn by_name(places: &[ValueSlot]) -> String {
+    let names: Vec<String> = places.iter().map(|place| format!("{}=…", place.name)).collect();
+    format!("give them by name: {}; ax1 to ax4 are axes 1 to 4 on every machine", names.join(" "))
 }
 
 /// What would be kept may not be written.
@@ -330,7 +387,7 @@ mod tests {
     }
 
     fn names(name: &str) -> Vec<String> {
-        places(&body(name)).into_iter().map(|place| place.name).collect()
+        places(&body(name), &Letters::USUAL).into_iter().map(|place| place.name).collect()
     }
 
     fn read(name: &str, typed: &[&str]) -> Result<String, String> {
@@ -342,7 +399,7 @@ mod tests {
     #[test]
     fn every_parameter_has_places_for_all_its_fields() {
         for row in &crate::controller::toyo::table::parameters::PARAMETERS {
-            let (layout, places) = (row.body(), places(&row.body()));
+            let (layout, places) = (row.body(), places(&row.body(), &Letters::USUAL));
             let covered: Vec<usize> = places.iter().flat_map(|place| place.fields.clone()).collect();
             assert_eq!(covered, (0..layout.fields.len()).collect::<Vec<_>>(), "{}", row.id);
         }
@@ -351,7 +408,7 @@ mod tests {
         assert_eq!(names("M14"), ["ta1", "ta2", "ta3", "ta4"]);
         assert_eq!(names("P08"), ["low", "high"]);
         assert_eq!(names("P13"), ["compare", "place", "port"]);
-        let whole = places(&Parameter::named("M14").unwrap().layout);
+        let whole = places(&Parameter::named("M14").unwrap().layout, &Letters::USUAL);
         assert_eq!(whole.iter().map(|place| &place.name[..]).collect::<Vec<_>>(), ["ta1", "ta2", "ta3", "ta4"]);
         assert_eq!(names("M17"), ["station", "rate", "options"]);
     }

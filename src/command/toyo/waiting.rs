@@ -8,6 +8,7 @@ use super::link::Link;
 use super::position::Coordinates;
 use super::program::steps;
 use super::refusal;
+use crate::client::toyo::Letters;
 pub(super) use crate::client::toyo::status_page;
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::controller::toyo::errors;
@@ -69,11 +70,11 @@ pub(super) struct End {
 }
 
 impl Accepted {
-    /// Waits for the end. A dry run notes what is asked meanwhile.
+    /// Waits for the end, with the letters of the axes for what is told. A dry run notes what is asked meanwhile.
     ///
     /// # Errors
     /// [`Kind::ConditionNotMet`] if it did not get to its end, [`Kind::OutcomeUnknown`] if contact was lost.
-    pub(super) async fn wait(self, link: &mut Link, screen: &Screen) -> Result<End, Failure> {
+    pub(super) async fn wait(self, link: &mut Link, screen: &Screen, letters: Letters) -> Result<End, Failure> {
         if link.is_dry() {
             self.plan(link);
             return Err(unknown());
@@ -88,7 +89,7 @@ impl Accepted {
             match self.look(link, &mut teller, looks.is_multiple_of(STEP_EVERY)).await {
                 Ok((status, record)) => {
                     refused = 0;
-                    let place = record.as_ref().map(Coordinates::of);
+                    let place = record.as_ref().map(|record| Coordinates::of(record, letters));
                     match watch.look(began.elapsed(), status, record) {
                         // Until it was seen, the status may be that of before.
                         Look::Running if !watch.seen => {}
@@ -100,7 +101,7 @@ impl Accepted {
                             return Ok(End { place, elapsed_ms, is_paused: status.paused() });
                         }
                         Look::Failed(trouble) => {
-                            let place = resting_place(link, place).await;
+                            let place = resting_place(link, place, letters).await;
                             link.has_ended();
                             return Err(self.failed(link, trouble, place).await);
                         }
@@ -192,12 +193,12 @@ pub(super) async fn present_error(link: &mut Link, tell: &impl Fn(&str) -> Failu
 }
 
 /// Where axes that are being stopped come to rest; where they were seen last if they cannot be asked.
-async fn resting_place(link: &mut Link, seen: Option<Coordinates>) -> Option<Coordinates> {
+async fn resting_place(link: &mut Link, seen: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
     let mut last = seen?;
     for _ in 0..LOOKS_TO_REST {
         tokio::time::sleep(LOOK_EVERY).await;
         let Ok(record) = link.place().await else { break };
-        let here = Coordinates::of(&record);
+        let here = Coordinates::of(&record, letters);
         let is_at_rest = here == last;
         last = here;
         if is_at_rest {

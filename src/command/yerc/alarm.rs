@@ -1,23 +1,21 @@
 //! `yerc alarm list|history|reset|cancel`.
 
-mod recorded;
 mod report;
 
 use clap::{Args, ValueEnum};
 
 pub(super) use self::report::in_a_line;
-use self::report::{ActiveAlarm, ActiveAlarms, AlarmEntry, PastAlarm, PastAlarms};
+use self::report::{Own, WithTexts, entry, explained, short};
 use super::each::{Denied, Outcome, Round};
 use super::link::Link;
 use super::link::Yerc;
 use super::numbers::within;
 use super::orders::usage;
-use crate::command::face::sample;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items;
-use crate::command::frame::items::ItemOutcome;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
+use crate::command::robot::alarm::{self, Alarms, Row};
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::yerc::payload;
@@ -54,10 +52,10 @@ pub(super) const SLOTS: u8 = 4;
 
 impl Command for List {
     type Family = Yerc;
-    type Report = ActiveAlarms;
+    type Report = Alarms<Own, WithTexts>;
     const ID: &'static str = "yerc.alarm.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<ActiveAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<Own, WithTexts>, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
@@ -69,14 +67,12 @@ impl Command for List {
             // A gap between slots is not described, so all four are read.
             let outcome = match read(link, &mut round, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
-                Ok(alarm) => {
-                    AlarmEntry::new(&alarm, link.encoding, link.model_to_show()).explained(context.robot, link).await
-                }
+                Ok(alarm) => explained(entry(&alarm, link.encoding, link.model_to_show()), context.robot, link).await,
                 Err(denied) => Err(denied.into()),
             };
-            alarms.push(ActiveAlarm { slot, outcome: ItemOutcome::new(format!("alarm slot {slot}"), outcome) });
+            alarms.push(Row::new(slot.into(), format!("alarm slot {slot}"), outcome));
         }
-        let report = ActiveAlarms { alarms, with_texts: texts, asked: SLOTS.into() };
+        let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked: SLOTS.into() };
         items::nothing(report.asked, report.errors())?;
         Ok(report)
     }
@@ -85,7 +81,7 @@ impl Command for List {
 impl Watchable for List {
     const WATCH: &'static str = "yerc.alarm.watch";
     const WATCHED: Watched =
-        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "name", value: None, empty: "no alarm" };
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
 /// The lists of past alarms.
@@ -136,10 +132,10 @@ const LAST: u8 = 100;
 
 impl Command for History {
     type Family = Yerc;
-    type Report = PastAlarms;
+    type Report = Alarms<Own, WithTexts>;
     const ID: &'static str = "yerc.alarm.history";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<PastAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<Own, WithTexts>, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(LAST);
@@ -157,14 +153,16 @@ impl Command for History {
                 asked += 1;
                 let outcome = match read(link, &mut round, &mut texts, |texts| question(list, number, texts)).await? {
                     Ok(alarm) if alarm.is_none() => break,
-                    Ok(alarm) => Ok(AlarmEntry::new(&alarm, link.encoding, link.model_to_show())),
+                    Ok(alarm) => {
+                        explained(entry(&alarm, link.encoding, link.model_to_show()), context.robot, link).await
+                    }
                     Err(denied) => Err(denied.into()),
                 };
-                let outcome = ItemOutcome::new(format!("{class} alarm {number}"), outcome);
-                alarms.push(PastAlarm { class, number, outcome });
+                let row = Row::new(number.into(), format!("{class} alarm {number}"), outcome);
+                alarms.push(Row { list: Some(class), ..row });
             }
         }
-        let report = PastAlarms { alarms, with_texts: texts, asked };
+        let report = Alarms { alarms, standing: WithTexts { with_texts: texts }, asked };
         items::nothing(asked, report.errors())?;
         Ok(report)
     }
@@ -172,21 +170,25 @@ impl Command for History {
 
 /// The alarms in the first `slots` slots, for a live view. `texts` goes off where the controller shows that it has none.
 /// An alarm that cannot be read hides no other.
-pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<sample::Alarm>, Failure> {
+pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>, Failure> {
     let mut alarms = Vec::new();
     let mut round = Round::default();
     for slot in 1..=slots {
         let outcome = read(link, &mut round, texts, |texts| ReadAlarm::new(slot, texts).map_err(usage)).await?;
         match outcome {
             Ok(alarm) if alarm.is_none() => {}
-            Ok(alarm) => alarms.push(AlarmEntry::new(&alarm, link.encoding, link.model_to_show()).sample()),
+            Ok(alarm) => alarms.push(short(entry(&alarm, link.encoding, link.model_to_show()))),
             Err(denied) => {
                 let failure = Failure::from(denied);
                 if failure.kind == Kind::NoAnswer {
                     return Err(failure);
                 }
                 let text = format!("slot {slot}: {}", items::brief(&failure));
-                alarms.push(sample::Alarm { code: sample::Alarm::UNREADABLE.to_owned(), text, remedy: String::new() });
+                alarms.push(alarm::Alarm {
+                    text: Some(text),
+                    kind: Some(alarm::Kind::Alarm),
+                    ..alarm::Alarm::default()
+                });
             }
         }
     }
@@ -333,13 +335,13 @@ mod tests {
         assert_eq!((&with["with_texts"], &with["alarms"][0]["board"]), (&json!(true), &json!("[SV#1]")));
         assert_eq!(without["alarms"][0]["board"], json!(null));
         let per_class =
-            |class| history["alarms"].as_array().unwrap().iter().filter(|alarm| alarm["class"] == class).count();
+            |class| history["alarms"].as_array().unwrap().iter().filter(|alarm| alarm["list"] == class).count();
         assert!(per_class("monitor") == 2 && per_class("major") == 1, "at most two, and no empty ones: {history}");
 
         let older = format!("model = \"fs100\"\nsoftware = \"FS1.03.00A(JP/US)-00\"\n{alarm}");
         let [old] = reports(&older, &["alarm list"]).await.try_into().unwrap();
         let old = old.unwrap();
-        assert_eq!((&old["with_texts"], &old["alarms"][0]["code"]), (&json!(false), &json!(4315)));
+        assert_eq!((&old["with_texts"], &old["alarms"][0]["code"]), (&json!(false), &json!("4315")));
     }
 
     #[tokio::test(start_paused = true)]

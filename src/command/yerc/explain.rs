@@ -4,13 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::face::explain as face;
-use crate::command::{Report, ValueKind};
+use crate::command::ValueKind;
+use crate::command::face::explain::{self as face, Codes, Known};
+use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
 use crate::controller::yerc::status;
 use crate::failure::Failure;
-use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, View};
-use crate::settings::alarms::{Alarms, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target::Family;
 
 /// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
@@ -22,10 +21,10 @@ pub struct Explain {
 }
 
 impl face::Explain for Explain {
-    type Report = Codes;
+    type Report = Codes<Listed>;
     const ID: &'static str = "explain.yerc";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes, Failure> {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Listed>, Failure> {
         let mut found = status::lookup(&self.code).map_err(|error| {
             Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
         })?;
@@ -34,9 +33,9 @@ impl face::Explain for Explain {
             // What is no status code of the manuals is an alarm number, as people read it on the pendant.
             found.retain(|explanation| explanation.known);
         }
-        let mut codes: Vec<Code> = found.into_iter().map(Code::from).collect();
+        let mut codes: Vec<_> = found.iter().map(status_code).collect();
         if let Some(number) = number {
-            codes.push(Code::of_alarm(number, alarms, origin)?);
+            codes.push(alarm(number, alarms, origin)?);
         }
         Ok(Codes { codes })
     }
@@ -46,27 +45,17 @@ impl face::Explain for Explain {
     }
 }
 
-/// One or, for a short code that is in two tables, several explanations.
+/// Models whose manual lists a code.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Codes {
-    codes: Vec<Code>,
+pub struct Listed {
+    /// None for the number of an alarm.
+    models: Vec<String>,
 }
 
-/// A code in words.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Code {
-    /// `0x2060`.
-    code: String,
-    /// Whether it is in the manuals' tables.
-    known: bool,
-    /// What it is called.
-    name: String,
-    /// What happened.
-    cause: String,
-    /// What to do.
-    remedy: String,
-    /// Models whose manual lists it.
-    models: Vec<String>,
+impl Besides for Listed {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![("listed for", Some(self.models.join(", ")).filter(|models| !models.is_empty()))]
+    }
 }
 
 /// The number of an alarm, 1 to 9999 in decimal.
@@ -75,57 +64,28 @@ fn alarm_number(text: &str) -> Option<u32> {
     text.parse().ok().filter(|number| is_number && *number > 0)
 }
 
-impl Code {
-    /// An alarm number: what `alarms.toml` says of it, or where to look.
-    fn of_alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Self, Failure> {
-        let code = number.to_string();
-        let found = alarms.find(origin, &code)?;
-        let known = found.is_some();
-        let (name, cause, remedy) = match found {
-            Some(Explanation { text, cause, remedy }) => (text, cause, remedy),
-            None => ("an alarm number".to_owned(), None, None),
-        };
-        let look = "the controller's maintenance manual has it, and the controller its text: `armctl yerc alarm list`";
-        Ok(Self {
-            code,
-            known,
-            name,
-            cause: cause.unwrap_or_default(),
-            remedy: remedy.unwrap_or_else(|| look.to_owned()),
-            models: Vec::new(),
-        })
-    }
+/// The number of an alarm: what `alarms.toml` says of it, or where to look.
+fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
+    let code = number.to_string();
+    let site = alarms.find(origin, &code)?;
+    let look = "the controller's maintenance manual has it, and the controller its text: `armctl yerc alarm list`";
+    let text = site.is_none().then(|| "an alarm number".to_owned());
+    let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[look] };
+    let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };
+    Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }
 
-impl From<status::Explanation> for Code {
-    fn from(found: status::Explanation) -> Self {
-        Self {
-            code: found.code_text,
-            known: found.known,
-            name: found.name.into_owned(),
-            cause: found.cause.into_owned(),
-            remedy: found.remedy.into_owned(),
-            models: found.models.iter().map(ToString::to_string).collect(),
-        }
-    }
-}
-
-impl Report for Codes {
-    fn view(&self) -> View {
-        let sections = self.codes.iter().map(|code| {
-            let models = if code.models.is_empty() { "-".to_owned() } else { code.models.join(", ") };
-            Section::Fields(vec![
-                ("code", code.code.as_str().into()),
-                ("meaning", code.name.as_str().into()),
-                ("cause", Cell::maybe(Some(code.cause.as_str()).filter(|cause| !cause.is_empty()))),
-                ("what to do", code.remedy.as_str().into()),
-                ("listed for", models.into()),
-            ])
-        });
-        View { sections: sections.collect() }
-    }
-
-    fn rows(&self) -> RowsOf {
-        RowsOf::List("codes")
-    }
+/// A status code of the manuals.
+fn status_code(found: &status::Explanation) -> Known<Listed> {
+    let alarm = Alarm {
+        code: Some(found.code_text.clone()),
+        text: Some(found.name.clone().into_owned()),
+        kind: Some(Kind::Error),
+        source: Source::Armctl,
+        ..Alarm::default()
+    };
+    let [cause, remedy] = [found.cause.as_ref(), found.remedy.as_ref()];
+    let causes: &[&str] = if cause.is_empty() { &[] } else { &[cause] };
+    let own = Listed { models: found.models.iter().map(ToString::to_string).collect() };
+    Known::new(found.known, alarm, [causes, &[remedy]], None, own)
 }

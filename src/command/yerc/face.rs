@@ -6,6 +6,7 @@ use super::decode::Decode;
 use super::explain::Explain;
 use super::file::{Restore, back_up};
 use super::link::{Link, Yerc};
+use super::orders::Hold;
 use super::serve::Serve;
 use super::top::Poller;
 use super::{check, connect, overview, panel};
@@ -17,6 +18,7 @@ use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
 use crate::command::face::sample::Traffic;
+use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Command as _, Context};
 use crate::controller::yerc::{passing, simulator, status};
 use crate::failure::Failure;
@@ -32,6 +34,9 @@ impl Declaration for Yerc {
     type Explain = Explain;
     type Alarms = alarm::List;
     type AlarmHistory = alarm::History;
+    type AlarmReset = alarm::Reset;
+    type Position = super::position::Position;
+    type Stop = Hold;
     type Serve = Serve;
     type Poller = Poller;
 
@@ -51,6 +56,14 @@ impl Declaration for Yerc {
     fn codes() -> Vec<(String, String)> {
         let statuses = status::all_statuses().map(|row| (format!("0x{:02X}", row.code), row.name.to_owned()));
         statuses.chain(status::all_added().map(|row| (format!("0x{:04X}", row.code), row.name.to_owned()))).collect()
+    }
+
+    fn stop_command() -> Self::Stop {
+        Hold::on()
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        alarm::present(link, &mut true, alarm::SLOTS).await
     }
 
     fn traffic(link: &Link) -> Traffic {

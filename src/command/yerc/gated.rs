@@ -52,11 +52,12 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("axes", Read, Read),
     ("position-error", Read, Read),
     ("torque", Read, Read),
-    // What a variable holds that was not taught is not overwritten.
-    ("teach P5", Destroy, Write),
+    ("teach P5", Destroy, Destroy),
     ("var get B0", Read, Read),
     ("var watch B0", Read, Read),
-    ("var set B0=1 P1.tool=2", Write, Write),
+    ("var set B0=1", Write, Write),
+    ("var set B0=1 P1.tool=2", Destroy, Destroy),
+    ("var set EX1=pulse:1=5", Destroy, Destroy),
     ("var dump DIR/new.json", Read, Read),
     // Each variable may be set again; to write back many replaces what is in them.
     ("var restore DIR/dump.json", Destroy, Write),
@@ -69,7 +70,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("names list", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
-    ("servo off", Write, Write),
+    ("servo off", Motion, Motion),
     ("hold on", Write, Write),
     ("hold off", Write, Write),
     ("hlock on", Write, Write),
@@ -86,6 +87,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("info", Read, Read),
     ("raw --command 0x72 --instance 1 --service 0x01", Read, Read),
     ("raw --command 0x7A --instance 1 --attribute 1 --service 0x10 --data 01", Write, Write),
+    ("raw --command 0x7F --instance 1 --attribute 3 --service 0x10 --data 01000000", Destroy, Destroy),
     ("raw --file --service 0x09 --data 412e4a4249", Destroy, Destroy),
     ("raw --command 0x90 --instance 1 --service 0x01", Motion, Motion),
 ];

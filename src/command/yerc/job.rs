@@ -303,7 +303,7 @@ impl Command for Select {
         };
         let was = was.filter(|job| !job.name.is_empty()).map(|job| link.encoding.name(job.name.as_bytes()).text);
         let query = self.query(name, link).await?;
-        link.ask(&query).await?;
+        link.ask(&query).await.map_err(|failure| about(name, failure))?;
         let words = match (self.task, self.line) {
             (Some(task), _) => format!("{name} is the master job of task {task}"),
             (None, 0) => format!("{name} is selected"),
@@ -316,6 +316,11 @@ impl Command for Select {
             task: self.task,
         })
     }
+}
+
+/// A refusal that says which job it is about.
+fn about(name: &str, failure: Failure) -> Failure {
+    Failure { message: format!("job {name}: {}", failure.message), ..failure }
 }
 
 /// What was selected.

@@ -263,8 +263,14 @@ impl Watcher<Event> for Onlooker {
     }
 
     fn event(&mut self, event: Event) {
-        if let Event::Disturbed(counters) = event {
-            self.screen.detail(1, &format!("{}: {counters}", self.label));
+        match event {
+            Event::Disturbed(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),
+            Event::LeftOpen => self.screen.note(&format!(
+                "{}: the controller did not confirm the end of the transfer; it may refuse file commands as busy for some \
+                 seconds",
+                self.label
+            )),
+            _ => {}
         }
     }
 }

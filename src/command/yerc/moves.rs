@@ -546,13 +546,14 @@ mod tests {
             [FAR, FAR, "move relative --z -50 --speed 100mm/s --coordinate tool", "position --coordinates base"];
         let [far, again, up, position] = reports("", &lines).await.try_into().unwrap();
         let (far, again, up, position) = (far.unwrap(), again.unwrap(), up.unwrap(), position.unwrap());
-        assert_eq!((&far["at_target"], &far["reached"]["base"]["x_mm"]), (&json!(true), &json!(1300.0)));
+        assert_eq!((&far["reached"], &far["position"]["x_mm"]), (&json!(true), &json!(1300.0)));
         let elapsed = far["elapsed_ms"].as_u64().unwrap();
         assert!((3000..3500).contains(&elapsed), "300 mm at 100 mm/s take {elapsed} ms");
         assert!(again["elapsed_ms"].as_u64().unwrap() < 200, "the robot is there already: {again}");
-        assert_eq!(up["at_target"], json!(null), "base coordinates do not tell");
-        assert_eq!(position["base"], up["reached"]["base"]);
-        assert_ne!(position["base"]["z_mm"], json!(1200.0));
+        assert_eq!(up["reached"], json!(null), "base coordinates do not tell");
+        let position = &position["positions"][0];
+        assert_eq!(position["text"], up["position"]["text"]);
+        assert_ne!(position["z_mm"], json!(1200.0));
     }
 
     #[tokio::test(start_paused = true)]
@@ -570,7 +571,7 @@ mod tests {
             let failure = moved.unwrap_err();
             assert_eq!(failure.kind, Kind::ConditionNotMet);
             assert!(failure.message.contains(told), "{failure}");
-            let x_mm = position.unwrap()["base"]["x_mm"].as_f64().unwrap();
+            let x_mm = position.unwrap()["positions"][1]["x_mm"].as_f64().unwrap();
             assert!((1001.0..1299.0).contains(&x_mm), "{x_mm}");
             assert!(failure.message.contains(&format!("it stands at x={x_mm:.3} ")), "{failure}");
         }
@@ -586,7 +587,7 @@ mod tests {
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "axis 1 of B1 stands at 5000 pulses and has no target: it would move to 0");
         assert!(station.unwrap_err().message.starts_with("axis 2 of S1 stands at 70 pulses"));
-        assert_eq!(base.unwrap()["pulse"]["pulses"], json!({ "axis_1": 5000 }));
-        assert_eq!(still.unwrap()["pulse"]["pulses"], json!({ "axis_1": 0, "axis_2": 70 }));
+        assert_eq!(base.unwrap()["positions"][0]["text"], "pulse:1=5000");
+        assert_eq!(still.unwrap()["positions"][0]["text"], "pulse:1=0,2=70");
     }
 }

@@ -39,6 +39,9 @@ macro_rules! order {
             }
 
             fn intent(&self) -> String {
+                let $this = self;
+                // Most are the same whatever the arguments.
+                let _ = $this;
                 $intent.to_owned()
             }
 
@@ -79,11 +82,19 @@ order! {
         #[arg(value_name = "on|off")]
         switch: Switch
     }, "yerc.servo",
-    |this| query::Servo(this.switch == Switch::On), "switch servo power on",
+    |this| query::Servo(this.switch == Switch::On),
+    if this.switch == Switch::On { "switch servo power on" } else { "switch servo power off: an axis without brake may sink" },
     "servo_on" = this.switch == Switch::On,
     if this.switch == Switch::On { "servo power is switched on" } else { "servo power is switched off" },
     was |status| status.map(ControllerStatus::servo_on)
 }
+impl Hold {
+    /// What stops the robot.
+    pub const fn on() -> Self {
+        Self { switch: Switch::On }
+    }
+}
+
 order! {
     /// Holds the robot, or lets it go on (FS and DX 3.3.20).
     Hold {

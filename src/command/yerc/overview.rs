@@ -3,8 +3,9 @@
 use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
-use crate::command::face::overview::{Fault, LeftOver, OverviewReport, PositionMm};
+use crate::command::face::overview::{LeftOver, OverviewReport};
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::robot::state::{Fault, Mode, PositionMm, State};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{ControllerStatus, Position, StatusBit};
 use crate::controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
@@ -25,23 +26,32 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
 
 /// What the answers say.
 pub(super) fn report(status: ControllerStatus, fault: Fault, base: Option<&Position>) -> OverviewReport {
+    OverviewReport { state: state(status, fault, base), left_over: left_over(status), ..OverviewReport::default() }
+}
+
+/// The state that the status words tell (FS and DX 3.3.3).
+pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Position>) -> State {
     let position = base.map(|position| {
         let axes = position.axes.padded();
         let mm = |axis: usize| f64::from(axes[axis]) / 1000.0;
         PositionMm { x_mm: mm(0), y_mm: mm(1), z_mm: mm(2) }
     });
-    OverviewReport {
+    let is_play = match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
+        (true, false) => Some(false),
+        (false, true) => Some(true),
+        // The controller says neither or both.
+        _ => None,
+    };
+    State {
         reachable: true,
-        mode: status::mode(status),
+        mode: is_play.map(Mode::automatic),
+        controller_mode: is_play.map(|is_play| if is_play { "play" } else { "teach" }),
         servo_on: Some(status.servo_on()),
-        running: Some(status.has(StatusBit::Running)),
+        running: Some(status.running()),
         held: Some(status.held()),
-        alarm: Some(status.alarm()),
-        error: Some(status.error()),
         fault,
         position,
-        left_over: left_over(status),
-        ..OverviewReport::default()
+        ..State::default()
     }
 }
 

@@ -9,6 +9,7 @@ use tokio::time::Instant;
 
 use super::file::download_failed;
 use super::link::{self, Link, Refusal};
+use super::var::confirm_raw;
 use crate::command::decode::capture::parse_hex;
 use crate::command::decode::field_table;
 use crate::command::yerc::link::Yerc;
@@ -24,6 +25,7 @@ use crate::controller::yerc::status;
 use crate::controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use crate::failure::Failure;
+use crate::gate::Confirmation;
 use crate::output::view::{Cell, View};
 
 /// A request as it is.
@@ -115,8 +117,14 @@ impl Command for Raw {
         )
     }
 
+    /// What positions hold is read first.
+    fn confirmation(&self) -> Confirmation {
+        let is_known = !self.file && self.risk() == Risk::Destroy;
+        if is_known { Confirmation::WhenKnown } else { Confirmation::Question }
+    }
+
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
-        let Context { link, screen, .. } = context;
+        let Context { link, screen, authority, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
             return Err(Failure::usage("command 0 is that of the file server").hint("use --file without --command"));
@@ -137,6 +145,9 @@ impl Command for Raw {
                 return Err(Failure::usage(doubt.clone()).hint("without --check it is sent all the same"));
             }
             screen.note(&format!("warning: {doubt}"));
+        }
+        if self.confirmation() == Confirmation::WhenKnown {
+            confirm_raw(link, &authority, &request, self.intent()).await?;
         }
         let reply = if self.file && matches!(request.service, service::SAVE | service::LIST) {
             transfer(link, &request).await?

@@ -6,8 +6,9 @@ use serde::Serialize;
 
 use super::alarm::{plan_latest, present};
 use super::link::{Link, Yerc};
-use crate::command::face::overview::Fault;
+use super::overview::state;
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::robot::state::{Fault, State};
 use crate::command::{Command, Context, Report};
 use crate::controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::controller::yerc::query::ReadStatus;
@@ -29,7 +30,7 @@ impl Command for Status {
             plan_latest(link)?;
             return Err(unknown());
         };
-        Ok(StatusReport { fault: fault(link, status).await?, ..status.into() })
+        Ok(StatusReport::of(status, fault(link, status).await?))
     }
 }
 
@@ -43,23 +44,16 @@ pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<F
 #[derive(Debug, Serialize, JsonSchema)]
 #[expect(clippy::struct_excessive_bools, reason = "the controller reports bits")]
 pub struct StatusReport {
-    /// `teach` or `play`, as the mode switch stands; null if the controller says neither or both.
-    mode: Option<&'static str>,
+    #[serde(flatten)]
+    state: State,
     /// Whether commands from outside are taken (CMD REMOTE).
     command_remote: bool,
     /// `step`, `one_cycle` or `continuous`; null if the controller says none or several.
     cycle: Option<&'static str>,
-    /// A job is running, or the robot moves.
-    running: bool,
-    servo_on: bool,
-    /// Whether anything holds the robot.
-    held: bool,
     /// What holds it: `pendant`, `external`, `command`.
     hold_sources: Vec<&'static str>,
     alarm: bool,
     error: bool,
-    #[serde(flatten)]
-    fault: Fault,
     /// In-guard safe operation.
     safe_operation: bool,
     /// The two words as received.
@@ -77,20 +71,16 @@ struct RawStatus {
 const HOLDS: [(StatusBit, &str); 3] =
     [(StatusBit::HoldPendant, "pendant"), (StatusBit::HoldExternal, "external"), (StatusBit::HoldCommand, "command")];
 
-impl From<ControllerStatus> for StatusReport {
-    fn from(status: ControllerStatus) -> Self {
+impl StatusReport {
+    fn of(status: ControllerStatus, fault: Fault) -> Self {
         let [data_1, data_2] = status.words;
         Self {
-            mode: mode(status),
+            state: state(status, fault, None),
             command_remote: status.has(StatusBit::CommandRemote),
             cycle: status.cycle().map(cycle_name),
-            running: status.running(),
-            servo_on: status.servo_on(),
-            held: status.held(),
             hold_sources: HOLDS.iter().filter(|(bit, _)| status.has(*bit)).map(|(_, name)| *name).collect(),
             alarm: status.alarm(),
             error: status.error(),
-            fault: Fault::new(status.faulted(), None),
             safe_operation: status.has(StatusBit::Guarded),
             raw: RawStatus { data_1: format!("{data_1:#010x}"), data_2: format!("{data_2:#010x}") },
         }
@@ -106,27 +96,23 @@ pub(super) const fn cycle_name(cycle: CycleMode) -> &'static str {
     }
 }
 
-/// The mode switch; `None` if the controller says neither or both.
-pub(super) fn mode(status: ControllerStatus) -> Option<&'static str> {
-    match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
-        (true, false) => Some("teach"),
-        (false, true) => Some("play"),
-        _ => None,
-    }
-}
-
 impl Report for StatusReport {
     fn view(&self) -> View {
-        let told = self.fault.describe().unwrap_or_else(|| "yes".to_owned());
+        let state = &self.state;
+        let told = state.fault.describe().unwrap_or_else(|| "yes".to_owned());
         let bad = |on: bool, told: &str| if on { Cell::from(told).tone(Tone::Bad) } else { "no".into() };
         let remote = if self.command_remote { Tone::Good } else { Tone::Warning };
-        let hold = if self.held { Cell::from(self.hold_sources.join(", ")).tone(Tone::Warning) } else { "no".into() };
+        let hold = if state.held == Some(true) {
+            Cell::from(self.hold_sources.join(", ")).tone(Tone::Warning)
+        } else {
+            "no".into()
+        };
         View::fields([
-            ("mode", Cell::maybe(self.mode)),
+            ("mode", Cell::maybe(state.controller_mode)),
             ("command remote", Cell::switch(self.command_remote).tone(remote)),
             ("cycle", Cell::maybe(self.cycle.map(|cycle| cycle.replace('_', " ")))),
-            ("running", if self.running { Cell::from("yes").tone(Tone::Good) } else { "no".into() }),
-            ("servo", Cell::switch(self.servo_on)),
+            ("running", if state.running == Some(true) { Cell::from("yes").tone(Tone::Good) } else { "no".into() }),
+            ("servo", Cell::maybe(state.servo_on.map(Cell::switch))),
             ("hold", hold),
             ("alarm", bad(self.alarm, &told)),
             ("error", bad(self.error, "yes")),

@@ -6,8 +6,8 @@ use super::complete;
 use super::link::{Link, Yerc};
 use super::moves::{compared, moved_meanwhile, stands};
 use super::orders::usage;
-use super::position::{self, PositionReport};
-use super::var::{PositionData, called, held, is_undefined, unlike};
+use super::position;
+use super::var::{PositionData, as_position, called, held, is_undefined, unlike};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::names;
 use crate::command::frame::teach::{Taught, mismatch, not_read_back};
@@ -16,7 +16,7 @@ use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::Kind;
 use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::{ExtendedForm, Form, Position, PositionKind};
+use crate::controller::yerc::payload::{Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use crate::controller::yerc::variables::{Reference, Value, VariableKind};
 use crate::failure::Failure;
@@ -74,7 +74,7 @@ fn position_variable(text: &str) -> Result<Reference, String> {
 
 impl Command for Teach {
     type Family = Yerc;
-    type Report = Taught<PositionData, PositionReport>;
+    type Report = Taught;
     const ID: &'static str = "yerc.teach";
     const RISK: Risk = Risk::Destroy;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -113,9 +113,9 @@ impl Command for Teach {
                 return Err(mismatch(&name, &shown(&new), &held));
             }
         }
-        let new = PositionData::of(&new).ok_or_else(|| Failure::local("internal error: no position was read"))?;
-        let old = old.as_ref().and_then(PositionData::of);
-        Ok(Taught::new(name, old, new, report, |data| data.text().to_owned()).unchanged(is_unchanged))
+        let per_degree = link.pulses_per_degree(group);
+        let held = |value: &Value| position::taught(group, value, per_degree);
+        Ok(Taught::new(name, old.as_ref().map(held), held(&new), report).unchanged(is_unchanged))
     }
 }
 
@@ -188,29 +188,21 @@ impl Teach {
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
         let one = asked(coordinates)?;
-        let is_open = self.coordinates.is_none() && group.cartesian_instance().is_some();
+        // Only positions of robots are stored otherwise than in pulses.
+        let is_robot = matches!(group, Group::Robot(_));
+        let is_open = self.coordinates.is_none() && is_robot;
         let other = if is_open { asked(Coordinates::Base)? } else { one };
         let reason = Reason::about("where it stands");
         let reason = if is_open { reason.depending_on("what the variable holds") } else { reason };
         link.plan_depending(&one.request(), &other.request(), reason);
         link.plan_fit(group, coordinates);
-        let [one, other] = unlike();
+        let [one, other] = unlike()
+            .map(|position| Position { kind: if is_robot { position.kind } else { PositionKind::Pulse }, ..position });
         let write = |position| WriteVariable::new(self.variable.number, held(group, position)).map_err(usage);
         let reason = Reason::about("stores it").depending_on("where it stands, and whether it is there already");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
         let back = ReadVariable::new(self.variable.kind, self.variable.number);
         link.plan_if(&back.request(), Reason::about("reads it back").depending_on("whether it was written"));
         Ok(unknown())
-    }
-}
-
-/// A value in the form of a robot's position: of a base or a station only kind and axes mean something.
-fn as_position(value: &Value) -> Position {
-    let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
-    match value {
-        Value::Position(position) => *position,
-        Value::Base(track) => bare(track.kind, track.axes),
-        Value::External(station) => bare(station.kind, station.axes),
-        _ => unlike()[0],
     }
 }

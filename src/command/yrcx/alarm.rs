@@ -5,21 +5,23 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::info::AlarmReport;
-use super::info::message::{Message, Past, rows};
+use super::info::{Part, entry};
 use super::link::Yrcx;
-use crate::command::face::explain::{Occurrence, Recorded};
+use super::numbers::Numbers;
+use super::several::read_numbers;
+use crate::command::face::shared::Alike;
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
+use crate::command::robot::alarm::{AlarmEntry, Alarms, Kind, Nothing, Row, Standing};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::signal::output;
-use crate::controller::yrcx::table::Command as Row;
-use crate::controller::yrcx::value::Key;
+use crate::controller::yrcx::table;
+use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::output::view::View;
-use crate::settings::alarms;
+use crate::settings::{Robot, alarms};
 
 commands! {
     /// Alarms.
@@ -42,12 +44,12 @@ pub struct List {}
 
 impl Command for List {
     type Family = Yrcx;
-    type Report = ActiveAlarms;
+    type Report = Alarms<Part, Signals>;
     const ID: &'static str = "yrcx.alarm.list";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ActiveAlarms, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>, Failure> {
         let link = context.link;
-        let latest = link.draft(Row::AlarmHistory)?.with(Key::History, 1).build()?;
+        let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).build()?;
         if link.is_dry() {
             link.plan_depending(
                 &latest,
@@ -59,89 +61,75 @@ impl Command for List {
         let (alarm, warning) = (output::ALARM.is_on(&image), output::WARNING.is_on(&image));
         let mut alarms = Vec::new();
         if alarm || warning {
-            alarms.push(AlarmReport::of(&link.ask(&latest).await?.values));
-            alarms.retain(|alarm| alarm.code.is_some());
-            for alarm in &mut alarms {
-                let code = alarm.code.as_deref().unwrap_or_default();
-                alarm.explained = alarms::find(context.robot, code)?;
+            let kind = if alarm { Kind::Alarm } else { Kind::Warning };
+            if let Some(entry) = entry(&link.ask(&latest).await?.values, kind) {
+                alarms.push(Row::new(1, "alarm 1", explained(entry, context.robot)));
             }
         }
-        Ok(ActiveAlarms { alarm, warning, alarms })
+        Ok(Alarms { alarms, standing: Signals { alarm, warning }, asked: 1 })
     }
+}
+
+/// The same with what `alarms.toml` says of it.
+fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>, Failure> {
+    let code = entry.alarm.code.clone().unwrap_or_default();
+    Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
 }
 
 impl Watchable for List {
     const WATCH: &'static str = "yrcx.alarm.watch";
     const WATCHED: Watched =
-        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "meaning", value: None, empty: "no alarm" };
+        Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// The alarm that is present.
+/// The signals of alarms.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct ActiveAlarms {
+pub struct Signals {
     /// SO(03): there is an alarm.
     alarm: bool,
     /// SO(15): there is a warning.
     warning: bool,
-    /// The latest; none where both signals are off.
-    alarms: Vec<AlarmReport>,
 }
 
-impl Report for ActiveAlarms {
-    fn view(&self) -> View {
-        match (self.alarms.first(), self.alarm, self.warning) {
-            (Some(alarm), ..) => alarm.view(),
-            (None, true, _) => View::text("an alarm (SO(03) is on), of which the history tells nothing"),
-            (None, false, true) => View::text("a warning (SO(15) is on), of which the history tells nothing"),
-            (None, false, false) => View::text("no alarm"),
+impl Standing for Signals {
+    fn none(&self) -> &'static str {
+        match (self.alarm, self.warning) {
+            (true, _) => "an alarm (SO(03) is on), of which the history tells nothing",
+            (false, true) => "a warning (SO(15) is on), of which the history tells nothing",
+            (false, false) => "no alarm",
         }
     }
 }
 
-/// Reads alarms of the history, one after the other: what `yrcx info message` reads.
+/// Reads alarms of the history, one after the other (4.7.7).
 #[derive(Debug, Args)]
 #[command(after_help = "`armctl explain yrcx CODE` says what to do about one.")]
 pub struct History {
-    #[command(flatten)]
-    which: Message,
+    /// Numbers in the history, 1 (the latest) to 500: 10, or 1..50
+    #[arg(value_name = "N", value_delimiter = ',', default_value = "1..10",
+        value_parser = |text: &str| Numbers::parse(table::Command::AlarmHistory, Key::History, text))]
+    numbers: Vec<Numbers>,
 }
 
 impl Command for History {
     type Family = Yrcx;
-    type Report = PastAlarms;
+    type Report = Alarms<Part>;
     const ID: &'static str = "yrcx.alarm.history";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<PastAlarms, Failure> {
-        Ok(PastAlarms { alarms: self.which.read(context).await? })
-    }
-}
-
-/// Alarms of the history that are there.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct PastAlarms {
-    alarms: Past,
-}
-
-impl Report for PastAlarms {
-    fn view(&self) -> View {
-        View::table(rows(&self.alarms))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.alarms.failure()
-    }
-}
-
-impl Recorded for ActiveAlarms {
-    fn recorded(&self) -> Vec<Occurrence> {
-        self.alarms.iter().map(|alarm| alarm.occurrence("present".to_owned())).collect()
-    }
-}
-
-impl Recorded for PastAlarms {
-    fn recorded(&self) -> Vec<Occurrence> {
-        let known = self.alarms.known();
-        known.map(|(which, alarm)| alarm.occurrence(format!("history {}", which.number))).collect()
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
+        let robot = context.robot;
+        let field = (table::Command::AlarmHistory, Key::History);
+        let of = |values: &Values| entry(values, Kind::Alarm);
+        let (numbers, read) = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
+        let mut alarms = Vec::new();
+        for (number, outcome) in numbers.into_iter().zip(read.outcomes) {
+            let Some(mut outcome) = outcome.filled() else { continue };
+            if let Some(entry) = outcome.data_mut() {
+                *entry = explained(entry.clone(), robot)?;
+            }
+            alarms.push(Row { list: None, index: u16::try_from(number).unwrap_or(u16::MAX), outcome });
+        }
+        Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }
 }
 
@@ -158,12 +146,12 @@ impl Command for Reset {
     const ID: &'static str = "yrcx.alarm.reset";
 
     fn risk(&self) -> Risk {
-        Row::AlarmReset.row().risk
+        table::Command::AlarmReset.row().risk
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
-        let order = link.draft(Row::AlarmReset)?.build()?;
+        let order = link.draft(table::Command::AlarmReset)?.build()?;
         let old = Old::read(link.look().await.known()?.map(|image| output::ALARM.is_on(&image)));
         link.ask(&order).await?;
         let Some(image) = link.look().await.known()? else { return Err(unknown()) };
@@ -199,6 +187,14 @@ pub struct WasReset {
     servo_on: bool,
 }
 
+impl Alike for WasReset {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
+}
+
 impl Report for WasReset {
     fn view(&self) -> View {
         self.done.view()
@@ -209,16 +205,21 @@ impl Report for WasReset {
 mod tests {
     use serde_json::json;
 
-    use crate::command::yrcx::testing::{Reply, Scripted, answer, example, read_example, run_on, words};
+    use crate::command::yrcx::testing::{Reply, Scripted, answer, example, objection, read_example, run_on, words};
     use crate::controller::yrcx::signal::output;
 
     #[test]
-    fn the_history_is_that_of_messages() {
+    fn the_history_is_asked_for_by_its_numbers() {
         assert_eq!(words(&["alarm", "history", "10"]).unwrap(), [example("4.7.7-reference")]);
         let past = &read_example("4.7.7-reference", &["alarm", "history", "10"])["alarms"];
-        let messages = &read_example("4.7.7-reference", &["info", "message", "10"])["messages"];
-        assert_eq!((past, &past[0]["code"]), (messages, &json!("12.551")));
+        assert_eq!((&past[0]["index"], &past[0]["code"]), (&json!(10), &json!("12.551")));
+        assert_eq!((&past[0]["place"], &past[0]["part"]), (&json!("controller 1"), &json!("option slot 1")));
         assert_eq!(words(&["alarm", "history"]).unwrap().len(), 10);
+        assert!(objection(&["alarm", "history", "0"]).contains("allowed: 1 to 500"));
+        let mut end = [0; 16];
+        end[0] = 0x0200;
+        let (read, _) = run_on(Scripted::new([Reply::Ends(1, end)]), &["alarm", "history", "1"]);
+        assert_eq!(read.unwrap()["alarms"], json!([]), "an empty one is left out");
     }
 
     #[test]

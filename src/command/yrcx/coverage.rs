@@ -104,7 +104,7 @@ const LINES: &[&str] = &[
     "info position",
     "info tasks",
     "info line",
-    "info alarm --history 1",
+    "alarm history 1",
     "info speed",
     "info arm",
     "info origin",

@@ -6,12 +6,13 @@ use serde::Serialize;
 
 use super::buses::BUSES;
 use super::fieldbus::Explained;
-use crate::command::face::explain as face;
-use crate::command::{Report, ValueKind};
+use super::info::told;
+use crate::command::ValueKind;
+use crate::command::face::explain::{self as face, Codes, Known};
+use crate::command::robot::alarm::{Alarm as Told, Besides, Kind, Source};
 use crate::controller::yrcx::alarm::Alarm;
 use crate::failure::Failure;
-use crate::output::view::{Section, View};
-use crate::settings::alarms::{Alarms, Explanation, Origin};
+use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target::Family;
 
 /// Alarm number of a YRCX, or error of a PROFINET device
@@ -38,17 +39,30 @@ fn code(text: &str) -> Result<Code, String> {
 }
 
 impl face::Explain for Explain {
-    type Report = YrcxAlarm;
+    type Report = Codes<Group>;
     const ID: &'static str = "explain.yrcx";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<YrcxAlarm, Failure> {
-        Ok(match self.code.clone() {
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Group>, Failure> {
+        let known = match &self.code {
             Code::Alarm(alarm) => {
-                let explained = alarms.find(origin, &alarm.to_string())?;
-                YrcxAlarm { explained, ..alarm.into() }
+                let site = alarms.find(origin, &alarm.to_string())?;
+                let known = alarm.known();
+                let (causes, remedies) = known.map_or((&[][..], LOOK), |known| (known.causes, known.remedies));
+                Known::new(known.is_some(), told(*alarm), [causes, remedies], site, Group { group: alarm.group_text() })
             }
-            Code::Bus(explained) => explained.into(),
-        })
+            Code::Bus(Explained { code, meaning, refused, remedies }) => {
+                let text = meaning.clone().unwrap_or_else(|| "an error without words".to_owned());
+                let alarm = Told {
+                    code: Some(code.clone()),
+                    text: Some(text),
+                    kind: Some(Kind::Error),
+                    source: Source::Armctl,
+                    ..Told::default()
+                };
+                Known::new(meaning.is_some(), alarm, [&[], remedies], None, Group { group: Some(refused) })
+            }
+        };
+        Ok(Codes { codes: vec![known] })
     }
 
     fn alarm(&self) -> Option<String> {
@@ -56,69 +70,18 @@ impl face::Explain for Explain {
     }
 }
 
-/// An alarm of a YRCX, or an error of a PROFINET device, in words.
+/// Said of an alarm that only the controller's manual has.
+const LOOK: &[&str] = &["look it up in the controller's manual: `yrcx info alarm` tells where it came up"];
+
+/// What a code is about.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct YrcxAlarm {
-    /// `12.600`, `0xdb810209`.
-    code: String,
-    /// Whether anything is known beyond its group.
-    known: bool,
-    /// What it says.
-    name: String,
-    /// What its group is about, or what was refused; null for an unknown group.
+pub struct Group {
+    /// The group of an alarm, or what was refused; null for an unknown group.
     group: Option<&'static str>,
-    /// What usually causes it.
-    causes: &'static [&'static str],
-    /// What to do.
-    remedies: &'static [&'static str],
-    /// What `alarms.toml` says of it; null where it says nothing.
-    explained: Option<Explanation>,
 }
 
-impl From<Alarm> for YrcxAlarm {
-    fn from(alarm: Alarm) -> Self {
-        let known = alarm.known();
-        Self {
-            code: alarm.to_string(),
-            known: known.is_some(),
-            name: alarm.text().to_owned(),
-            group: alarm.group_text(),
-            causes: known.map_or(&[], |known| known.causes),
-            remedies: known.map_or(
-                &["look it up in the controller's manual: `yrcx info alarm` tells where it came up"],
-                |known| known.remedies,
-            ),
-            explained: None,
-        }
-    }
-}
-
-impl From<Explained> for YrcxAlarm {
-    fn from(explained: Explained) -> Self {
-        let Explained { code, meaning, refused, remedies } = explained;
-        Self {
-            code,
-            known: meaning.is_some(),
-            name: meaning.unwrap_or_else(|| "an error without words".to_owned()),
-            group: Some(refused),
-            causes: &[],
-            remedies,
-            explained: None,
-        }
-    }
-}
-
-impl Report for YrcxAlarm {
-    fn view(&self) -> View {
-        let listed = |lines: &[&str]| if lines.is_empty() { "-".to_owned() } else { lines.join("; ") };
-        let mut fields = vec![
-            (if self.code.starts_with("0x") { "error" } else { "alarm" }, self.code.as_str().into()),
-            ("meaning", self.name.as_str().into()),
-            ("group", self.group.unwrap_or("-").into()),
-            ("cause", listed(self.causes).into()),
-            ("what to do", listed(self.remedies).into()),
-        ];
-        fields.extend(Explanation::field(self.explained.as_ref()));
-        View::default().and(Section::Fields(fields))
+impl Besides for Group {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![("group", self.group.map(ToOwned::to_owned))]
     }
 }

@@ -8,6 +8,7 @@ use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Yrcx};
+use super::procedures::Stop;
 use super::serve::ServeArgs;
 use super::top::Poller;
 use super::trace::Recorder;
@@ -21,6 +22,7 @@ use crate::command::face::layers::Layer;
 use crate::command::face::overview::OverviewReport;
 use crate::command::face::panel::Panel;
 use crate::command::face::sample::Traffic;
+use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context, Own};
 use crate::controller::yrcx::{alarm, passing, simulator};
 use crate::failure::Failure;
@@ -36,6 +38,9 @@ impl Declaration for Yrcx {
     type Explain = Explain;
     type Alarms = alarms::List;
     type AlarmHistory = alarms::History;
+    type AlarmReset = alarms::Reset;
+    type Position = super::info::Where;
+    type Stop = Stop;
     type Serve = ServeArgs;
     type Poller = Poller;
 
@@ -64,6 +69,14 @@ impl Declaration for Yrcx {
 
     fn read_arguments(matches: &mut ArgMatches) -> Result<Own, clap::Error> {
         Unit::from_arg_matches_mut(matches).map(Own::of)
+    }
+
+    fn stop_command() -> Self::Stop {
+        Stop {}
+    }
+
+    async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
+        overview::alarms(link).await
     }
 
     fn traffic(link: &Link) -> Traffic {

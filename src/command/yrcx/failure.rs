@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::position::Unit;
 use super::refusal::kept;
-use crate::client::yrcx::{Cut, Error, Stopped};
+use crate::client::yrcx::{Error, Stopped};
 use crate::command::frame::attach::session_busy;
 use crate::command::frame::dry_run::unknown;
 use crate::controller::yrcx::describe::command_summary;
@@ -33,13 +33,16 @@ pub fn failure(label: &str, error: Error) -> Failure {
             let kind = if let Silence::Undocumented(_) = why { Kind::Malformed } else { Kind::NoAnswer };
             about(kind, &error).hint("`yrcx status` tells how the controller stands")
         }
-        Error::OutcomeUnknown { command, why, stop, is_stop_held } => {
+        Error::OutcomeUnknown { command, why, stop, is_stop_held, ended } => {
             let held = match (why, stop) {
-                (Silence::LinkLost, None) => "; it is still down",
-                (Silence::LinkLost, Some(true)) => "; it is up again, and the stop input SI(06) is on",
-                (Silence::LinkLost, Some(false)) => "; it is up again, and the stop input SI(06) is off",
-                (_, Some(false)) if is_stop_held => "; the stop input SI(06) stays off",
-                _ => "",
+                (Silence::LinkLost, None) => match ended {
+                    Some(ended) => format!("; {ended}"),
+                    None => "; it is still down".to_owned(),
+                },
+                (Silence::LinkLost, Some(true)) => "; it is up again, and the stop input SI(06) is on".to_owned(),
+                (Silence::LinkLost, Some(false)) => "; it is up again, and the stop input SI(06) is off".to_owned(),
+                (_, Some(false)) if is_stop_held => "; the stop input SI(06) stays off".to_owned(),
+                _ => String::new(),
             };
             let id = command.row().id;
             let what = format!("{id} was sent, but whether it was carried out is unknown: {why}{held}");
@@ -47,7 +50,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         }
         Error::Unfinished { name, outcome } => unfinished(label, name, outcome),
         Error::Cut { by, order, ended } => {
-            let cut = cut(label, *by);
+            let cut = failure(label, *by);
             match ended {
                 Ok(values) => {
                     let message = format!("{}; {STOPPED}{}", cut.message, place(&order, &values));
@@ -60,7 +63,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             }
         }
         Error::StillMoving { cut: by } => {
-            let why = by.map(|by| format!("{}; ", cut(label, *by).message)).unwrap_or_default();
+            let why = by.map(|by| format!("{}; ", failure(label, *by).message)).unwrap_or_default();
             let message = format!("{why}the axis may still move: nothing reaches the controller any more");
             Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
         }
@@ -93,14 +96,6 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::NotKnown => unknown(),
         Error::NoReport { .. } => Failure::local(format!("{label}: {error}")),
         _ => Failure::local(error.to_string()),
-    }
-}
-
-/// What ended a jog before its time.
-fn cut(label: &str, by: Cut) -> Failure {
-    match by {
-        Cut::Abandoned(how) => Failure::new(Kind::Interrupted, how),
-        Cut::Line(error) => failure(label, error),
     }
 }
 

@@ -47,7 +47,6 @@ const READS: &[&str] = &[
     "info tasks",
     "info line",
     "info alarm",
-    "info message",
     "info speed",
     "info arm",
     "info origin",
@@ -79,8 +78,6 @@ const READS: &[&str] = &[
 
 const WRITES: &[&str] = &[
     "inch-distance 100",
-    "servo off",
-    "motor off",
     "speed manual 20",
     "shift select 4",
     "hand select 1",
@@ -143,7 +140,9 @@ const MOTIONS: &[&str] = &[
     "inch pulse 1 +",
     "origin",
     "servo on",
+    "servo off",
     "motor on",
+    "motor off",
     "program run --all-programs",
     "program run MAIN",
     "program step --task 1",
@@ -154,6 +153,7 @@ const MOTIONS: &[&str] = &[
     "run",
     "raw --wi 0x42",
     "profinet probe --try",
+    "eip probe --try",
 ];
 
 /// What sends nothing that shows: what the controller shows is looked at, and zeros are what it is shown at rest.

@@ -8,7 +8,6 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use derive_more::{Deref, DerefMut};
-use futures_util::FutureExt as _;
 
 use self::onlooker::Onlooker;
 use super::connect::{self, Endpoint, OpenBoard};
@@ -24,7 +23,6 @@ use crate::client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
 use crate::command::face::sample::{Traffic, counted};
 use crate::command::frame::attach::{attach, is_held};
 use crate::command::frame::dry_run::Plan;
-use crate::command::frame::interrupt::abandoned;
 use crate::command::frame::trace::locked;
 use crate::command::{Access, ConnectMode, Entry, Family};
 use crate::controller::Risk;
@@ -223,7 +221,6 @@ impl Link {
         let trace = Arc::new(Mutex::new(trace));
         let label = robot.label();
         client.watch(Onlooker { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
-        client.let_go_at(|| abandoned().boxed_local());
         let link_alarm = connect::endpoint(robot)?.fieldbus().link_alarm;
         Ok(Self {
             client,

@@ -146,7 +146,7 @@ one_row! {
         let servos = format!("{} of {}", self.describe(), self.which.name());
         match self.state {
             ServoState::On => format!("switch {servos} on"),
-            ServoState::Off => format!("switch {servos} off"),
+            ServoState::Off => format!("switch {servos} off: an axis without brake may drop"),
             ServoState::Free => format!("switch {servos} off and release the brakes: an axis may drop"),
         }
     },
@@ -172,7 +172,7 @@ one_row! {
     },
     intent match self.state {
         MotorState::On => "switch motor power and the servos of all robots on",
-        MotorState::Off => "switch motor power and the servos of all robots off",
+        MotorState::Off => "switch motor power and the servos of all robots off: an axis without brake may drop",
         MotorState::Pwr => "switch motor power on",
     },
     done match self.state {

@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::before::{before, question};
 use super::link::Link;
-use super::position::{Position, Unit};
+use super::position::{Unit, position};
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
 use crate::client::yrcx;
@@ -382,9 +382,7 @@ fn data(command: Command, values: &Values) -> Json {
         Command::ParamSet => number(Key::Value).into(),
         _ => {
             let unit = if number(Key::Unit) == 1 { Unit::Mm } else { Unit::Pulse };
-            let hand = [None, Some("right"), Some("left")].get(usize::try_from(number(Key::HandSystem)).unwrap_or(0));
-            let Position { position_mm, position_pulses } = Position::of(values, Some(unit));
-            json!({ "position_mm": position_mm, "position_pulses": position_pulses, "hand": hand.copied().flatten() })
+            json!(position(values, unit))
         }
     }
 }

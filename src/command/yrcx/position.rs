@@ -1,11 +1,9 @@
 //! Positions, in millimetres or pulses.
 
 use clap::ValueEnum;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use crate::controller::yrcx::value::Values;
-use crate::output::view::{Cell, Table};
+use crate::command::robot::position::{Joint, Position};
+use crate::controller::yrcx::value::{Key, Values};
 
 /// What a position is measured in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -34,48 +32,40 @@ impl Unit {
     }
 }
 
-/// Where a robot is.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema, Default)]
-pub struct Position {
-    /// Axes 1 to 4 in millimetres (degrees of what turns); null unless asked for.
-    pub position_mm: Option<[f64; 4]>,
-    /// Axes 1 to 4 in pulses; null unless asked for.
-    pub position_pulses: Option<[i32; 4]>,
+/// The position of an answer in this unit, with the hand system where it has one; nothing where it has no position.
+pub fn position(values: &Values, unit: Unit) -> Option<Position> {
+    let axes = values.axes()?;
+    let names = ["1", "2", "3", "4"].map(ToOwned::to_owned);
+    if unit == Unit::Pulse {
+        let joint = |(axis, pulses): (String, i32)| Joint { axis, pulses: Some(pulses), ..Joint::default() };
+        let joints = names.into_iter().zip(axes).map(joint).collect();
+        let text = Some(format!("--pulse {}", axes.map(|axis| axis.to_string()).join(",")));
+        return Some(Position { frame: "joint".to_owned(), joints, text, ..Position::default() });
+    }
+    let mm = mm(values)?;
+    let hand = match values.int(Key::HandSystem) {
+        Some(1) => Some("right"),
+        Some(2) => Some("left"),
+        _ => None,
+    };
+    let flag = hand.map(|hand| format!(" --hand {hand}")).unwrap_or_default();
+    let [x, y, z, _] = mm;
+    Some(Position {
+        x_mm: Some(x),
+        y_mm: Some(y),
+        z_mm: Some(z),
+        form: hand.map(ToOwned::to_owned),
+        text: Some(format!("--mm {}{flag}", mm.map(|axis| format!("{axis:.3}")).join(","))),
+        ..Position::of_axes(names, mm, 3)
+    })
 }
 
-impl Position {
-    /// Of the values of an answer in this unit; nothing where the answer has no position.
-    pub fn of(values: &Values, unit: Option<Unit>) -> Self {
-        let axes = values.axes();
-        match unit {
-            None => Self::default(),
-            Some(Unit::Mm) => Self {
-                position_mm: axes.map(|axes| axes.map(|steps| f64::from(steps) / 1000.0)),
-                position_pulses: None,
-            },
-            Some(Unit::Pulse) => Self { position_mm: None, position_pulses: axes },
-        }
-    }
+/// Axes 1 to 4 in millimetres, degrees of what turns.
+pub fn mm(values: &Values) -> Option<[f64; 4]> {
+    values.axes().map(|axes| axes.map(|steps| f64::from(steps) / 1000.0))
+}
 
-    /// Axes in a line with their unit.
-    pub fn in_a_line(&self) -> String {
-        let mm = self.position_mm.map(|axes| format!("{} mm", axes.map(|axis| format!("{axis:.3}")).join(", ")));
-        let pulses =
-            self.position_pulses.map(|axes| format!("{} pulses", axes.map(|axis| axis.to_string()).join(", ")));
-        mm.or(pulses).unwrap_or_default()
-    }
-
-    /// A row an axis.
-    pub fn table(&self) -> Option<Table> {
-        let mut table = Table::new(&["axis", "position", "unit"], "");
-        for at in 0..4_usize {
-            if let Some(axes) = self.position_mm {
-                table.row([(at + 1).into(), Cell::number(format!("{:.3}", axes[at])), "mm".into()]);
-            }
-            if let Some(axes) = self.position_pulses {
-                table.row([(at + 1).into(), axes[at].into(), "pulses".into()]);
-            }
-        }
-        (!table.rows.is_empty()).then_some(table)
-    }
+/// How a position names its robot, as `--unit` takes it.
+pub fn group(robot: Option<i32>) -> String {
+    format!("unit {}", robot.filter(|robot| *robot > 0).unwrap_or(1))
 }

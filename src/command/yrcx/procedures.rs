@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::link::{Link, Yrcx};
+use crate::command::face::shared::Alike;
 use crate::command::frame::dry_run::Known as _;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::{Command, ConnectMode, Context, Report};
@@ -86,6 +87,14 @@ pub struct CarriedOut {
     done: Done,
     /// From the first signal to the last confirmation.
     elapsed_ms: u64,
+}
+
+impl Alike for CarriedOut {
+    type Core = Done;
+
+    fn core(&self) -> Done {
+        self.done.clone()
+    }
 }
 
 impl Report for CarriedOut {

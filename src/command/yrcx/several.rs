@@ -135,11 +135,6 @@ struct Row<N, V> {
 }
 
 impl<N, V> Rows<N, V> {
-    /// What was answered.
-    pub fn known(&self) -> impl Iterator<Item = (&N, &V)> {
-        self.rows.iter().filter_map(|row| Some((&row.name, row.outcome.data()?)))
-    }
-
     /// Drops what was answered and is not worth telling.
     pub fn retain(&mut self, mut is_worth: impl FnMut(&N, &V) -> bool) {
         let mut at = 0;

@@ -7,12 +7,13 @@ use serde::Serialize;
 use super::info::{AxisServo, servos};
 use super::link::Link;
 use super::link::Yrcx;
-use super::overview::{alarm, latest, not_asked};
-use super::position::{Position, Unit};
+use super::overview::{alarm, latest, not_asked, state};
+use super::position::{Unit, mm, position};
 use super::several::ask_each;
-use crate::command::face::overview::Fault;
 use crate::command::frame::dry_run::Reason;
 use crate::command::frame::items::{ItemError, verdict};
+use crate::command::robot::position::{Joint, joint_table};
+use crate::command::robot::state::{Fault, Mode, PositionMm, State};
 use crate::command::{Command, ConnectMode, Context, Report};
 use crate::controller::yrcx::answer::Status as CommandStatus;
 use crate::controller::yrcx::image::Image;
@@ -48,8 +49,8 @@ impl Command for Status {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<StatusReport, Failure> {
         let Context { link, screen, .. } = context;
         let servo = link.draft(table::Command::ServoStatus)?.build()?;
-        let position = link.draft(table::Command::PositionMm)?.build()?;
-        let mut orders = vec![servo, position];
+        let place = link.draft(table::Command::PositionMm)?.build()?;
+        let mut orders = vec![servo, place];
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
             let noted = link.plan_all(&orders);
@@ -67,9 +68,9 @@ impl Command for Status {
         // What is seen at once does not wait for somebody else's motion to end.
         let not_asked = if self.full { None } else { not_asked(link, &image) };
         if not_asked.is_some() {
-            return Ok(StatusReport { not_asked, ..StatusReport::of(&image) });
+            return Ok(StatusReport { not_asked, ..StatusReport::of(link, &image) });
         }
-        let mut report = StatusReport::of(&image);
+        let mut report = StatusReport::of(link, &image);
         if report.alarm {
             orders.push(latest);
         }
@@ -82,8 +83,11 @@ impl Command for Status {
         for (name, outcome) in ["servos", "position", "alarm"].into_iter().zip(outcomes) {
             match outcome {
                 Ok(values) if name == "servos" => report.servos = Some(servos(&values)),
-                Ok(values) if name == "alarm" => report.fault = Fault::new(true, alarm(&values).as_ref()),
-                Ok(values) => report.position = Position::of(&values, Some(Unit::Mm)),
+                Ok(values) if name == "alarm" => report.state.fault = Fault::new(true, alarm(&values).as_ref()),
+                Ok(values) => {
+                    report.state.position = mm(&values).map(PositionMm::of_axes);
+                    report.joints = position(&values, Unit::Mm).map(|position| position.joints);
+                }
                 Err(failure) => report.errors.push(ItemError::new(name, failure)),
             }
         }
@@ -98,63 +102,49 @@ const PARTS: usize = 3;
 #[derive(Debug, Serialize, JsonSchema, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "the controller shows bits")]
 pub struct StatusReport {
+    /// As the signals SO(00), SO(02), SO(03), SO(10), SO(11) and SO(13) say; which alarm it is, and the position, are
+    /// remote commands.
+    #[serde(flatten)]
+    state: State,
     /// What it shows of remote commands: `ready`, `running`, …
     command_status: String,
-    /// SO(00): in emergency stop.
-    emergency_stop: bool,
     /// SO(01): it works.
     cpu_ok: bool,
-    /// SO(02): motor power is on.
-    servo_on: bool,
     /// SO(03): a serious error.
     alarm: bool,
     /// SO(04): servos can be switched on.
     mp_ready: bool,
-    /// SO(10): AUTO mode.
-    auto_mode: bool,
-    /// SO(11): the robot has returned to origin.
-    origin_complete: bool,
     /// SO(12): the sequence program runs.
     sequence_running: bool,
-    /// SO(13): the robot program runs.
-    program_running: bool,
     /// SO(14): the robot program is at its start.
     program_reset: bool,
     /// SO(15): a warning.
     warning: bool,
-    /// The alarm of SO(03); which one it is is a remote command.
-    #[serde(flatten)]
-    fault: Fault,
     /// The servo of each axis; null where that was not asked.
     servos: Option<Vec<AxisServo>>,
     /// Why servos and position were not asked; null where they were.
     not_asked: Option<&'static str>,
-    #[serde(flatten)]
-    position: Position,
+    /// Where each axis stands; null where that was not asked.
+    joints: Option<Vec<Joint>>,
     /// What was asked and not told, and why.
     errors: Vec<ItemError>,
 }
 
 impl StatusReport {
     /// What the signals say.
-    fn of(image: &Image) -> Self {
+    fn of(link: &Link, image: &Image) -> Self {
         Self {
+            state: state(link, image, None),
             command_status: CommandStatus::from_word(image.0[0]).to_string(),
-            emergency_stop: output::EMERGENCY_STOP.is_on(image),
             cpu_ok: output::CPU_OK.is_on(image),
-            servo_on: output::SERVO_ON.is_on(image),
             alarm: output::ALARM.is_on(image),
             mp_ready: output::MP_READY.is_on(image),
-            auto_mode: output::AUTO_MODE.is_on(image),
-            origin_complete: output::ORIGIN_COMPLETE.is_on(image),
             sequence_running: output::SEQUENCE_RUNNING.is_on(image),
-            program_running: output::PROGRAM_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
-            fault: Fault::new(output::ALARM.is_on(image), None),
             servos: None,
             not_asked: None,
-            position: Position::default(),
+            joints: None,
             errors: Vec::new(),
         }
     }
@@ -166,6 +156,8 @@ impl Report for StatusReport {
     }
 
     fn view(&self) -> View {
+        let state = &self.state;
+        let is = |told: Option<bool>| told == Some(true);
         let toned = |on: bool, tone: Tone| {
             let cell = Cell::from(if on { "yes" } else { "no" });
             if on { cell.tone(tone) } else { cell }
@@ -178,28 +170,26 @@ impl Report for StatusReport {
         let servos = self.servos.as_ref().map(told).filter(|told| !told.is_empty());
         let view = View::fields([
             ("remote command", self.command_status.as_str().into()),
-            ("emergency stop", toned(self.emergency_stop, Tone::Bad)),
+            ("emergency stop", toned(is(state.emergency_stop), Tone::Bad)),
             (
                 "alarm",
-                self.fault
+                state
+                    .fault
                     .describe()
                     .map_or_else(|| toned(self.alarm, Tone::Bad), |told| Cell::from(told).tone(Tone::Bad)),
             ),
             ("warning", toned(self.warning, Tone::Warning)),
             ("CPU OK", good(self.cpu_ok)),
             ("MP ready", good(self.mp_ready)),
-            ("motor power", Cell::switch(self.servo_on)),
+            ("motor power", Cell::switch(is(state.servo_on))),
             ("servos", Cell::maybe(servos)),
-            ("AUTO mode", toned(self.auto_mode, Tone::Plain)),
-            (
-                "origin",
-                if self.origin_complete { "complete".into() } else { Cell::from("incomplete").tone(Tone::Warning) },
-            ),
-            ("program", if self.program_running { Cell::from("running").tone(Tone::Good) } else { "stopped".into() }),
+            ("AUTO mode", toned(state.mode == Some(Mode::Automatic), Tone::Plain)),
+            ("origin", if is(state.homed) { "complete".into() } else { Cell::from("incomplete").tone(Tone::Warning) }),
+            ("program", if is(state.running) { Cell::from("running").tone(Tone::Good) } else { "stopped".into() }),
             ("program reset", toned(self.program_reset, Tone::Plain)),
             ("sequence", if self.sequence_running { "running".into() } else { "stopped".into() }),
         ]);
-        match (self.position.table(), self.not_asked) {
+        match (self.joints.as_deref().map(joint_table), self.not_asked) {
             (Some(table), _) => view.and(Section::Table(table)),
             (None, Some(why)) => view.and(Section::Text(why.to_owned())),
             (None, None) => view,
@@ -215,5 +205,5 @@ impl Report for StatusReport {
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
     let order = link.draft(table::Command::PositionMm)?.build()?;
     let done = link.try_ask(&order).await?.ok();
-    Ok(done.and_then(|done| Position::of(&done.values, Some(Unit::Mm)).position_mm))
+    Ok(done.and_then(|done| mm(&done.values)))
 }

@@ -2,10 +2,9 @@
 
 use clap::Args;
 
-use super::data::Coordinates;
 use super::link::{Link, Yrcx};
 use super::overwrite::{self, confirmation, there};
-use super::position::{Position, Unit};
+use super::position::{Unit, group, position};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::teach::{Taught, mismatch, not_read_back};
 use crate::command::{Command, Context};
@@ -39,7 +38,7 @@ const NEAR: i32 = 100;
 
 impl Command for Teach {
     type Family = Yrcx;
-    type Report = Taught<Coordinates, Position>;
+    type Report = Taught;
     const ID: &'static str = "yrcx.teach";
 
     fn risk(&self) -> Risk {
@@ -75,13 +74,13 @@ impl Command for Teach {
         let held = there(link, &read, "").await.map_err(unread)?;
         let held = held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the controller has no such point")))?;
         let here = link.ask(&here).await.map_err(unread)?.values;
-        let place = Position::of(&here, Some(unit));
-        let (new, is_same) = (Coordinates::of(&held), unit_of(&held) == unit && is_near(&held, &here));
-        if !is_same {
-            return Err(mismatch(&format!("point {name}"), &place.in_a_line(), &new.position().in_a_line()));
+        let place = position(&here, unit).unwrap_or_default().of_group(group(order.values().int(Key::Robot)));
+        let point = |values: &Values| position(values, unit_of(values)).unwrap_or_default();
+        let new = point(&held);
+        if unit_of(&held) != unit || !is_near(&held, &here) {
+            return Err(mismatch(&format!("point {name}"), &place.line(), &new.line()));
         }
-        let old = old.as_ref().map(Coordinates::of);
-        let taught = Taught::new(name, old, new, place, |point| point.position().in_a_line());
+        let taught = Taught::new(name, old.as_ref().map(point), new, place);
         Ok(taught.with("set", "point").with("point", held.int(Key::Point)))
     }
 }
@@ -98,7 +97,7 @@ impl Teach {
 }
 
 /// The unit that a point is defined in.
-fn unit_of(point: &Values) -> Unit {
+pub(super) fn unit_of(point: &Values) -> Unit {
     if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
 }
 

@@ -11,10 +11,11 @@ use tokio::time::Instant;
 use super::info::servos;
 use super::link::{Link, Yrcx};
 use super::overview::{alarm, latest, not_asked, report};
-use super::position::{Position, Unit};
+use super::position::mm;
 use crate::command::face::declared;
-use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
+use crate::command::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::PositionMm;
 use crate::command::{Access, Family as _};
 use crate::controller::yrcx::answer::Status;
 use crate::controller::yrcx::image::Image;
@@ -79,8 +80,8 @@ impl declared::Poller for Poller {
         if !output::ALARM.is_on(&image) {
             self.told.alarm = None;
         }
-        let position = self.told.position_mm.map(|[x_mm, y_mm, z_mm, _]| PositionMm { x_mm, y_mm, z_mm });
-        let line = OverviewReport { position, not_asked, ..report(&self.link, &image, self.told.alarm.as_ref()) };
+        let position = self.told.position_mm.map(PositionMm::of_axes);
+        let line = report(&self.link, &image, self.told.alarm.as_ref(), position, not_asked);
         let whole = (detail >= Detail::Axes).then(|| self.whole(detail, &image, not_asked));
         Ok(Sample { line, answered_in: None, alarms: self.told.alarm.iter().cloned().collect(), whole })
     }
@@ -137,7 +138,7 @@ impl Poller {
         let values = done.as_ref().map(|done| &done.values);
         match command {
             Command::PositionMm => {
-                let position = values.and_then(|values| Position::of(values, Some(Unit::Mm)).position_mm);
+                let position = values.and_then(mm);
                 self.told.position_mm = position;
             }
             Command::TorqueOfMax => {

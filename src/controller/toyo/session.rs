@@ -9,7 +9,8 @@ use std::time::Duration;
 
 pub use self::framer::{Framed, Framer};
 use super::request::{BlockError, Request};
-use crate::{Now, Session, Step};
+use super::table::Command;
+use crate::{Now, Risk, Session, Step};
 
 /// How patient a session is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +74,10 @@ pub struct LineSession {
     free: Now,
     /// When something came last that nobody asked for.
     stray: Option<Now>,
+    /// The order that had a yes last, which a late no would take back, and when it had it.
+    accepted: Option<(Request, Now)>,
+    /// An order whose yes a late no has taken back.
+    refuted: Option<Request>,
 }
 
 #[derive(Debug)]
@@ -83,6 +88,8 @@ enum State {
     Settling(Exchange),
     /// Sent; the answer may take until then.
     Waiting(Exchange, Now),
+    /// An order that is not read back has a yes: a no may follow until then.
+    Confirming(String, Now),
 }
 
 /// What is asked, and what came of it so far.
@@ -99,6 +106,10 @@ struct Exchange {
     copy: Option<String>,
     /// Not before this moment: a line that was noisy gets quiet first.
     not_before: Now,
+    /// The order before this question, whose yes a no that comes now may take back.
+    follows: Option<Request>,
+    /// Whether that no came.
+    is_refused: bool,
     /// Until when an order waits for a line on which something comes that nobody asked for; set at the first look.
     patience: Option<Now>,
 }
@@ -107,6 +118,14 @@ struct Exchange {
 const QUIET: Duration = Duration::from_millis(50);
 /// How long an order waits for that silence. On a line that is never quiet it then goes out.
 const PATIENCE: Duration = Duration::from_millis(500);
+/// How long the answer to a question is waited for behind a no that may be one to the order before it.
+const BEHIND_A_NO: Duration = Duration::from_millis(200);
+/// How long behind a yes a no may be one to the same order.
+const LATE: Duration = Duration::from_millis(500);
+/// What runs may be over before the line is known to stay quiet: it is looked at instead.
+const RUNS: [Command; 4] = [Command::Spst, Command::Ppst, Command::Sesy, Command::Extp];
+/// Why a yes is none.
+const BOTH_CAME: &str = "both @OK and @NG came: one of them answers another client of this line";
 
 impl LineSession {
     /// A line in peace.
@@ -121,7 +140,25 @@ impl LineSession {
             echoes: false,
             free: Now::ZERO,
             stray: None,
+            accepted: None,
+            refuted: None,
         }
+    }
+
+    /// Begins to wait whether a no follows to an order that has its yes, as long as one may; `false` if none may.
+    pub fn confirm(&mut self, now: Now) -> bool {
+        let Some((_, at)) = &self.accepted else { return false };
+        if !matches!(self.state, State::Ended(_)) || now >= *at + QUIET {
+            return false;
+        }
+        self.state = State::Confirming(YES.to_owned(), *at + QUIET);
+        true
+    }
+
+    /// The order whose yes was taken back by a no that came in the exchange behind it, once; and why it counts no more.
+    pub fn take_refuted(&mut self) -> Option<(Request, Ended)> {
+        let unfitting = Ended::Unfitting { block: YES.to_owned(), why: BOTH_CAME.to_owned() };
+        self.refuted.take().map(|order| (order, unfitting))
     }
 
     /// Begins an exchange; what `is_repeatable` is sent again after silence. An exchange that had not ended is given
@@ -150,6 +187,8 @@ impl LineSession {
             may_confirm: is_repeatable,
             copy: None,
             not_before,
+            follows: None,
+            is_refused: false,
             patience: None,
         });
     }
@@ -196,6 +235,9 @@ impl LineSession {
 
     /// The time for an answer is over.
     fn silence(&mut self, mut exchange: Exchange, deadline: Now) -> Step<Ended> {
+        if exchange.is_refused {
+            return self.end(Ended::Answered(NO.to_owned()));
+        }
         // Only the request itself came: an answer that looks the same, or the echo of a line without a controller.
         if let Some(block) = exchange.copy.take().filter(|copy| !self.echoes && exchange.accepts(copy).is_ok()) {
             self.counters.echoes -= 1;
@@ -217,11 +259,14 @@ impl LineSession {
     }
 
     fn send(&mut self, now: Now) -> Step<Ended> {
-        let State::Settling(exchange) = std::mem::replace(&mut self.state, State::Ended(None)) else {
+        let State::Settling(mut exchange) = std::mem::replace(&mut self.state, State::Ended(None)) else {
             return Step::Wait(Now::MAX);
         };
         let bytes = format!("{}\r\n", exchange.text).into_bytes();
         self.counters.sent += 1;
+        let is_question = exchange.request.as_ref().is_some_and(|request| !request.row().is_order());
+        let accepted = self.accepted.take_if(|(_, at)| !is_question || now >= *at + LATE);
+        exchange.follows = self.accepted.as_ref().filter(|_| accepted.is_none()).map(|(order, _)| order.clone());
         self.framer.clear();
         let deadline = self.deadline(now, &bytes);
         self.state = State::Waiting(exchange, deadline);
@@ -246,11 +291,28 @@ impl LineSession {
             exchange.copy = Some(block);
             return State::Waiting(exchange, deadline);
         }
+        if block == NO && exchange.follows.is_some() && !exchange.is_refused {
+            exchange.is_refused = true;
+            return State::Waiting(exchange, deadline.min(now + BEHIND_A_NO));
+        }
         match exchange.accepts(&block) {
             Ok(()) => {
+                if exchange.is_refused && block != NO {
+                    self.refuted = exchange.follows.take();
+                    self.accepted = None;
+                }
                 self.echoes |= exchange.copy.is_some();
                 // If it was asked several times, the other answers may come as late as that.
                 self.owed_until = deadline;
+                if block == YES
+                    && let Some(order) = exchange.request.filter(is_not_read_back)
+                {
+                    let is_looked_at = RUNS.contains(&order.command());
+                    self.accepted = Some((order, now));
+                    if !is_looked_at {
+                        return State::Confirming(block, now + QUIET);
+                    }
+                }
                 State::Ended(Some(Ended::Answered(block)))
             }
             Err(error @ (BlockError::Other { .. } | BlockError::Command { .. })) => {
@@ -273,6 +335,14 @@ impl LineSession {
         }
     }
 
+    /// An order has both answers.
+    fn contradicted(&mut self, now: Now, block: String) -> State {
+        self.counters.foreign += 1;
+        self.stray = Some(now);
+        self.accepted = None;
+        State::Ended(Some(Ended::Unfitting { block, why: BOTH_CAME.to_owned() }))
+    }
+
     /// A garbled block was the answer. What may be repeated is asked again as soon as the line is quiet; the rest waits
     /// for its time to run out.
     fn again(&mut self, now: Now, mut exchange: Exchange, deadline: Now, unfitting: (String, String)) -> State {
@@ -287,10 +357,24 @@ impl LineSession {
     }
 }
 
+/// The answers to an order.
+const YES: &str = "@OK";
+const NO: &str = "@NG";
+
+/// Whether nothing is read back of what an order does: of what moves by itself, and of memory that is cleared. A jog is
+/// looked at all the time, and must not be kept from its stop.
+fn is_not_read_back(order: &Request) -> bool {
+    match order.command() {
+        Command::Jgst => false,
+        Command::Mint => true,
+        _ => order.risk() == Risk::Motion,
+    }
+}
+
 /// Whether of two answers that came together one is a yes and the other a no: a device server may send each to all clients.
 fn contradicts(first: &str, second: &Framed) -> bool {
     let Framed::Block(second) = second else { return false };
-    matches!((first, second.as_str()), ("@OK", "@NG") | ("@NG", "@OK"))
+    matches!((first, second.as_str()), (YES, NO) | (NO, YES))
 }
 
 impl Exchange {
@@ -332,11 +416,14 @@ impl Session for LineSession {
                 let at = settled.max(exchange.not_before).max(quiet).max(self.free);
                 if at > now { Step::Wait(at) } else { self.send(now) }
             }
-            State::Waiting(_, deadline) if now < *deadline => Step::Wait(*deadline),
-            State::Waiting(..) => match std::mem::replace(&mut self.state, State::Ended(None)) {
-                State::Waiting(exchange, deadline) => self.silence(exchange, deadline.max(now)),
-                _ => Step::Wait(Now::MAX),
-            },
+            State::Waiting(_, until) | State::Confirming(_, until) if now < *until => Step::Wait(*until),
+            State::Waiting(..) | State::Confirming(..) => {
+                match std::mem::replace(&mut self.state, State::Ended(None)) {
+                    State::Waiting(exchange, deadline) => self.silence(exchange, deadline.max(now)),
+                    State::Confirming(block, _) => self.end(Ended::Answered(block)),
+                    _ => Step::Wait(Now::MAX),
+                }
+            }
         }
     }
 
@@ -356,11 +443,9 @@ impl Session for LineSession {
                     is_answered = matches!(state, State::Ended(_));
                     state
                 }
+                State::Confirming(first, _) if contradicts(&first, &framed) => self.contradicted(now, first),
                 State::Ended(Some(Ended::Answered(first))) if is_answered && contradicts(&first, &framed) => {
-                    self.counters.foreign += 1;
-                    self.stray = Some(now);
-                    let why = "both @OK and @NG came: one of them answers another client of this line".to_owned();
-                    State::Ended(Some(Ended::Unfitting { block: first, why }))
+                    self.contradicted(now, first)
                 }
                 state => {
                     self.counters.foreign += 1;

@@ -213,8 +213,8 @@ impl Request {
         let Some(service) = self.row().and_then(|row| row.service(self.service)) else { return Risk::Motion };
         match service.risk {
             RiskRule::Always(risk) => risk,
-            RiskRule::Switches => match (self.instance, self.data.as_slice()) {
-                (1 | 3, _) | (2, [2, 0, 0, 0]) => Risk::Write,
+            RiskRule::Switches => match self.instance {
+                1 | 3 => Risk::Write,
                 _ => Risk::Motion,
             },
         }
@@ -361,13 +361,21 @@ mod tests {
     #[test]
     fn risk_sees_the_data() {
         assert_eq!(request(0x83, 2, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
-        assert_eq!(request(0x83, 2, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Write);
+        assert_eq!(request(0x83, 2, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x83, 2, 1, 0x10, &[2]).risk(), Risk::Motion);
         assert_eq!(request(0x83, 1, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Write);
         assert_eq!(request(0x83, 9, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x72, 1, 0, 0x01, &[]).risk(), Risk::Read);
         assert_eq!(request(0x72, 1, 0, 0x10, &[]).risk(), Risk::Motion);
         assert_eq!(request(0x8D, 1, 0, 0x01, &[]).risk(), Risk::Motion);
+        for position in [0x7F, 0x80, 0x81] {
+            assert_eq!(request(position, 1, 0, 0x02, &[]).risk(), Risk::Destroy);
+            assert_eq!(request(position, 1, 3, 0x10, &[0; 4]).risk(), Risk::Destroy);
+        }
+        for positions in 0x307..=0x309 {
+            assert_eq!(request(positions, 1, 0, 0x34, &[]).risk(), Risk::Destroy);
+            assert_eq!(request(positions, 1, 0, 0x33, &[]).risk(), Risk::Read);
+        }
         assert_eq!(request(0x86, 1, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x87, 1, 0, 0x02, &[0; 36]).risk(), Risk::Write);
         assert_eq!(Request::file(0x16, *b"A.JBI").risk(), Risk::Read);

@@ -91,7 +91,7 @@ pub enum Attribute {
 pub enum RiskRule {
     /// The same whatever the data.
     Always(Risk),
-    /// Servo power on is motion; hold, hlock and servo power off are writes (3.3.20).
+    /// Servo power on and off is motion, as an axis may sink; hold and hlock are writes (3.3.20).
     Switches,
 }
 

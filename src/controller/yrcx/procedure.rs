@@ -140,6 +140,12 @@ impl Procedure {
         !self.steps.iter().any(|step| matches!(step, Step::Set { .. } | Step::Rise(_)))
     }
 
+    /// Whether it takes off what lets the robot move.
+    pub fn stops(&self) -> bool {
+        let is_stop = |signal: &Signal| [input::STOP, input::EMERGENCY_STOP].contains(signal);
+        self.steps.iter().any(|step| matches!(step, Step::Set { signal, on: false } if is_stop(signal)))
+    }
+
     /// Every timing chart.
     pub fn charts() -> [Self; 7] {
         [

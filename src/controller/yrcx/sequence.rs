@@ -69,6 +69,9 @@ impl fmt::Display for Outcome {
 pub struct Sequence {
     procedure: Procedure,
     patience: Duration,
+    /// The longest that all of it may take, and since when.
+    longest: Duration,
+    began: Option<Now>,
     at: usize,
     since: Option<Now>,
     input: Option<Image>,
@@ -92,6 +95,8 @@ impl Sequence {
         Self {
             procedure,
             patience,
+            longest: Duration::MAX,
+            began: None,
             at: 0,
             since: None,
             input: None,
@@ -100,6 +105,12 @@ impl Sequence {
             raised: None,
             outcome: None,
         }
+    }
+
+    /// The same, in this time altogether.
+    #[must_use]
+    pub fn within(self, longest: Duration) -> Self {
+        Self { longest, ..self }
     }
 
     /// The step it is at; `None` at the end.
@@ -191,7 +202,8 @@ impl ImageSession for Sequence {
                 self.end(output, Outcome::LinkLost { begun });
                 break;
             }
-            let deadline = since.saturating_add(self.patience);
+            let end = self.began.get_or_insert(now).saturating_add(self.longest);
+            let deadline = since.saturating_add(self.patience).min(end);
             match self.advance(now, output, step) {
                 Advance::Next => {
                     self.at += 1;

@@ -56,7 +56,7 @@ pub struct Policy {
     pub motion: Option<Duration>,
     /// For the ready status, after the command.
     pub release: Duration,
-    /// For the end of a motion that was interrupted.
+    /// For the end of a command that was interrupted.
     pub stop: Duration,
 }
 
@@ -80,7 +80,7 @@ impl Default for Policy {
             power: Duration::from_secs(30),
             motion: None,
             release: Duration::from_secs(3),
-            stop: Duration::from_secs(10),
+            stop: Duration::from_secs(3),
         }
     }
 }

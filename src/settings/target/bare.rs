@@ -54,7 +54,8 @@ impl Given {
                 return wrong("it does not tell the fieldbus", ways);
             }
             (None, false) => {
-                let ways = format!("write udp://{host} (yerc), eip://{host} (yrcx) or tcp://{host}:PORT (toyo)");
+                let port = if has_port { "" } else { ":PORT" };
+                let ways = format!("write udp://{host} (yerc), eip://{host} (yrcx) or tcp://{host}{port} (toyo)");
                 return wrong("it does not tell the family", ways);
             }
             (None, true) => {

@@ -1,6 +1,7 @@
 //! The parts of a target URL.
 
 use std::fmt;
+use std::net::Ipv6Addr;
 use std::ops::RangeInclusive;
 
 use crate::controller::nearest::nearest;
@@ -54,7 +55,18 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
     if host.chars().any(|c| c.is_whitespace() || c.is_control() || "/@#".contains(c)) {
         return Err(format!("'{host}' is not a valid host name"));
     }
+    if is_unspecified(host) {
+        return Err(format!("{host} is the address of no robot"));
+    }
     Ok((host.to_owned(), port))
+}
+
+/// Whether a host is all zeros, in whatever form the system takes it: `0.0.0.0`, `0`, `0x0`, `[::]`. The system would send
+/// what is for the robot to this machine.
+fn is_unspecified(host: &str) -> bool {
+    let is_zero = |part: &str| !part.is_empty() && part.trim_start_matches("0x").chars().all(|digit| digit == '0');
+    host.parse::<Ipv6Addr>().is_ok_and(|address| address.to_canonical().is_unspecified())
+        || host.split('.').all(is_zero)
 }
 
 /// A number of a port.

@@ -1,8 +1,8 @@
 //! Finds out which assemblies a device has, of which sizes, and which of them make a connection.
 //!
-//! Reads what can be read, and then asks for connections with sizes that no assembly has, so that the device refuses
-//! them and says why: which instances it does not have, and which sizes are right. A device that opens one all the same
-//! is told to close it at once.
+//! A survey reads assemblies and asks for nothing else. A probe asks for connections as well, with sizes that no assembly
+//! has, so that the device refuses them and says why: which instances it does not have, and which sizes are right. A device
+//! that opens one all the same has this program as its master until it is told to close it: a probe may take command.
 
 use std::fmt;
 use std::time::Duration;
@@ -101,21 +101,37 @@ pub struct Findings {
     pub connectable: Option<Connectable>,
 }
 
-/// Looks at a device, beginning with the instances that are thought to be right. Every instance of [`INSTANCES`] is
-/// asked for, one by one; then connections of likely instances, until one would be opened with the right sizes.
+/// Reads every assembly of [`INSTANCES`], one by one, and opens no connection. `thought` are instances that may be right,
+/// the likeliest first; the first ones that can all be read are connectable.
 ///
 /// # Errors
 /// When the device does not answer, or answers nonsense. What it refuses is what is found.
-pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, EipError> {
+pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findings, EipError> {
     let identity = match client.identity().await {
         Err(EipError::Encapsulation { .. }) => None,
         identity => identity?,
     };
     let mut assemblies = Vec::new();
     for instance in INSTANCES {
-        assemblies.extend(assembly(client, instance).await?);
+        if let Presence::Readable(assembly) = assembly(client, instance).await? {
+            assemblies.push(assembly);
+        }
     }
-    let mut attempts = Vec::new();
+    let size = |instance| assemblies.iter().find(|assembly| assembly.instance == instance)?.size;
+    let connectable = thought.iter().find_map(|instances| {
+        let (output_size, input_size) = (Some(size(instances.output)?), Some(size(instances.input)?));
+        Some(Connectable { instances: *instances, output_size, input_size })
+    });
+    Ok(Findings { identity, assemblies, attempts: Vec::new(), connectable })
+}
+
+/// A survey, then connections of likely instances, beginning with those that are thought to be right, until one would be
+/// opened with the right sizes. A device that opens one in spite of its wrong sizes is commanded until that is closed.
+///
+/// # Errors
+/// Likewise.
+pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, EipError> {
+    let Findings { identity, assemblies, mut attempts, .. } = survey(client, &[]).await?;
     for instances in likely(thought, &assemblies) {
         if let Some(connectable) = attempt(client, instances, &assemblies, &mut attempts).await? {
             return Ok(Findings { identity, assemblies, attempts, connectable: Some(connectable) });
@@ -124,35 +140,35 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
     Ok(Findings { identity, assemblies, attempts, connectable: None })
 }
 
-/// Looks only whether a connection of these instances would be opened, and with which sizes.
+/// What reading tells of one assembly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Presence {
+    /// There is none of that number.
+    Absent,
+    /// The device tells neither its bytes nor its size.
+    Unknown,
+    /// It can be read, or its size can.
+    Readable(Assembly),
+}
+
+/// Reads one assembly.
 ///
 /// # Errors
 /// Likewise.
-pub async fn dry_run(client: &mut Client, instances: Instances) -> Result<Findings, EipError> {
-    let mut assemblies = Vec::new();
-    for instance in [instances.output, instances.input] {
-        assemblies.extend(assembly(client, instance).await?);
-    }
-    let mut attempts = Vec::new();
-    let connectable = attempt(client, instances, &assemblies, &mut attempts).await?;
-    Ok(Findings { identity: None, assemblies, attempts, connectable })
-}
-
-/// An assembly, if there is one of that number.
-async fn assembly(client: &mut Client, instance: u32) -> Result<Option<Assembly>, EipError> {
+pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, EipError> {
     let what = "Get_Attribute_Single of an assembly";
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, DATA)).await?;
     if answer.status.is_ok() {
-        return Ok(Some(Assembly { instance, size: u16::try_from(answer.data.len()).ok() }));
+        return Ok(Presence::Readable(Assembly { instance, size: u16::try_from(answer.data.len()).ok() }));
     }
     if NO_SUCH_OBJECT.contains(&answer.status.general) {
-        return Ok(None);
+        return Ok(Presence::Absent);
     }
     // It is there, and cannot be read; its size may be.
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, SIZE)).await?;
     let size = answer.data.first_chunk().filter(|_| answer.status.is_ok()).map(|bytes| u16::from_le_bytes(*bytes));
     // A device that refuses everything alike says nothing by it.
-    Ok(size.map(|size| Assembly { instance, size: Some(size) }))
+    Ok(size.map_or(Presence::Unknown, |size| Presence::Readable(Assembly { instance, size: Some(size) })))
 }
 
 /// Instances worth a try: those thought of, the same exchanged, then pairs that were found; each with likely

@@ -45,6 +45,8 @@ pub enum Event {
     Reopened,
     /// Somebody else who uses the link has changed what the peer is shown.
     Shown(Change),
+    /// The process that holds the link shows the peer nothing of what this one wants: the peer is read-only.
+    Denied,
     /// Nothing until then.
     Timeout,
 }
@@ -250,7 +252,7 @@ impl ImageLink {
             Event::Image(image) => self.seen = Some(Arc::clone(image)),
             Event::Lost(_) => (self.is_up, self.seen) = (false, None),
             Event::Reopened => self.is_up = true,
-            Event::Sent | Event::Shown(_) | Event::Timeout => {}
+            Event::Sent | Event::Shown(_) | Event::Denied | Event::Timeout => {}
         }
         event
     }
@@ -285,6 +287,7 @@ impl From<client::Event> for Event {
             client::Event::Sent => Self::Sent,
             client::Event::Image(image) => Self::Image(image.into()),
             client::Event::Shown(change) => Self::Shown(change),
+            client::Event::Denied => Self::Denied,
             // What is true of the outputs, the process that holds the link has told where it could.
             client::Event::Lost(why) => Self::Lost(LinkError::Silent(Cause::new(why))),
             client::Event::Reopened => Self::Reopened,

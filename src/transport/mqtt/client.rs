@@ -16,8 +16,8 @@ use super::{Event, Hello, Loss, Message, SendError, Session};
 
 /// Bytes that are read at a time.
 const CHUNK: usize = 16 * 1024;
-/// How long a goodbye may take.
-const GOODBYE: Duration = Duration::from_secs(2);
+/// How long a broker may leave unread what waits for it.
+const UNREAD: Duration = Duration::from_secs(30);
 
 /// Where a broker is.
 #[derive(Debug, Clone)]
@@ -41,6 +41,8 @@ pub struct Client {
     session: Session,
     buffer: Vec<u8>,
     is_flushed: bool,
+    /// Since when the line has taken none of what waits for it.
+    stuck_since: Option<Instant>,
 }
 
 impl Client {
@@ -53,7 +55,7 @@ impl Client {
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
         let invalid = |error: SendError| Loss::Io(format!("what is to be said to it: {error}"));
         let session = Session::new(hello, Instant::now(), by).map_err(invalid)?;
-        Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true })
+        Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None })
     }
 
     /// Waits for what happens next. It may be dropped at any time. After [`Event::Lost`] nothing happens any more.
@@ -62,7 +64,8 @@ impl Client {
             if let Some(event) = self.session.next_event() {
                 return event;
             }
-            let due = self.session.due();
+            let stuck = self.stuck_since.map(|since| since + UNREAD);
+            let due = self.session.due().into_iter().chain(stuck).min();
             let moved = poll_fn(|cx| self.turn(cx));
             let moved = match due {
                 Some(due) => timeout_at(due, moved).await,
@@ -71,6 +74,7 @@ impl Client {
             match moved {
                 Ok(Ok(len)) => self.session.handle(Instant::now(), &self.buffer[..len]),
                 Ok(Err(loss)) => self.session.lose(loss),
+                Err(_) if stuck.is_some_and(|stuck| stuck <= Instant::now()) => self.session.lose(Loss::Unread),
                 Err(_) => self.session.poll(Instant::now()),
             }
         }
@@ -107,15 +111,15 @@ impl Client {
         self.session.outgoing().len()
     }
 
-    /// Says goodbye, so that the broker keeps the will to itself, and closes the connection.
+    /// Says goodbye, so that the broker keeps the will to itself, and closes the connection. The caller limits how long.
     pub async fn close(mut self) {
         self.session.disconnect(Instant::now());
-        let gone = poll_fn(|cx| {
+        // A broker that has gone meanwhile needs no goodbye.
+        let _closed: io::Result<()> = poll_fn(|cx| {
             ready!(self.flush(cx))?;
             Pin::new(&mut *self.stream).poll_shutdown(cx)
-        });
-        // Nobody waits for a broker that does not listen.
-        let _closed = timeout_at(Instant::now() + GOODBYE, gone).await;
+        })
+        .await;
     }
 
     /// Writes what is to be written, and reads.
@@ -142,11 +146,13 @@ impl Client {
     fn flush(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         while !self.session.outgoing().is_empty() {
             self.is_flushed = false;
+            self.stuck_since.get_or_insert_with(Instant::now);
             let sent = ready!(Pin::new(&mut *self.stream).poll_write(cx, self.session.outgoing()))?;
             if sent == 0 {
                 return Poll::Ready(Err(io::ErrorKind::WriteZero.into()));
             }
             self.session.outgoing().drain(..sent);
+            self.stuck_since = None;
         }
         if !self.is_flushed {
             ready!(Pin::new(&mut *self.stream).poll_flush(cx))?;
@@ -174,5 +180,52 @@ fn loss(error: &io::Error) -> Loss {
             Loss::Closed
         }
         None => Loss::Io(super::super::plain(error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::io::AsyncWriteExt as _;
+    use tokio::time::sleep;
+
+    use super::super::Version;
+    use super::*;
+
+    #[tokio::test(start_paused = true)]
+    async fn a_broker_that_answers_and_does_not_read_is_left() {
+        let hello = Hello {
+            version: Version::V3,
+            client_id: "cell7".to_owned(),
+            user: None,
+            password: None,
+            keep_alive: Duration::from_secs(30),
+            will: None,
+        };
+        let now = Instant::now();
+        let session = Session::new(&hello, now, now + Duration::from_secs(10)).unwrap();
+        // Room for less than CONNECT.
+        let (stream, mut broker) = tokio::io::duplex(8);
+        let mut client =
+            Client { stream: Box::new(stream), session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None };
+        let talks = async {
+            broker.write_all(&[0x20, 2, 0, 0]).await.unwrap();
+            loop {
+                sleep(Duration::from_secs(1)).await;
+                broker.write_all(&[0xd0, 0]).await.unwrap();
+            }
+        };
+        let last = async {
+            loop {
+                if let Event::Lost(loss) = client.next().await {
+                    return loss;
+                }
+            }
+        };
+        let loss = tokio::select! {
+            loss = last => loss,
+            () = talks => unreachable!("it has no end"),
+        };
+        assert!(matches!(loss, Loss::Unread), "{loss}");
+        assert!(now.elapsed() <= UNREAD + Duration::from_secs(1), "{:?}", now.elapsed());
     }
 }

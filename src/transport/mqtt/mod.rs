@@ -20,6 +20,9 @@ pub use self::session::{LARGEST, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 
+/// Packets, bytes and seconds: what a broker may send in a time, besides answers to what is sent to it.
+const FLOOD: (u32, u32, u64) = (1000, 4 << 20, 10);
+
 /// Why there is no connection to a broker, or none any more.
 #[derive(Debug, Error)]
 pub enum Loss {
@@ -49,6 +52,15 @@ pub enum Loss {
     /// What it says is not MQTT, or makes no sense.
     #[error("what it says is not MQTT ({0})")]
     Garbage(String),
+    /// It breaks the rules of MQTT.
+    #[error("it breaks the MQTT protocol: {0}")]
+    Protocol(&'static str),
+    /// It sends more than a client can want.
+    #[error("it sends too much: more than {} packets or {} bytes in {} s that answer nothing", FLOOD.0, FLOOD.1, FLOOD.2)]
+    Flood,
+    /// It does not take what is sent to it.
+    #[error("it does not read what is sent to it")]
+    Unread,
     /// It sends a message that nobody here wants to hold.
     #[error("it sends a packet of more than {LARGEST} bytes")]
     TooLarge,

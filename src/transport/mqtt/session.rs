@@ -11,8 +11,8 @@ use mqtt_protocol_core::mqtt::result_code::MqttError;
 use mqtt_protocol_core::mqtt::{Connection, Version as Spoken, role};
 use tokio::time::Instant;
 
-use super::Loss;
 use super::message::{Event, Hello, Message, Refusal, SendError, Version};
+use super::{FLOOD, Loss};
 
 /// Largest packet that is taken from a broker, in bytes: commands and states take a few hundred.
 pub const LARGEST: u32 = 256 * 1024;
@@ -22,6 +22,10 @@ const RECEIVE_MAXIMUM: u16 = 16;
 const PONG_WITHIN: Duration = Duration::from_secs(10);
 /// What a broker begins with (3.1.1, section 3.2.1; 5 the same).
 const CONNACK: u8 = 0x20;
+/// Bytes that an answer of a broker has at most, as a rule: they are not counted as a flood.
+const ANSWER: u32 = 256;
+/// Bytes of acknowledgements that wait for a broker which does not read them.
+const REPLIES: usize = 64 * 1024;
 /// Longest text of a broker that is passed on, in characters.
 const LONGEST_TEXT: usize = 200;
 
@@ -41,7 +45,43 @@ pub struct Session {
     pings: u64,
     pongs: u64,
     has_heard: bool,
+    flood: Flood,
+    /// Bytes that were sent in reply since the line has taken all.
+    replies: usize,
     is_over: bool,
+}
+
+/// What a broker has sent since a moment, besides answers.
+#[derive(Debug)]
+struct Flood {
+    since: Instant,
+    packets: u32,
+    bytes: u32,
+}
+
+impl Flood {
+    fn new(since: Instant) -> Self {
+        Self { since, packets: 0, bytes: 0 }
+    }
+
+    fn bytes(&mut self, now: Instant, count: usize) {
+        if now.saturating_duration_since(self.since) >= Duration::from_secs(FLOOD.2) {
+            *self = Self::new(now);
+        }
+        self.bytes = self.bytes.saturating_add(u32::try_from(count).unwrap_or(u32::MAX));
+    }
+
+    fn packet(&mut self, is_answer: bool) {
+        if is_answer {
+            self.bytes = self.bytes.saturating_sub(ANSWER);
+        } else {
+            self.packets = self.packets.saturating_add(1);
+        }
+    }
+
+    fn is_too_much(&self) -> bool {
+        self.packets > FLOOD.0 || self.bytes > FLOOD.1
+    }
 }
 
 impl Session {
@@ -70,6 +110,8 @@ impl Session {
             pings: 0,
             pongs: 0,
             has_heard: false,
+            flood: Flood::new(now),
+            replies: 0,
             is_over: false,
         };
         session.send(now, connect(hello)?)?;
@@ -115,15 +157,27 @@ impl Session {
         {
             return self.lose(Loss::Garbage(format!("it begins with 0x{first:02X}")));
         }
+        self.flood.bytes(now, bytes.len());
+        if self.outgoing.is_empty() {
+            self.replies = 0;
+        }
+        let unsent = self.outgoing.len();
         let mut cursor = Cursor::new(bytes);
         let end = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
         while !self.is_over && cursor.position() < end {
             let before = cursor.position();
             let events = self.inner.recv(&mut cursor);
             self.take(now, events);
+            if self.flood.is_too_much() {
+                self.lose(Loss::Flood);
+            }
             if cursor.position() == before {
                 break;
             }
+        }
+        self.replies += self.outgoing.len() - unsent;
+        if self.replies > REPLIES {
+            self.lose(Loss::Unread);
         }
     }
 
@@ -255,24 +309,30 @@ impl Session {
     }
 
     fn receive(&mut self, packet: Packet) {
+        let is_connack = matches!(packet, Packet::V3_1_1Connack(_) | Packet::V5_0Connack(_));
+        if is_connack && self.answer_by.take().is_none() {
+            return self.lose(Loss::Protocol("a second CONNACK"));
+        }
+        self.flood.packet(match &packet {
+            Packet::V3_1_1Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
+            Packet::V5_0Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
+            Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => self.pongs < self.pings,
+            // The codec takes it for a subscription under way alone.
+            Packet::V3_1_1Suback(_) | Packet::V5_0Suback(_) => true,
+            _ => is_connack,
+        });
         let event = match packet {
-            Packet::V3_1_1Connack(connack) => {
-                self.answer_by = None;
-                match connack.return_code() as u8 {
-                    0 => Event::Connected,
-                    code => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
+            Packet::V3_1_1Connack(connack) => match connack.return_code() as u8 {
+                0 => Event::Connected,
+                code => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
+            },
+            Packet::V5_0Connack(connack) => match connack.reason_code() as u8 {
+                0 => Event::Connected,
+                code => {
+                    let (reason, server) = texts(connack.props());
+                    Event::Refused(Refusal { version: Version::V5, code, reason, server })
                 }
-            }
-            Packet::V5_0Connack(connack) => {
-                self.answer_by = None;
-                match connack.reason_code() as u8 {
-                    0 => Event::Connected,
-                    code => {
-                        let (reason, server) = texts(connack.props());
-                        Event::Refused(Refusal { version: Version::V5, code, reason, server })
-                    }
-                }
-            }
+            },
             Packet::V3_1_1Puback(puback) => match self.under_way.remove(&puback.packet_id()) {
                 Some(number) => Event::Acknowledged(number, None),
                 None => return,
@@ -485,6 +545,77 @@ mod tests {
         session.handle(now, &[0xe0, 1, 0x8e]);
         let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
         assert!(loss.is_takeover() && loss.to_string().contains("another client"), "{loss}");
+    }
+
+    #[test]
+    fn a_second_connack_breaks_the_protocol() {
+        for (version, connack) in [(Version::V3, &[0x20, 2, 0, 0][..]), (Version::V5, &[0x20, 3, 0, 0, 0])] {
+            let (mut session, now) = connected(version);
+            session.handle(now, &connack.repeat(4096));
+            let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
+            assert_eq!(loss.to_string(), "it breaks the MQTT protocol: a second CONNACK");
+            assert!(session.next_event().is_none());
+        }
+    }
+
+    /// How many of these packets are taken, one every `apart`, before the connection is ended.
+    fn taken(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
+        let (mut session, now) = connected(Version::V3);
+        let mut at = now;
+        for number in 0..most {
+            session.handle(at, packet);
+            session.outgoing().clear();
+            while let Some(event) = session.next_event() {
+                if let Event::Lost(loss) = event {
+                    return (number, Some(loss.to_string()));
+                }
+            }
+            at += apart;
+        }
+        (most, None)
+    }
+
+    #[test]
+    fn a_broker_sends_so_much_in_a_time_and_no_more() {
+        let large = [&[0x30, 0xff, 0xff, 0x07, 0, 1, b'a'][..], &vec![b'x'; 131_068]].concat();
+        for (packet, most) in [(&[0x30, 3, 0, 1, b'a'][..], 1000), (&[0xd0, 0], 1000), (&large, 31)] {
+            let (count, why) = taken(packet, Duration::ZERO, 5000);
+            assert_eq!(count, most);
+            assert!(why.unwrap().contains("it sends too much"));
+            assert_eq!(taken(packet, Duration::from_secs(1), 5000), (5000, None), "what is slow goes on");
+        }
+    }
+
+    #[test]
+    fn answers_are_no_flood() {
+        let (mut session, now) = connected(Version::V5);
+        // Each with a reason of 100 letters.
+        let mut puback = vec![0x40, 107, 0, 0, 0, 103, 0x1f, 0, 100];
+        puback.extend([b'x'; 100]);
+        for _ in 0..100_000 {
+            let number = session.publish(now, &message(true)).unwrap();
+            // PUBLISH: type, length, topic with its length, identifier.
+            let id = [session.outgoing()[7], session.outgoing()[8]];
+            session.outgoing().clear();
+            puback[2..4].copy_from_slice(&id);
+            session.handle(now, &puback);
+            let Some(Event::Acknowledged(acknowledged, None)) = session.next_event() else { panic!("not taken") };
+            assert_eq!(Some(acknowledged), number);
+        }
+    }
+
+    #[test]
+    fn replies_that_are_not_read_are_bounded() {
+        let (mut session, now) = connected(Version::V3);
+        session.outgoing().clear();
+        // One every 100 ms: no flood. Nothing of it is taken by the line.
+        for number in 1..u16::MAX {
+            let [high, low] = number.to_be_bytes();
+            session.handle(now + Duration::from_millis(100) * number.into(), &[0x32, 5, 0, 1, b'a', high, low]);
+        }
+        assert!(session.outgoing().len() <= REPLIES + 4);
+        let lost = std::iter::from_fn(|| session.next_event()).any(|event| matches!(event, Event::Lost(Loss::Unread)));
+        assert!(lost);
     }
 
     #[test]

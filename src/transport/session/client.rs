@@ -11,7 +11,12 @@ use tokio::time::{Instant, sleep_until, timeout_at};
 
 use super::place::{Place, PlaceError, Spot};
 use super::socket::{self, WriteHalf};
-use super::wire::{Change, Control, Frame, Hello, Images, Peer, Reader, Status, VERSION, Welcome, WireError, short};
+use super::wire::{
+    Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, short,
+};
+
+/// Why a session is gone whose holder has said nothing: it was killed, or has crashed.
+const HOLDER_GONE: &str = "the session's holder has ended";
 
 /// How long a host may take to answer what it knows without asking the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
@@ -68,24 +73,36 @@ pub enum SessionBusy {
     /// Somebody else moves the robot.
     #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
+    /// The session passes only reads and stops.
+    #[error("the robot is read-only, and its session passed nothing on")]
+    ReadOnly,
 }
 
-/// Looks for the session of this key, and says hello to it. `leaves_motion`: the session does not stop the robot if this
-/// process dies while it moves the robot.
-pub async fn attach(key: &str, command: &str, leaves_motion: bool) -> Result<Found, AttachError> {
+impl SessionBusy {
+    /// The kind of errors that stand for a refusal by the host: no socket and no port has it.
+    pub(super) const DENIED: io::ErrorKind = io::ErrorKind::ReadOnlyFilesystem;
+
+    /// What an error of a session's link means, if it is a refusal by the host.
+    pub fn of(error: &io::Error) -> Option<Self> {
+        (error.kind() == Self::DENIED).then_some(Self::ReadOnly)
+    }
+}
+
+/// Looks for the session of this key, and says hello to it.
+pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
     match Place::find()? {
-        Some(place) => attach_at(&place.spot(key), key, command, leaves_motion).await,
+        Some(place) => attach_at(&place.spot(key), key, command, purpose).await,
         None => Ok(Found::Nothing),
     }
 }
 
 /// The same, where the spot is known.
-pub async fn attach_at(spot: &Spot, key: &str, command: &str, leaves_motion: bool) -> Result<Found, AttachError> {
+pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
     let Some(mut end) = End::connect(spot).await? else {
         return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
     };
     let (key, pid, command) = (key.to_owned(), std::process::id(), short(command));
-    let hello = Hello { version: VERSION, key, pid, command, leaves_motion };
+    let hello = Hello { version: VERSION, key, pid, command, purpose };
     end.post(Control::Hello(hello));
     match end.answer().await? {
         Control::Welcome(welcome) if welcome.version == VERSION => {
@@ -180,9 +197,18 @@ impl End {
             Ok(Ok(Some(Frame::Control(control)))) => Ok(control),
             Ok(Ok(None)) => Ok(Control::Ended("the session has just ended".to_owned())),
             Ok(Ok(Some(_))) => Err(AttachError::Foreign),
+            Ok(Err(error)) if is_gone(&error) => Ok(Control::Ended("the session has just ended".to_owned())),
             Ok(Err(error)) => Err(error.into()),
         }
     }
+}
+
+/// Whether an error says that nobody is at the other end of the socket any more.
+fn is_gone(error: &WireError) -> bool {
+    use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected, UnexpectedEof};
+
+    let gone = [BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected, UnexpectedEof];
+    matches!(error, WireError::Io(error) if gone.contains(&error.kind()))
 }
 
 /// A client of a session.
@@ -305,9 +331,22 @@ impl Attached {
         }
         if self.has_line() {
             self.end.put(&Frame::Data { channel, bytes: bytes.to_vec() });
-            self.end.flush().await?;
+            if let Err(error) = self.end.flush().await {
+                let why = self.end_with(Some(error.into()));
+                return Err(io::Error::new(io::ErrorKind::NotConnected, why));
+            }
         }
         Ok(())
+    }
+
+    /// The socket has ended, or failed: so has the session.
+    fn end_with(&mut self, error: Option<WireError>) -> String {
+        let why = match error {
+            Some(error) if !is_gone(&error) => format!("the session is gone: {error}"),
+            _ => HOLDER_GONE.to_owned(),
+        };
+        self.ended = Some(why.clone());
+        why
     }
 
     /// Has the host open a new socket for a channel.
@@ -342,6 +381,9 @@ impl Attached {
             match self.next(until).await {
                 Some(Frame::Data { channel, bytes }) => return Ok(Some((channel, bytes))),
                 Some(Frame::Control(Control::Broken(broken))) => return Err(broken.into()),
+                Some(Frame::Control(Control::Denied { .. })) => {
+                    return Err(io::Error::new(SessionBusy::DENIED, SessionBusy::ReadOnly));
+                }
                 Some(Frame::Control(Control::Lost(why))) => {
                     return Err(io::Error::new(io::ErrorKind::NotConnected, why));
                 }
@@ -376,12 +418,14 @@ impl Attached {
         };
         let why = match next {
             None => return Ok(None),
-            Some(Ok(Some(Frame::Control(Control::Ended(why))))) => why,
+            Some(Ok(Some(Frame::Control(Control::Ended(why))))) => {
+                self.ended = Some(why.clone());
+                why
+            }
             Some(Ok(Some(frame))) => return Ok(Some(frame)),
-            Some(Ok(None)) => "the session is gone".to_owned(),
-            Some(Err(error)) => format!("the session is gone: {error}"),
+            Some(Ok(None)) => self.end_with(None),
+            Some(Err(error)) => self.end_with(Some(error)),
         };
-        self.ended = Some(why.clone());
         Err(SessionBusy::Ended(why))
     }
 }
@@ -408,6 +452,8 @@ pub enum Event {
     Image(Vec<u8>),
     /// Somebody else has changed what the device is shown.
     Shown(Change),
+    /// The robot is read-only, and what was shown last is not; [`Attached::shown`] is what the device is shown.
+    Denied,
     /// The link went down, and why.
     Lost(String),
     /// It is up again; [`Attached::shown`] is what the device is shown now.
@@ -469,6 +515,12 @@ impl Attached {
                         change.apply(&mut images.shown);
                     }
                     return Event::Shown(change);
+                }
+                Some(Frame::Control(Control::Denied { shown })) => {
+                    if let (Some(images), Some(shown)) = (&mut self.welcome.images, shown) {
+                        images.shown = shown;
+                    }
+                    return Event::Denied;
                 }
                 Some(_) => {}
                 None => {

@@ -12,7 +12,7 @@ use tokio::io::AsyncReadExt as _;
 use super::socket::ReadHalf;
 
 /// What both sides must speak alike.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Longest frame: more than a datagram or an image can have.
 const LONGEST: usize = 1 << 17;
@@ -118,6 +118,11 @@ pub enum Control {
     },
     /// Host: sending or receiving failed.
     Broken(Broken),
+    /// Host: the robot is read-only, and what the client sent is not passed on.
+    Denied {
+        /// What the device is shown, where the link carries images.
+        shown: Option<Vec<u8>>,
+    },
     /// Host: the session ends, and why.
     Ended(String),
 }
@@ -133,8 +138,20 @@ pub struct Hello {
     pub pid: u32,
     /// Its command line.
     pub command: String,
-    /// Whether the robot moves on if the client dies.
-    pub leaves_motion: bool,
+    /// What it comes for.
+    pub purpose: Purpose,
+}
+
+/// What a client comes for, as far as the host must know.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Purpose {
+    /// Anything; what it moves is stopped if it dies.
+    #[default]
+    Any,
+    /// What it moves moves on if it dies.
+    LeavesMotion,
+    /// To stop the robot, which waits behind nobody.
+    Stop,
 }
 
 /// A client, to others.

@@ -241,6 +241,9 @@ pub fn print<D: CaptureDecoder>(
         let _busy = busy();
         source.capture(decoder, room, without_fields)?
     };
+    if run.screen.format == Format::Value {
+        return Err(Failure::usage("a capture is no list of values").hint("-o csv has a row a message").into());
+    }
     // Rows of CSV are written as they come, but for the fields of one packet.
     let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
     let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };

@@ -115,7 +115,7 @@ impl Board {
 impl Seen {
     /// The line of the latest look, if it is there and tells how the robot is.
     pub fn line(&self) -> Option<&OverviewReport> {
-        self.look.as_ref().map(|look| &look.sample.line).filter(|line| line.reachable)
+        self.look.as_ref().map(|look| &look.sample.line).filter(|line| line.state.reachable)
     }
 
     /// The axes of the latest look that are measured in `unit`, each with a label that no other one has.

@@ -47,16 +47,16 @@ pub const METRICS: &[Metric] = &[
     metric("armctl_robot_up", Gauge, "", "Whether the robot answered the latest poll.",
         |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.look.is_some())))),
     metric("armctl_robot_servo_on", Gauge, "", "Whether the servo power is on.",
-        |board, samples| each(board, samples, |seen| flag(seen.line()?.servo_on))),
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.servo_on))),
     metric("armctl_robot_running", Gauge, "", "Whether a job or program runs, or an axis moves.",
-        |board, samples| each(board, samples, |seen| flag(seen.line()?.running))),
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.running))),
     metric("armctl_robot_held", Gauge, "", "Whether the robot is held or paused.",
-        |board, samples| each(board, samples, |seen| flag(seen.line()?.held))),
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.held))),
     metric("armctl_robot_faulted", Gauge, "", "Whether an alarm or error is present.",
-        |board, samples| each(board, samples, |seen| flag(seen.line()?.fault.faulted))),
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.fault.faulted))),
     metric("armctl_robot_fault", Info, "", "The alarm or error that is present: the first one, with its code and text.",
         faults),
-    metric("armctl_robot_mode", Info, "", "The mode of the controller, such as teach, play, auto or manual.", modes),
+    metric("armctl_robot_mode", Info, "", "Who moves the robot: manual or automatic.", modes),
     metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
         // As divided, and not as multiplied by 0.001: 0.1025 stays what it is.
         |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
@@ -116,7 +116,7 @@ fn each<V: std::fmt::Display>(board: &Board, samples: &mut Samples<'_>, value: i
 
 fn faults(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
-        let fault = seen.line().map(|line| &line.fault).filter(|fault| fault.faulted == Some(true));
+        let fault = seen.line().map(|line| &line.state.fault).filter(|fault| fault.faulted == Some(true));
         if let Some(fault) = fault {
             let [code, text] = [&fault.fault_code, &fault.fault_text].map(|told| told.as_deref().unwrap_or_default());
             samples.put(&labels(&seen.labels, &[("code", code), ("text", text)]), 1);
@@ -126,8 +126,8 @@ fn faults(board: &Board, samples: &mut Samples<'_>) {
 
 fn modes(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
-        if let Some(mode) = seen.line().and_then(|line| line.mode) {
-            samples.put(&labels(&seen.labels, &[("mode", mode)]), 1);
+        if let Some(mode) = seen.line().and_then(|line| line.state.mode) {
+            samples.put(&labels(&seen.labels, &[("mode", mode.name())]), 1);
         }
     }
 }

@@ -20,11 +20,12 @@ use std::time::{Duration, SystemTime};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
+use tokio::time::timeout;
 
 use self::board::Board;
 use self::page::Form;
 use super::poll::{Poll, Subscription, Wish};
-use super::service::Service;
+use super::service::{END, Service};
 use crate::command::Report;
 use crate::command::face::sample::Detail;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
@@ -108,7 +109,7 @@ impl Metrics {
         .await;
         service.stopping();
         drop(events);
-        polled.await;
+        let _in_time = timeout(END, polled).await;
         match ended {
             Ok(ended) => Ok(ended?),
             // This is how one ends a server.

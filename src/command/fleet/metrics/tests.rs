@@ -6,10 +6,11 @@ use std::time::Duration;
 use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
-use crate::command::face::overview::Fault;
-use crate::command::face::sample::{Alarm, Sample, Traffic};
+use crate::command::face::sample::{Sample, Traffic};
 use crate::command::fleet::poll::{Event, Look};
 use crate::command::fleet::top::testing::{alarmed, fleet, sample, silence};
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::Fault;
 use crate::settings::Robot;
 
 fn looked(robot: &Arc<Robot>, sample: Sample) -> Event {
@@ -57,7 +58,7 @@ fn a_robot_is_told_as_it_is_and_not_as_it_was() {
         ("armctl_robot_running", "} 1"),
         ("armctl_robot_held", "} 0"),
         ("armctl_robot_faulted", "} 0"),
-        ("armctl_robot_mode_info", ",mode=\"play\"} 1"),
+        ("armctl_robot_mode_info", ",mode=\"automatic\"} 1"),
         ("armctl_robot_last_answer_timestamp_seconds", "} 1000.5"),
         ("armctl_polls_total", "} 1"),
         ("armctl_polls_missed_total", "} 2"),
@@ -115,8 +116,8 @@ fn a_fault_has_its_code_and_a_text_that_spoils_nothing() {
     let robots = robots(2);
     let mut evil = alarmed();
     let text = format!("\"}} 1\n{}", "x".repeat(5000));
-    let alarm = Alarm { code: "\\".to_owned(), text, remedy: String::new() };
-    evil.line.fault = Fault::new(true, Some(&alarm));
+    let alarm = Alarm { code: Some("\\".to_owned()), text: Some(text), ..Alarm::default() };
+    evil.line.state.fault = Fault::new(true, Some(&alarm));
     let appeared = robots.iter().map(|robot| Event::Appeared(Arc::clone(robot)));
     let looks = [looked(&robots[0], alarmed()), looked(&robots[1], evil)];
     let board = told(&appeared.chain(looks).collect::<Vec<_>>());

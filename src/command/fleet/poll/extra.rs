@@ -1,8 +1,13 @@
 //! Command lines that only read, asked along with the looks at the robots of their family: `yerc var get B0..B9`.
 
+use std::any::TypeId;
 use std::fmt;
+use std::path::PathBuf;
 use std::slice;
 use std::sync::Arc;
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches};
 
 use crate::command::AnyCommand;
 use crate::command::face::words::{Typed, Wish};
@@ -37,6 +42,9 @@ impl Extra {
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let wrong = |why: &str, hint: &str| Err(wrong(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", EXAMPLE) };
+        if words.iter().any(|word| word.contains(';')) {
+            return wrong("is more than one command", "give one command without ';'; --also may be repeated");
+        }
         let Some(family) = words.first().and_then(|word| word.parse::<Family>().ok()) else {
             return wrong("does not begin with a family", EXAMPLE);
         };
@@ -84,7 +92,11 @@ fn wrong(text: &str, why: &str, hint: &str) -> Failure {
 fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
-    match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
+    let parsed = parser.clone().try_get_matches_from(words);
+    if parsed.as_ref().is_ok_and(|matches| takes_file(&parser, matches)) {
+        return Err(wrong(text, "names a file or folder", "choose a command that reads the robot alone"));
+    }
+    match parsed.and_then(|mut matches| face.read(&mut matches)) {
         Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
         Ok(_) => Err(wrong(text, "is no command", EXAMPLE)),
         Err(error) => {
@@ -107,6 +119,17 @@ impl fmt::Debug for Extra {
     }
 }
 
+/// Whether a path was given to the command, or to one below it: a file would be read or written again and again.
+fn takes_file(command: &clap::Command, matches: &ArgMatches) -> bool {
+    let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+    let is_given = |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
+    if command.get_arguments().any(|arg| is_path(arg) && is_given(arg)) {
+        return true;
+    }
+    let below = matches.subcommand().and_then(|(name, matches)| Some((command.find_subcommand(name)?, matches)));
+    below.is_some_and(|(command, matches)| takes_file(command, matches))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,6 +150,12 @@ mod tests {
             ("yerc job start", "does more than read"),
             ("yerc io watch 10010", "does not end by itself"),
             ("toyo ports", "asks no robot"),
+            ("yerc var get B0; yerc hold on", "is more than one command"),
+            ("yerc status ; yerc hold on", "is more than one command"),
+            ("yerc var dump x.json", "names a file or folder"),
+            ("yerc file get A.JBI --dir x", "names a file or folder"),
+            ("yrcx backup x", "names a file or folder"),
+            ("toyo point list --csv x.csv", "names a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

@@ -172,7 +172,7 @@ impl Follower {
     async fn look(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
-        let unexplained = sample.line.fault.explain(&robot).err();
+        let unexplained = sample.line.state.fault.explain(&robot).err();
         let mut extras = Vec::new();
         for extra in wants.extras(id) {
             match self.ask(link, extra).await {

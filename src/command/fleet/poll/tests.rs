@@ -114,7 +114,7 @@ async fn every_family_is_looked_at_in_a_line_with_its_axes_and_in_full() {
         .await;
         for (at, name) in ids.iter().enumerate() {
             let sample = samples[*name].last().unwrap();
-            assert!(sample.line.reachable && sample.line.mode.is_some() && sample.line.position.is_some());
+            assert!(sample.line.state.mode.is_some() && sample.line.state.position.is_some());
             let full = detail == Detail::Full || whole == Some(at);
             assert_eq!(sample.whole.is_some(), detail > Detail::Summary || full, "{name} {detail:?}");
             if let Some(found) = &sample.whole {

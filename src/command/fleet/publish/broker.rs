@@ -116,6 +116,9 @@ pub struct Login {
     /// Its private key (PEM)
     #[arg(long, value_name = "FILE", requires = "cert", help_heading = "Broker")]
     key: Option<PathBuf>,
+    /// Send the password without TLS, without a warning
+    #[arg(long = "insecure", requires = "user", help_heading = "Broker")]
+    is_insecure: bool,
     /// Version of MQTT
     #[arg(long, value_name = "VERSION", default_value = "5", help_heading = "Broker")]
     protocol: Protocol,
@@ -128,6 +131,8 @@ pub struct Broker {
     pub url: Url,
     /// Where.
     pub endpoint: Endpoint,
+    /// What is wrong with how secrets are kept and sent; empty if nothing is.
+    pub warnings: Vec<String>,
     version: Version,
     user: Option<String>,
     password: Secret,
@@ -169,12 +174,30 @@ impl Broker {
         } else {
             None
         };
+        let password = Secret(password(login)?);
+        let mut warnings = Vec::new();
+        for (file, secret) in [(&login.password_file, "password"), (&login.key, "private key")] {
+            if let Some(path) = file
+                && others_can_read(path)?
+            {
+                let path = path.display();
+                warnings
+                    .push(format!("{path}: other users of this machine can read this {secret}; `chmod 600 {path}`"));
+            }
+        }
+        if password.0.is_some() && !url.is_secure && !login.is_insecure && !is_this_machine(&url.host) {
+            warnings.push(format!(
+                "{url}: the password goes over the network without encryption; use mqtts://, or --insecure if that network \
+                 is trusted"
+            ));
+        }
         Ok(Self {
             url: url.clone(),
+            warnings,
             endpoint: Endpoint { host: url.host.clone(), port: url.port, tls },
             version: login.protocol.into(),
             user: login.user.clone(),
-            password: Secret(password(login)?),
+            password,
         })
     }
 
@@ -188,6 +211,34 @@ impl Broker {
             keep_alive: KEEP_ALIVE,
             will: Some(will),
         }
+    }
+}
+
+/// Whether the group of a file, or all users, can read it.
+#[cfg(unix)]
+fn others_can_read(path: &Path) -> Result<bool, Failure> {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    // The service manager keeps its credentials in a folder for this process alone; an access list shows as rights of a group.
+    if env::var_os("CREDENTIALS_DIRECTORY").is_some_and(|folder| !folder.is_empty() && path.starts_with(folder)) {
+        return Ok(false);
+    }
+    let metadata = path.metadata().with_context(|| path.display().to_string())?;
+    Ok(metadata.is_file() && metadata.permissions().mode() & 0o044 != 0)
+}
+
+/// Whether others can read a file: its permissions say nothing of that here.
+#[cfg(not(unix))]
+#[expect(clippy::unnecessary_wraps, reason = "the other one reads the file's permissions")]
+fn others_can_read(_: &Path) -> Result<bool, Failure> {
+    Ok(false)
+}
+
+/// Whether what is sent to this host stays on this machine.
+fn is_this_machine(host: &str) -> bool {
+    match host.parse::<std::net::IpAddr>() {
+        Ok(address) => address.to_canonical().is_loopback(),
+        Err(_) => host.eq_ignore_ascii_case("localhost"),
     }
 }
 
@@ -254,6 +305,16 @@ mod tests {
         assert!(told.contains("--password-file") && !told.contains("hunter2"), "{told}");
         let told = "mqtt://broker:hunter2".parse::<Url>().unwrap_err();
         assert!(!told.contains("hunter2"), "{told}");
+    }
+
+    #[test]
+    fn only_the_loopback_is_this_machine() {
+        for host in ["127.0.0.1", "127.3.2.1", "::1", "::ffff:127.0.0.1", "localhost", "LocalHost"] {
+            assert!(is_this_machine(host), "{host}");
+        }
+        for host in ["192.168.1.5", "0.0.0.0", "::", "broker", "localhost.example", "fe80::1"] {
+            assert!(!is_this_machine(host), "{host}");
+        }
     }
 
     #[test]

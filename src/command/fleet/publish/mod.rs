@@ -39,28 +39,30 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use futures_util::future::join;
 use schemars::JsonSchema;
 use serde::Serialize;
+use tokio::time::timeout;
 
 use self::also::Also;
 use self::broker::{Broker, Login, Url};
 use self::log::BrokerLog;
 use self::outbox::Outbox;
 use self::plain::{Alarms, Plain, Position};
-use self::pump::{Counts, Pauses, Pump};
+use self::pump::{Counts, Listener as _, Pauses, Pump};
 use self::sparkplug::{Names, Node};
 use self::speech::Speech;
 use self::spool::Spool;
 use self::topic::Levels;
 use crate::command::fleet::poll::{Event, Poll, RobotId, Subscription, Wish};
-use crate::command::fleet::service::Service;
+use crate::command::fleet::service::{END, Service};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::local::state_folder;
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Report, SchemaEntry};
 use crate::failure::Failure;
 use crate::files;
-use crate::output::Format;
+use crate::output::log::Level;
 use crate::output::view::{Cell, Tone, View};
 use crate::settings::duration;
 
@@ -264,16 +266,19 @@ impl Publish {
         let (outbox, folder) = self.outbox(&node)?;
         let speech = self.speech((&node, levels), &also, folder.as_deref());
         let log = BrokerLog::new(&service, broker.url.to_string());
+        for warning in &broker.warnings {
+            log.say(Level::Warning, warning);
+        }
         catch_interrupts();
         let extras = also.iter().map(Also::extra).collect();
         let mut events = poll.subscribe(Wish { extras, ..Wish::every(interval) });
         let mut polled = Box::pin(poll.run());
         let pauses = Pauses::new(fastrand::u64(..));
-        let pump = Pump::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
+        let mut pump = Pump::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
         let mut looks = Looks::new(&robots, run.repeat.count);
         // A broker that is away for now holds up nobody who waits for this service.
         service.ready(robots.len())?;
-        let counts = {
+        let ended = {
             let found = async || {
                 let event = looks.next(&mut events).await?;
                 service.note(&event);
@@ -284,14 +289,17 @@ impl Publish {
                 service.stopping();
             };
             tokio::select! {
-                counts = pump.run(found, stop) => counts,
+                ended = pump.run(found, stop) => ended,
                 () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
                 () = service.pulses(|| log.status()) => Err(Failure::local("nobody tells how it is any more")),
             }
         };
         drop(events);
-        polled.await;
-        let Counts { published, refused, dropped, reconnects, undelivered } = counts?;
+        // Without a broker, where one is needed, the failure tells enough.
+        let has_failed = ended.is_err() && run.repeat.count.is_some();
+        let (counts, _in_time) = join(pump.end(has_failed), timeout(END, polled)).await;
+        ended?;
+        let Counts { published, refused, dropped, reconnects, undelivered } = counts;
         let broker = broker.url.to_string();
         let robots = robots.len();
         run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
@@ -312,7 +320,7 @@ impl Publish {
         if run.trace.is_some() {
             return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
         }
-        if run.screen.format == Format::Csv {
+        if run.screen.format.is_rows() {
             return wrong("prints no table", "leave the format out, or take --json");
         }
         if interval < LEAST_EVERY {

@@ -16,9 +16,10 @@ use super::outbox::Record;
 use super::speech::{Reaction, Speech};
 use super::topic::Levels;
 use super::uplink::{Message, Will};
-use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::Alarm;
+use crate::command::face::overview::OverviewReport;
 use crate::command::fleet::poll::{Event, Look, RobotId};
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::PositionMm;
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
 use crate::output::log::Level;
@@ -28,26 +29,7 @@ use crate::settings::Robot;
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Alarms {
     /// Those that are present, the latest first.
-    alarms: Vec<Present>,
-}
-
-/// One of them.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct Present {
-    /// As the controller writes it; null for one that it does not tell.
-    code: Option<String>,
-    /// What it says; empty where that is not known.
-    name: String,
-}
-
-impl From<&[Alarm]> for Alarms {
-    fn from(alarms: &[Alarm]) -> Self {
-        let present = |alarm: &Alarm| Present {
-            code: Some(alarm.code.clone()).filter(|code| code != Alarm::UNREADABLE),
-            name: alarm.text.clone(),
-        };
-        Self { alarms: alarms.iter().map(present).collect() }
-    }
+    alarms: Vec<Alarm>,
 }
 
 /// Where a robot is.
@@ -124,16 +106,16 @@ impl Plain {
     fn looked(&mut self, look: &Look, now_ms: u64) -> Vec<Record> {
         let robot = &look.robot;
         let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
-        let at = (line.position, line.not_asked);
+        let at = (line.state.position, line.not_asked);
         if self.kinds.contains(&Kind::Position) {
             // Else each step of a motion would be told twice.
-            (line.position, line.not_asked) = (None, Some("it has a topic of its own"));
+            (line.state.position, line.not_asked) = (None, Some("it has a topic of its own"));
         }
         let mut envelopes = Vec::new();
         for kind in &self.kinds {
             let data = match kind {
                 Kind::Status => serde_json::to_value(&line),
-                Kind::Alarms => serde_json::to_value(Alarms::from(&look.sample.alarms[..])),
+                Kind::Alarms => serde_json::to_value(Alarms { alarms: look.sample.alarms.clone() }),
                 Kind::Position => serde_json::to_value(Position { position: at.0, not_asked: at.1 }),
             };
             let data = data.map_err(|error| Failure::local(format!("report as JSON: {error}")));

@@ -9,7 +9,8 @@ use std::time::Duration;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use jiff::Timestamp;
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::task::coop::consume_budget;
+use tokio::time::{Instant, sleep_until, timeout_at};
 
 use super::broker::Url;
 use super::outbox::{Outbox, Ticket};
@@ -17,7 +18,8 @@ use super::speech::{Reaction, Speech};
 use super::uplink::{Event, Loss, Message, Refusal, SendError, Will};
 use super::words;
 use crate::command::fleet::poll::Event as Found;
-use crate::failure::{Failure, plain};
+use crate::command::fleet::service::END;
+use crate::failure::{Failure, Kind, plain};
 use crate::output::log::Level;
 use crate::settings::duration;
 
@@ -32,10 +34,11 @@ const PING: Duration = Duration::from_millis(500);
 const ACKNOWLEDGE: Duration = Duration::from_secs(30);
 /// The pause after a failure: the first one, and the longest.
 const PAUSES: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(60)];
-/// How many times a broker may refuse a client that it has taken before.
-const REFUSALS: u32 = 5;
-/// How long the end may take: what waits, and the farewell.
-const END: Duration = Duration::from_secs(3);
+/// How long a connection holds before the pauses begin anew: one that is lost at once is no success.
+const STEADY: Duration = Duration::from_secs(10);
+/// Time of the end for what waits, and for the acknowledgement of the farewell. What is left of it is for the goodbye.
+const DELIVER: Duration = Duration::from_millis(500);
+const FAREWELL: Duration = Duration::from_millis(700);
 /// How often a failure that goes on is said again, at the least.
 const REMIND: Duration = Duration::from_secs(600);
 
@@ -124,6 +127,7 @@ struct Open<U> {
     unconfirmed: VecDeque<Ticket>,
     /// Those that a ping under way will confirm.
     pinged: Option<(u64, Vec<Ticket>)>,
+    since: Instant,
     last_ping: Instant,
     /// When something was acknowledged last, or nothing was on its way.
     progress: Instant,
@@ -138,9 +142,16 @@ impl<U> Open<U> {
             acknowledged: HashMap::new(),
             unconfirmed: VecDeque::new(),
             pinged: None,
+            since: now,
             last_ping: now,
             progress: now,
         }
+    }
+
+    /// Notes that something has arrived; whether the connection has held for some time.
+    fn progressed(&mut self) -> bool {
+        self.progress = Instant::now();
+        self.progress - self.since >= STEADY
     }
 
     fn is_idle(&self) -> bool {
@@ -177,7 +188,6 @@ pub struct Pump<'a, B: Broker> {
     /// Whether the broker has ever taken the client; since when it is gone.
     was_accepted: bool,
     gone_since: Option<Instant>,
-    refusals: u32,
     /// What was said last of the broker, and when.
     said: Option<(String, Instant)>,
     /// Whether a broker that is not there ends it.
@@ -206,47 +216,39 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             counts: Counts::default(),
             was_accepted: false,
             gone_since: None,
-            refusals: 0,
             said: None,
             ends_without_broker,
             forbidden: 0,
         }
     }
 
-    /// Goes on until it is stopped, or `found` has nothing more and all of it has arrived; then leaves in order.
+    /// Goes on until it is stopped, or `found` has nothing more and all of it has arrived. [`end`](Self::end) comes next.
     ///
     /// # Errors
-    /// What nobody but a person can help: a password, a certificate.
+    /// There is no broker, or it refuses this client, and the run is a bounded one.
     pub async fn run(
-        mut self,
+        &mut self,
         mut found: impl AsyncFnMut() -> Option<Found>,
         stop: impl Future<Output = ()>,
-    ) -> Result<Counts, Failure> {
+    ) -> Result<(), Failure> {
         let mut stop = pin!(stop);
         let mut has_more = true;
-        let ended = loop {
+        loop {
             if !has_more && self.outbox.is_empty() && self.is_idle() {
-                break Ok(());
+                return Ok(());
             }
             let found = async { if has_more { found().await } else { pending().await } };
             tokio::select! {
                 biased;
-                () = &mut stop => break Ok(()),
-                next = step(&mut self.line) => {
-                    if let Err(failure) = self.go(next) {
-                        break Err(failure);
-                    }
-                }
+                () = &mut stop => return Ok(()),
+                next = step(&mut self.line) => self.go(next)?,
                 event = found => match event {
                     None => has_more = false,
                     Some(event) => self.take(&event),
                 },
             }
             self.fill();
-        };
-        // Without a broker, where one is needed, the failure tells enough.
-        self.end(ended.is_err() && self.ends_without_broker).await;
-        ended.map(|()| self.counts)
+        }
     }
 
     fn is_idle(&self) -> bool {
@@ -341,7 +343,6 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         open.is_accepted = true;
         self.listener.reached(true);
         let again = std::mem::replace(&mut self.was_accepted, true);
-        self.refusals = 0;
         self.said = None;
         let (waiting, on_disk) = self.outbox.waiting();
         let messages = if waiting == 1 { "message" } else { "messages" };
@@ -396,30 +397,27 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
 
     fn lost(&mut self, loss: &Loss) -> Result<(), Failure> {
         self.leave();
-        let judged = words::loss(self.url, loss);
-        self.fail(judged)
+        self.fail(words::loss(self.url, loss))
     }
 
     fn refused(&mut self, refusal: &Refusal) -> Result<(), Failure> {
         self.leave();
-        let judged = words::refusal(self.url, refusal);
-        self.fail(judged)
+        self.fail(words::refusal(self.url, refusal))
     }
 
-    /// Waits before the next attempt, or gives up.
-    fn fail(&mut self, judged: words::Judged) -> Result<(), Failure> {
-        let words::Judged { failure, is_lasting } = judged;
-        self.refusals = if is_lasting { self.refusals + 1 } else { 0 };
-        let is_enough = is_lasting && (!self.was_accepted || self.refusals >= REFUSALS);
-        if is_enough || self.ends_without_broker {
+    /// Waits before the next attempt, whatever the reason: it was given by another machine, or depends on the clock, and
+    /// both may be right a minute later. Only a bounded run gives up.
+    fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
+        if self.ends_without_broker {
             self.line = Line::Waiting(Instant::now());
             return Err(failure);
         }
         let pause = self.pauses.pause();
         self.line = Line::Waiting(Instant::now() + pause);
         let is_known = self.said.as_ref().is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMIND);
-        // Where it worked before, no setting is wrong.
-        let hint = failure.hint.filter(|_| !self.was_accepted).map(|hint| format!(" ({hint})")).unwrap_or_default();
+        // Where it worked before, a setting is wrong only if the broker says so.
+        let is_setting = failure.kind == Kind::Usage || !self.was_accepted;
+        let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
         let level = if is_known { Level::Detail } else { Level::Warning };
         let again = format!("{}.{}s", pause.as_secs(), pause.subsec_millis() / 100);
         self.listener.say(level, &format!("{}{hint}; trying again in {again}, and so on", failure.message));
@@ -432,8 +430,9 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
     fn acknowledged(&mut self, id: u64, code: Option<u8>) {
         let Line::Open(open) = &mut self.line else { return };
         let Some(ticket) = open.acknowledged.remove(&id) else { return };
-        open.progress = Instant::now();
-        self.pauses.reset();
+        if open.progressed() {
+            self.pauses.reset();
+        }
         if let Some(code) = code {
             self.refuse(&format!("the broker refuses a message (0x{code:02X}): check what this user may publish"));
         }
@@ -453,8 +452,9 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
     fn confirmed(&mut self, number: u64) {
         let Line::Open(open) = &mut self.line else { return };
         if let Some((_, tickets)) = open.pinged.take_if(|(ping, _)| *ping <= number) {
-            open.progress = Instant::now();
-            self.pauses.reset();
+            if open.progressed() {
+                self.pauses.reset();
+            }
             for ticket in tickets {
                 self.counts.published += 1;
                 self.outbox.done(ticket);
@@ -515,8 +515,9 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
     }
 
     /// Tells what waits, if that is soon done, says farewell, and leaves the rest for the next process, of which it says
-    /// little where a failure says more.
-    async fn end(&mut self, has_failed: bool) {
+    /// little where a failure says more. It takes less than [`END`], whatever the broker does.
+    pub async fn end(mut self, has_failed: bool) -> Counts {
+        let now = Instant::now();
         let told = async {
             while let Line::Open(_) = &self.line {
                 if self.outbox.is_empty() && self.is_idle() || !self.speech.is_ready() {
@@ -529,7 +530,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
                 self.fill();
             }
         };
-        let _in_time = timeout(END, told).await;
+        let _in_time = timeout_at(now + DELIVER, told).await;
         if matches!(&self.line, Line::Open(open) if open.is_accepted) {
             let messages = self.speech.farewell(now_ms());
             self.send(None, &messages);
@@ -541,10 +542,10 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
                     }
                 }
             };
-            let _in_time = timeout(END, heard).await;
+            let _in_time = timeout_at(now + FAREWELL, heard).await;
         }
         if let Line::Open(open) = std::mem::replace(&mut self.line, Line::Waiting(Instant::now())) {
-            open.uplink.close().await;
+            let _in_time = timeout_at(now + END, open.uplink.close()).await;
         }
         self.say_dropped();
         let has_left = !self.outbox.is_empty();
@@ -562,6 +563,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         } else if has_left {
             self.listener.say(or_detail(Level::Notice), "what was not delivered is kept on disk, for the next start");
         }
+        self.counts
     }
 }
 
@@ -579,7 +581,11 @@ async fn step<B: Broker>(line: &mut Line<'_, B>) -> Step<B::Uplink> {
             let ping = open.last_ping + PING;
             tokio::select! {
                 biased;
-                event = open.uplink.next() => Step::Happened(event),
+                event = async {
+                    // A broker that always has something to say leaves others their turn.
+                    consume_budget().await;
+                    open.uplink.next().await
+                } => Step::Happened(event),
                 () = sleep_until(ping), if wants_ping => Step::Ping,
                 () = sleep_until(stuck), if !is_idle => Step::Stuck,
             }

@@ -18,9 +18,12 @@ use super::spool::Spool;
 use super::topic::Levels;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
 use super::{Also, Kind, Speech};
-use crate::command::face::overview::{OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Sample, Traffic};
+use crate::command::face::overview::OverviewReport;
+use crate::command::face::sample::{Sample, Traffic};
 use crate::command::fleet::poll::{Event as Found, Look};
+use crate::command::fleet::service::END;
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::{Mode, PositionMm, State};
 use crate::failure::{self, Failure};
 use crate::output::log::Level;
 use crate::settings::inventory::Inventory;
@@ -37,14 +40,15 @@ pub fn robot(name: &str) -> Arc<Robot> {
 
 /// A look that found this place, and alarms with these codes.
 pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
-    let alarm = |code: &&str| Alarm { code: (*code).to_owned(), ..Alarm::default() };
-    let line = OverviewReport {
+    let alarm = |code: &&str| Alarm { code: Some((*code).to_owned()), ..Alarm::default() };
+    let state = State {
         reachable: true,
-        mode: Some("play"),
+        mode: Some(Mode::Automatic),
         servo_on: Some(true),
         position: Some(PositionMm { x_mm, y_mm: 0.0, z_mm: 1.5 }),
-        ..OverviewReport::default()
+        ..State::default()
     };
+    let line = OverviewReport { state, ..OverviewReport::default() };
     let sample = Sample { line, alarms: alarms.iter().map(alarm).collect(), ..Sample::default() };
     Found::Looked(Arc::new(Look::new(Arc::clone(robot), sample)))
 }
@@ -63,6 +67,12 @@ enum Mood {
     Hangs,
     Refuses(u8),
     Distrusted,
+    /// Takes a client and its first message, and breaks the protocol then.
+    Breaks,
+    /// Takes the connection and answers nothing.
+    Mute,
+    /// Is never reached, and never refused.
+    Lost,
 }
 
 /// A broker, as long as its test.
@@ -122,11 +132,18 @@ impl<'a> Broker for &'a Fake {
     async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
         assert_eq!((&will.topic[..], &will.payload[..], will.retain), ("armctl/cell7/state", &b"offline"[..], true));
         self.attempts.borrow_mut().push(Instant::now());
-        let first = match *self.mood.borrow() {
+        let mood = *self.mood.borrow();
+        let first = match mood {
             Mood::Away => return Err(Loss::Closed),
             Mood::Distrusted => return Err(Loss::Tls(TlsError::Expired)),
             Mood::Refuses(code) => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
             Mood::Works | Mood::Hangs => Event::Connected,
+            Mood::Breaks => {
+                let events = [Event::Connected, Event::Acknowledged(1, None), Event::Lost(Loss::Protocol("noise"))];
+                return Ok(Connection { fake: self, events: events.into(), next: 1, pings: 0 });
+            }
+            Mood::Mute => return Ok(Connection { fake: self, events: VecDeque::new(), next: 1, pings: 0 }),
+            Mood::Lost => pending().await,
         };
         Ok(Connection { fake: self, events: VecDeque::from([first]), next: 1, pings: 0 })
     }
@@ -174,7 +191,11 @@ impl Uplink for Connection<'_> {
         0
     }
 
-    async fn close(self) {}
+    async fn close(self) {
+        if *self.fake.mood.borrow() == Mood::Hangs {
+            pending::<()>().await;
+        }
+    }
 }
 
 const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
@@ -212,8 +233,12 @@ async fn pumped(
     let notes = Notes::default();
     let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let pump = Pump::new((&fake, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
-    let pumped = pump.run(async || found.recv().await, pending());
+    let mut pump = Pump::new((&fake, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
+    let pumped = async {
+        let ended = pump.run(async || found.recv().await, pending()).await;
+        let counts = pump.end(false).await;
+        ended.map(|()| counts)
+    };
     let (counts, ()) = futures_util::future::join(pumped, script(tell)).await;
     (counts, notes.said.into_inner())
 }
@@ -318,6 +343,41 @@ async fn pauses_grow_up_to_a_minute_and_are_never_the_same() {
 }
 
 #[tokio::test(start_paused = true)]
+async fn pauses_grow_as_well_where_each_connection_begins_well() {
+    let fake = Fake::new(Mood::Breaks);
+    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+        sleep(Duration::from_secs(600)).await;
+        fake.becomes(Mood::Works);
+        drop(tell);
+    })
+    .await;
+    counts.unwrap();
+    let attempts = fake.attempts.borrow();
+    assert!((12..22).contains(&attempts.len()), "{attempts:?}");
+    assert!(said.iter().any(|line| line.contains("it breaks the MQTT protocol: noise")), "{said:?}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_end_takes_less_than_a_second_in_every_state() {
+    for mood in [Mood::Works, Mood::Away, Mood::Hangs, Mood::Breaks, Mood::Mute, Mood::Lost] {
+        let fake = Fake::new(mood);
+        let (broker, url) = (&fake, "mqtt://broker".parse().unwrap());
+        let notes = Notes::default();
+        let outbox = Outbox::new(MEMORY, None);
+        let mut pump = Pump::new((&broker, &url), plain(), outbox, (&notes, Pauses::new(7)), false);
+        let mut looks = [1.0, 2.0].map(|x_mm| look(&robot("press"), x_mm, &[])).into_iter();
+        let found = async || match looks.next() {
+            Some(look) => Some(look),
+            None => pending().await,
+        };
+        pump.run(found, sleep(Duration::from_millis(200))).await.unwrap();
+        let stopped = Instant::now();
+        pump.end(false).await;
+        assert!(stopped.elapsed() <= END, "{mood:?}: {:?}", stopped.elapsed());
+    }
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_broker_that_acknowledges_nothing_is_left() {
     let fake = Fake::new(Mood::Hangs);
     let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
@@ -336,36 +396,52 @@ async fn a_broker_that_acknowledges_nothing_is_left() {
     assert!(said.iter().any(|line| line.contains("does not answer any more")), "{said:?}");
 }
 
+const REFUSALS: [(Mood, &str); 4] = [
+    (Mood::Refuses(4), "wrong user name or password (check --user"),
+    (Mood::Refuses(5), "not authorized to connect (check --user"),
+    (Mood::Refuses(1), "this version of MQTT (try --protocol 5"),
+    (
+        Mood::Distrusted,
+        "its certificate has expired (give the broker a new certificate; or this machine's clock is wrong)",
+    ),
+];
+
 #[tokio::test(start_paused = true)]
-async fn what_only_a_person_can_help_ends_it() {
-    for (mood, why) in [
-        (Mood::Refuses(4), "wrong user name or password"),
-        (Mood::Refuses(5), "not authorized"),
-        (Mood::Refuses(1), "this version of MQTT"),
-        (Mood::Distrusted, "expired"),
-    ] {
+async fn a_service_outlives_every_refusal() {
+    for (mood, why) in REFUSALS {
+        for first in [mood, Mood::Works] {
+            let fake = Fake::new(first);
+            let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+                sleep(Duration::from_secs(1)).await;
+                fake.becomes(Mood::Away);
+                sleep(Duration::from_millis(10)).await;
+                fake.becomes(mood);
+                tell.send(look(&robot("press"), 1.0, &[])).unwrap();
+                sleep(Duration::from_secs(1800)).await;
+                fake.becomes(Mood::Works);
+            })
+            .await;
+            assert_eq!((counts.unwrap().published, fake.places("press")), (3, vec![1.0]));
+            let attempts = fake.attempts.borrow().len();
+            assert!((25..50).contains(&attempts), "{attempts} in half an hour");
+            // Once, and once every ten minutes.
+            let lines = said.iter().filter(|line| line.contains(why) && line.contains("trying again")).count();
+            assert!((2..=4).contains(&lines), "{said:?}");
+        }
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_bounded_run_ends_with_the_refusal() {
+    for (mood, why) in REFUSALS {
         let fake = Fake::new(mood);
-        let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
-            let _ = tell.send(look(&robot("press"), 1.0, &[]));
-        })
-        .await;
-        let failure = counts.unwrap_err();
-        assert!(failure.message.contains(why) && failure.hint.is_some(), "{failure:?}");
+        let (broker, notes, url) = (&fake, Notes::default(), "mqtt://broker".parse().unwrap());
+        let mut pump = Pump::new((&broker, &url), plain(), Outbox::new(MEMORY, None), (&notes, Pauses::new(7)), true);
+        let failure = pump.run(async || pending().await, pending()).await.unwrap_err();
+        let (message, hint) = why.split_once(" (").unwrap();
+        assert!(failure.message.contains(message) && failure.hint.unwrap().starts_with(hint.trim_end_matches(')')));
         assert_eq!((failure.kind, fake.attempts.borrow().len()), (failure::Kind::Usage, 1));
     }
-    // One that has taken this client before is asked a few times more.
-    let fake = Fake::new(Mood::Works);
-    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
-        tell.send(look(&robot("press"), 1.0, &[])).unwrap();
-        sleep(Duration::from_secs(1)).await;
-        fake.becomes(Mood::Away);
-        sleep(Duration::from_millis(10)).await;
-        fake.becomes(Mood::Refuses(5));
-        sleep(Duration::from_secs(600)).await;
-    })
-    .await;
-    assert!(counts.unwrap_err().message.contains("not authorized"));
-    assert_eq!(fake.attempts.borrow().len(), 6);
 }
 
 #[tokio::test(start_paused = true)]

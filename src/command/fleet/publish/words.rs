@@ -4,15 +4,7 @@ use super::broker::Url;
 use super::uplink::{Loss, Refusal, TlsError, Version};
 use crate::failure::{Failure, Kind};
 
-/// A broker that does not take this client, and whether it is of any use to ask again.
-pub struct Judged {
-    /// In words.
-    pub failure: Failure,
-    /// Whether only somebody who changes a setting can help.
-    pub is_lasting: bool,
-}
-
-/// What a code means, what to do, and whether it stays so. Of MQTT 3.1.1, section 3.2.2.3.
+/// What a code means, what to do, and whether it is about a setting of one of both ends. Of MQTT 3.1.1, section 3.2.2.3.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
     (1, "it does not speak this version of MQTT", "try --protocol 5, or ask which versions it has", true),
     (2, "it does not accept the name of this client", "give another name with --node", true),
@@ -46,27 +38,26 @@ const REASON_CODES: [(u8, &str, &str, bool); 20] = [
 ];
 
 /// A broker that said no to CONNECT.
-pub fn refusal(url: &Url, refusal: &Refusal) -> Judged {
+pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
     let Refusal { version, code, reason, server } = refusal;
     let codes: &[(u8, &str, &str, bool)] = match version {
         Version::V3 => &RETURN_CODES,
         Version::V5 => &REASON_CODES,
     };
     let found = codes.iter().find(|(known, ..)| known == code);
-    let (_, why, advice, is_lasting) = found.copied().unwrap_or((0, "with a code that has no meaning", "", false));
+    let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "with a code that has no meaning", "", false));
     let told = reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default();
     let elsewhere = server.as_ref().map(|server| format!(": {server}")).unwrap_or_default();
-    let kind = if is_lasting { Kind::Usage } else { Kind::NoAnswer };
+    let kind = if is_setting { Kind::Usage } else { Kind::NoAnswer };
     let failure = Failure::new(kind, format!("{url} refuses this client: {why}{told}{elsewhere}"));
     let failure = failure.code(format!("0x{code:02X}"));
-    Judged { failure: if advice.is_empty() { failure } else { failure.hint(advice) }, is_lasting }
+    if advice.is_empty() { failure } else { failure.hint(advice) }
 }
 
 /// A connection that did not come about, or ended.
-pub fn loss(url: &Url, loss: &Loss) -> Judged {
+pub fn loss(url: &Url, loss: &Loss) -> Failure {
     if let Loss::Tls(error) = loss {
-        let is_lasting = !matches!(error, TlsError::Other(_));
-        return Judged { failure: distrust(url, error), is_lasting };
+        return distrust(url, error);
     }
     let failure = Failure::new(Kind::NoAnswer, format!("{url}: {loss}"));
     let hint = match loss {
@@ -78,7 +69,7 @@ pub fn loss(url: &Url, loss: &Loss) -> Judged {
         loss if loss.is_takeover() => "each armctl that publishes needs a name of its own: --node",
         _ => "its log tells more",
     };
-    Judged { failure: failure.hint(hint), is_lasting: false }
+    failure.hint(hint)
 }
 
 /// What is wrong with a certificate.
@@ -113,23 +104,22 @@ mod tests {
     fn every_code_has_words_and_those_that_stay_say_what_to_do() {
         for version in [Version::V3, Version::V5] {
             for code in 1..=u8::MAX {
-                let judged = refusal(&url(), &Refusal { version, code, reason: None, server: None });
-                assert!(judged.failure.message.starts_with("mqtt://broker:1883 refuses this client: "));
-                assert_eq!(judged.is_lasting, judged.failure.kind == Kind::Usage);
-                assert!(!judged.is_lasting || judged.failure.hint.is_some(), "{code}");
+                let failure = refusal(&url(), &Refusal { version, code, reason: None, server: None });
+                assert!(failure.message.starts_with("mqtt://broker:1883 refuses this client: "));
+                assert!(failure.kind != Kind::Usage || failure.hint.is_some(), "{code}");
             }
         }
         let refused =
             Refusal { version: Version::V5, code: 0x9d, reason: Some("sorry".into()), server: Some("b:1".into()) };
         assert_eq!(
-            refusal(&url(), &refused).failure.message,
+            refusal(&url(), &refused).message,
             "mqtt://broker:1883 refuses this client: it has moved (sorry): b:1"
         );
     }
 
     #[test]
-    fn a_certificate_that_is_wrong_stays_wrong_and_a_cable_does_not() {
-        assert!(loss(&url(), &Loss::Tls(TlsError::Expired)).is_lasting);
-        assert!(!loss(&url(), &Loss::Closed).is_lasting);
+    fn a_wrong_certificate_is_about_a_setting_and_a_cable_is_not() {
+        assert_eq!(loss(&url(), &Loss::Tls(TlsError::Expired)).kind, Kind::Usage);
+        assert_eq!(loss(&url(), &Loss::Closed).kind, Kind::NoAnswer);
     }
 }

@@ -150,13 +150,13 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     ("read_only", "on or off: take read commands only", |text, _| Ok(switch(text)?.into())),
     ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
-    ("timeout", "longest wait for an answer, such as 5s", |text, _| {
+    ("timeout", "longest wait of each try, such as 5s", |text, _| {
         let timeout = duration::parse_some(text).map_err(|why| wrong(why, "as in timeout=5s"))?;
         Ok(duration::display(timeout).into())
     }),
-    ("retries", "repetitions of a read after silence", |text, _| {
+    ("retries", "further tries of a read after silence", |text, _| {
         let retries = text.parse::<u32>();
-        let why = format!("'{text}' is not a number of repetitions");
+        let why = format!("'{text}' is not a number of tries");
         Ok(i64::from(retries.map_err(|_| wrong(why, "as in retries=3"))?).into())
     }),
     ("pulses_per_degree", "of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {

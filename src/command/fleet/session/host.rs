@@ -10,6 +10,7 @@ use anyhow::Context as _;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::task::{JoinSet, LocalSet};
 
+use super::watched_entry::WatchedEntry;
 use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
@@ -42,12 +43,12 @@ pub enum Attempt {
 }
 
 impl SessionHost {
-    /// Opens the link to a robot, and lets clients in. `say` is told what happens from then on.
+    /// Opens the link to a robot, and lets clients in. `say` is told what happens from then on, also from other threads.
     pub async fn open(
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-        say: impl FnMut(&str) + 'static,
+        say: impl Fn(&str) + Clone + Send + 'static,
     ) -> Result<Attempt, Failure> {
         let place = match Place::make() {
             Ok(place) => place,
@@ -63,14 +64,15 @@ impl SessionHost {
         };
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
-        let host = Host::new(claim, key, info, held, say).with_context(|| spot.socket().display().to_string())?;
-        let (orphaned, note) = (robot.clone(), *screen);
+        let host =
+            Host::new(claim, key, info, held, say.clone()).with_context(|| spot.socket().display().to_string())?;
+        let orphaned = robot.clone();
         let host = host.stopped_by(move |why| {
-            let label = orphaned.label();
-            note.note(&format!("{label}: {why}: the robot is being stopped"));
-            guardian::stop_orphan(&orphaned, face.stop(), move |what| note.note(&format!("{label}: {what}")));
+            say(&format!("{why}: the robot is being stopped"));
+            guardian::stop_orphan(&orphaned, face.stop(), say.clone());
         });
-        let host = if robot.read_only.value { host.guarded(face.guard()) } else { host };
+        let mut entry = WatchedEntry::new(robot);
+        let host = host.guarded(face.guard(), move || entry.is_read_only());
         Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
     }
 

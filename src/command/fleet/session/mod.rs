@@ -4,6 +4,7 @@ mod close;
 pub mod host;
 mod list;
 mod open;
+mod watched_entry;
 
 use clap::Subcommand;
 

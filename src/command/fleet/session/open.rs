@@ -1,10 +1,9 @@
 //! `armctl session open`: holds the link to a robot, in the foreground or behind it.
 
-use std::cell::RefCell;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::Context as _;
 use clap::Args;
@@ -102,16 +101,16 @@ impl Open {
         let spot = place.spot(&key_of(robot));
         let log = background.then(|| spot.log());
         let log_file = SessionLog { screen: run.screen, label: robot.label(), file: log.clone() };
-        let log_file = Rc::new(RefCell::new(log_file));
-        let say = Rc::clone(&log_file);
+        let log_file = Arc::new(Mutex::new(log_file));
+        let say = move |text: &str| log_file.lock().unwrap_or_else(PoisonError::into_inner).say(text);
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
-        let opening = SessionHost::open(robot, &access, &run.screen, move |text| say.borrow_mut().say(text));
+        let opening = SessionHost::open(robot, &access, &run.screen, say.clone());
         let holding = match interruptible(opening).await?? {
             Attempt::Held(holding) => holding,
             Attempt::Taken => return Err(taken(robot, &spot).await),
             Attempt::NoPlace(failure) => return Err(failure),
         };
-        log_file.borrow_mut().say("the link is open");
+        say("the link is open");
         let opened = Opened::here(robot, background, log.as_deref());
         Ok((holding, opened))
     }

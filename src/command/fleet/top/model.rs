@@ -396,7 +396,7 @@ impl Seen {
             return Severity::Silent;
         }
         let Some(line) = self.sample().map(|sample| &sample.line) else { return Severity::Held };
-        match (line.fault.faulted == Some(true), line.held) {
+        match (line.state.fault.faulted == Some(true), line.state.held) {
             (true, _) => Severity::Alarm,
             (_, Some(true)) => Severity::Held,
             _ => Severity::None,
@@ -437,7 +437,7 @@ fn nearest(every: Duration, faster: bool) -> Duration {
 mod tests {
     use super::super::testing::{fleet, sample, silence};
     use super::*;
-    use crate::command::face::overview::Fault;
+    use crate::command::robot::state::Fault;
 
     const NOW: Moment = Duration::from_secs(10);
     const EVERY: Duration = Duration::from_millis(500);
@@ -452,7 +452,7 @@ mod tests {
         model.take(NOW, 0, Ok(sample(0.0)));
         model.take(NOW, 1, Err(silence()));
         let mut alarmed = sample(0.0);
-        alarmed.line.fault = Fault::new(true, None);
+        alarmed.line.state.fault = Fault::new(true, None);
         model.take(NOW, 2, Ok(alarmed));
         assert_eq!(names(&model), ["cell1", "cell2", "cell3", "cell4"]);
         model.obey(NOW, KeyAction::Sort);

@@ -1,7 +1,9 @@
 //! Robots and samples for tests.
 
-use crate::command::face::overview::{Fault, OverviewReport, PositionMm};
-use crate::command::face::sample::{Alarm, Axis, Bank, Indicator, Sample, SignalByte, Whole};
+use crate::command::face::overview::OverviewReport;
+use crate::command::face::sample::{Axis, Bank, Indicator, Sample, SignalByte, Whole};
+use crate::command::robot::alarm::Alarm;
+use crate::command::robot::state::{Fault, Mode, PositionMm, State};
 use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
 use crate::settings::inventory::Inventory;
@@ -27,18 +29,18 @@ pub fn fleet(robots: usize) -> Vec<Robot> {
 
 /// A robot that runs, with everything a screen shows; its first axis is at `position`.
 pub fn sample(position: f64) -> Sample {
-    let line = OverviewReport {
+    let state = State {
         reachable: true,
-        mode: Some("play"),
+        mode: Some(Mode::Automatic),
+        controller_mode: Some("play"),
         servo_on: Some(true),
         running: Some(true),
         held: Some(false),
-        alarm: Some(false),
-        error: Some(false),
         fault: Fault::new(false, None),
         position: Some(PositionMm { x_mm: 1000.5, y_mm: -20.25, z_mm: 1234.0 }),
-        ..OverviewReport::default()
+        ..State::default()
     };
+    let line = OverviewReport { state, ..OverviewReport::default() };
     let joint = |name: &str, position, torque| Axis {
         name: name.to_owned(),
         position,
@@ -85,12 +87,12 @@ pub fn sample(position: f64) -> Sample {
 /// The same with two alarms, in a text that would steer a terminal.
 pub fn alarmed() -> Sample {
     let mut alarmed = sample(0.0);
-    alarmed.line.alarm = Some(true);
-    alarmed.line.running = Some(false);
-    let alarm = |code: &str, text: &str| Alarm { code: code.to_owned(), text: text.to_owned(), remedy: String::new() };
+    alarmed.line.state.running = Some(false);
+    let alarm =
+        |code: &str, text: &str| Alarm { code: Some(code.to_owned()), text: Some(text.to_owned()), ..Alarm::default() };
     alarmed.alarms = vec![alarm("4315", "COLLISION DETECT [SLURBT]"), alarm("1020", "衝突\x1b[2J検出")];
-    alarmed.alarms[0].remedy = "look for what the robot ran into".to_owned();
-    alarmed.line.fault = Fault::new(true, alarmed.alarms.first());
+    alarmed.alarms[0].remedy = Some("look for what the robot ran into".to_owned());
+    alarmed.line.state.fault = Fault::new(true, alarmed.alarms.first());
     alarmed
 }
 

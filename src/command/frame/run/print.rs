@@ -61,10 +61,7 @@ impl Run {
         outcomes: &[Outcome],
         place: ReportPosition<'_>,
     ) -> Result<Vec<Envelope>, Failure> {
-        let envelopes = robots.iter().zip(outcomes).map(|(robot, outcome)| {
-            enveloped(robot, command.id(), outcome.as_ref().map(AsRef::as_ref).map_err(Clone::clone))
-        });
-        let envelopes: Vec<Envelope> = envelopes.collect::<Result<_, _>>()?;
+        let envelopes = enveloped_all(robots, command.id(), outcomes)?;
         if !self.is_for_people() {
             if self.screen.format == Format::Jsonl {
                 envelopes.iter().try_for_each(|envelope| self.emit(timed(envelope.clone())))?;
@@ -84,7 +81,7 @@ impl Run {
                 Err(failure) => reasons.push((robot, failure.clone())),
             }
         }
-        if self.screen.format == Format::Csv {
+        if self.screen.format.is_rows() {
             let reports = robots.iter().zip(outcomes);
             let reports = reports.filter_map(|(robot, outcome)| Some((Some(robot), outcome.as_deref().ok()?)));
             self.show_csv(&reports.collect::<Vec<_>>(), place)?;
@@ -123,7 +120,7 @@ impl Run {
 
     /// Whether reports are shown as views: tables, or CSV.
     pub fn is_for_people(&self) -> bool {
-        self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv)
+        self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv | Format::Value)
     }
 
     pub(super) fn print(
@@ -188,7 +185,7 @@ impl Run {
 
     fn show_one(&self, report: &dyn AnyReport, place: ReportPosition<'_>) -> Result<(), Failure> {
         match self.screen.format {
-            Format::Csv => self.show_csv(&[(None, report)], place),
+            Format::Csv | Format::Value => self.show_csv(&[(None, report)], place),
             _ => self.show(&report.view(), place),
         }
     }
@@ -197,7 +194,11 @@ impl Run {
     fn show_csv(&self, reports: &[(Option<&Robot>, &dyn AnyReport)], place: ReportPosition<'_>) -> Result<(), Failure> {
         let Some((_, first)) = reports.first() else { return Ok(()) };
         let sheet = Sheet::of(&first.schema().to_value(), first.rows());
-        let is_round = self.repeat.is_wanted() && matches!(place, ReportPosition::First | ReportPosition::Next);
+        let is_csv = self.screen.format == Format::Csv;
+        let is_round = is_csv
+            && self.repeat.is_wanted()
+            && !self.repeat.is_quiet
+            && matches!(place, ReportPosition::First | ReportPosition::Next);
         let time = (is_round && !sheet.has("time")).then(|| Timestamp::now().to_string());
         let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
         before.extend(reports.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
@@ -205,10 +206,14 @@ impl Run {
         let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
         let mut text = if is_later && *self.redraw.header.borrow() == header { String::new() } else { header.clone() };
         self.redraw.header.replace(header);
+        if !is_csv {
+            text.clear();
+        }
         for (robot, report) in reports {
             let before: Vec<&str> =
                 time.as_deref().into_iter().chain(robot.iter().map(|robot| robot.name.as_str())).collect();
-            sheet.rows(&before, &report.data()?, &mut text);
+            let add = if is_csv { Sheet::rows } else { Sheet::values };
+            add(&sheet, &before, &report.data()?, &mut text);
         }
         self.screen.data(&text)
     }
@@ -226,6 +231,12 @@ impl Run {
         };
         screen.data(&self.redraw.over(text))
     }
+}
+
+/// What several robots reported, or why not.
+pub(super) fn enveloped_all(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
+    let pairs = robots.iter().zip(outcomes);
+    pairs.map(|(robot, outcome)| enveloped(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
 }
 
 pub fn enveloped(robot: &Robot, id: &str, outcome: Result<&dyn AnyReport, Failure>) -> Result<Envelope, Failure> {

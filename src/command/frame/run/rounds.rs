@@ -6,9 +6,10 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::print::as_value;
+use crate::command::frame::condition::Condition;
 use crate::command::frame::interrupt::interruptible;
 use crate::failure::{Failure, Kind};
-use crate::output::jq::Filter;
+use crate::output::Screen;
 
 /// `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
@@ -17,10 +18,12 @@ pub struct Repeat {
     pub every: Option<Duration>,
     /// Most runs.
     pub count: Option<u64>,
-    /// Stop when this is true of the envelope.
-    pub until: Option<Filter>,
+    /// Stop when this holds.
+    pub until: Option<Condition>,
     /// Longest time to wait for the condition.
     pub within: Option<Duration>,
+    /// Only the last round is shown.
+    pub is_quiet: bool,
 }
 
 impl Repeat {
@@ -54,17 +57,33 @@ impl<'a> Rounds<'a> {
         self.done == 0
     }
 
-    /// Whether the condition of `--until` holds.
-    pub fn is_met(&self, value: &impl Serialize) -> Result<bool, Failure> {
-        self.repeat.until.as_ref().map_or(Ok(false), |until| until.is_true(&as_value(value)?))
+    /// Whether the condition holds. One that can never hold is told at the first look.
+    pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
+        let Some(until) = &self.repeat.until else { return Ok(false) };
+        let value = as_value(value)?;
+        if until.holds(&value)? {
+            return Ok(true);
+        }
+        if self.is_first()
+            && let Some(why) = until.never(&value)
+        {
+            screen.note(&why);
+        }
+        Ok(false)
+    }
+
+    /// Whether there is no round after this one.
+    pub fn is_last(&self) -> bool {
+        let done = self.done.saturating_add(1);
+        self.repeat.count.is_some_and(|count| u64::from(done) >= count)
+            || self.repeat.within.is_some_and(|within| self.every.saturating_mul(done) > within)
     }
 
     /// Waits for the next round; `false` when there is none.
     pub async fn next(&mut self) -> Result<bool, Failure> {
+        let is_over = self.is_last();
         self.done = self.done.saturating_add(1);
         let next = self.began + self.every.saturating_mul(self.done);
-        let is_over = self.repeat.count.is_some_and(|count| u64::from(self.done) >= count)
-            || self.repeat.within.is_some_and(|within| next.duration_since(self.began) > within);
         if !is_over {
             let rest = async {
                 // Even where there is no time to rest, signals are heard.
@@ -78,10 +97,8 @@ impl<'a> Rounds<'a> {
 
     /// What it means that the rounds are over.
     pub fn end(&self) -> Result<(), Failure> {
-        if self.repeat.until.is_none() {
-            return Ok(());
-        }
-        Err(Failure::new(Kind::ConditionNotMet, "the condition of --until was not met")
+        let Some(until) = &self.repeat.until else { return Ok(()) };
+        Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
             .hint("--for sets how long to wait for it"))
     }
 }

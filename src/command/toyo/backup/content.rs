@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::manifest::Controller;
 use super::parts::Part;
-use crate::client::toyo::letters_request;
+use crate::client::toyo::{Letters, letters_request};
 use crate::command::backup::manifest::LeftOut;
 use crate::command::toyo::eeprom::Cell;
 use crate::command::toyo::items::{Answers, read_each};
@@ -84,6 +84,11 @@ fn task_axes() -> Request {
 }
 
 impl Controller {
+    /// The letters of its axes; unknown where it refused to tell.
+    pub fn letters(&self) -> Letters {
+        self.axis_letters.as_deref().map_or(Letters::UNKNOWN, Letters::of_words)
+    }
+
     /// Tasks that have points.
     pub fn point_tasks(&self) -> Vec<u8> {
         (1..=4).zip(self.task_axes.chars()).filter(|(_, axes)| *axes != '0').map(|(task, _)| task).collect()
@@ -140,7 +145,10 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
                 parameter: points::table(),
                 values: record.values().to_vec(),
             };
-            let text = points::write(&records.iter().map(setting).collect::<Vec<_>>(), point::AXES);
+            let settings: Vec<Setting> = records.iter().map(setting).collect();
+            // As columns of letters the file would mean other axes to `point set`.
+            let is_usual = controller.letters().are_usual();
+            let text = if is_usual { points::write(&settings, point::AXES) } else { points::write_numbered(&settings) };
             Ok(Text { text, left_out })
         }
         Part::Program(task) => {

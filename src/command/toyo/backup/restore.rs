@@ -22,7 +22,7 @@ use crate::command::toyo::eeprom::{Cell, Cells};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::link::{Link, wrong};
 use crate::command::toyo::program::steps;
-use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask};
+use crate::command::toyo::stores::{self, Store, StoreResult, StoreTask};
 use crate::command::toyo::values::NOT_IN_MANUAL;
 use crate::command::toyo::{param, tasks};
 use crate::command::{Command, Context, Report};
@@ -330,7 +330,8 @@ async fn look_at_one(link: &mut Link, screen: &Screen, job: &Job, found: &Contro
     for (step, text) in content.unlisted_steps() {
         must_be_there(link, step, &text).await?;
     }
-    let mut stores = content.stores(room)?;
+    let stores = content.stores(room)?;
+    let mut stores: Vec<Store> = stores.into_iter().map(|store| store.by(found.letters())).collect();
     stores::look(link, screen, &mut stores).await?;
     Ok(stores)
 }
@@ -378,7 +379,7 @@ fn speed(backup: &Controller) -> Result<Option<Store>, Failure> {
         write: Request::new(table::Command::Wovr, values).map_err(|error| wrong(&error))?,
         wanted: wanted.map_err(|error| wrong(&error))?,
     };
-    Ok(Some(Store { key: "override".to_owned(), cell, is_optional: true, found: CellState::NotAsked }))
+    Ok(Some(Store { is_optional: true, ..Store::new("override", cell) }))
 }
 
 /// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and

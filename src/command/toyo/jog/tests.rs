@@ -49,7 +49,7 @@ fn a_dry_run_shows_the_whole_sequence() {
         (["jog", "3", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
         (["jog", "4", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
     ] {
-        assert_eq!(blocks(&words).unwrap()[4], block);
+        assert_eq!(blocks(&words).unwrap()[2], block);
     }
 }
 
@@ -73,7 +73,7 @@ fn an_axis_moves_for_its_time() {
     // 10 mm/s for half a second, with a ramp of 0.1 s at either end.
     let moved = data["moved_mm"].as_f64().unwrap();
     assert!((4.9..5.2).contains(&moved), "{data}");
-    assert_eq!(data["end"]["x_mm"], data["moved_mm"]);
+    assert_eq!(data["position"]["x_mm"], data["moved_mm"]);
     assert_eq!(count(&heard, GO), 1);
     ends_with_a_stop(&heard);
 }
@@ -107,7 +107,7 @@ fn with_faults(
     let outcome = bench.run(&LOW).map(|(data, _)| data);
     ends_with_a_stop(&heard);
     assert_eq!(count(&heard, GO), 1, "what moves is sent once");
-    let place = |bench: &mut Bench| bench.data(&["position"])["x_mm"].as_f64().unwrap();
+    let place = |bench: &mut Bench| bench.data(&["position"])["positions"][0]["x_mm"].as_f64().unwrap();
     let here = place(&mut bench);
     bench.wait(Duration::from_secs(60));
     assert!((place(&mut bench) - here).abs() < 1e-9, "it stands");
@@ -171,7 +171,7 @@ fn a_dead_line_says_what_to_do() {
     // Once the line is back.
     dead.store(false, Relaxed);
     assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 20.0);
-    assert_eq!(bench.data(&["status"])["executing"], false);
+    assert_eq!(bench.data(&["status"])["running"], false);
 }
 
 #[test]
@@ -258,7 +258,7 @@ fn a_refused_jog_is_a_refusal_although_something_else_is_executed() {
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("NG")), "{failure}");
     assert!(failure.message.contains("a program or command is being executed"), "{failure}");
     assert_eq!(count(&heard, STOP), 1, "the stop goes out nevertheless");
-    assert_eq!(bench.data(&["status"])["executing"], true, "what somebody else runs goes on");
+    assert_eq!(bench.data(&["status"])["running"], true, "what somebody else runs goes on");
     bench.close().unwrap();
     assert_eq!(heard.borrow().last().unwrap(), "@HSOF");
 }
@@ -270,15 +270,31 @@ fn a_letter_is_the_axis_that_the_machine_calls_so() {
     let data = bench.data(&["jog", "z", "+", "low", "--for", "300ms"]);
     assert_eq!((&data["axis"], &data["axis_number"]), (&"Z".into(), &2.into()));
     assert_eq!(count(&heard, "@JGST X=SP Y=+L Z=SP R=SP"), 1);
-    assert!(data["end"]["y_mm"].as_f64().unwrap() > 1.0, "{data}");
-    assert_eq!(bench.data(&["position"])["axes"], serde_json::json!(["X", "Z", "Y", "R"]));
+    assert!(data["position"]["z_mm"].as_f64().unwrap() > 1.0, "{data}");
+    let position = bench.data(&["position"]);
+    let axes = position["positions"][0]["joints"].as_array().unwrap().iter().map(|joint| joint["axis"].clone());
+    assert_eq!(axes.collect::<serde_json::Value>(), serde_json::json!(["X", "Z", "Y", "R"]));
     assert_eq!(bench.data(&["point", "get", "1"])["axes"][1], "Z");
 
     // Two axes of one letter: only the number tells them apart.
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
     let (mut bench, heard) = Bench::with_faults(twice, |_, _| Fault::None);
     let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();
-    assert_eq!(failure.message, "which axis X is, is open: the letters of axes 1 to 4 are X, X, Z, R");
+    assert_eq!(failure.message, "which axis X is, is not known: the letters of axes 1 to 4 are X, X, Z, R");
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@JGST")));
     assert_eq!(bench.data(&["jog", "2", "+", "low", "--for", "300ms"])["axis"], "X");
+}
+
+#[test]
+fn a_jog_that_somebody_else_stops_says_so() {
+    let state = format!("{READY}[[event]]\nat_ms = 1000\ndo = \"stop\"\n");
+    let stopped = Bench::with_faults(&state, |_, _| Fault::None).0.run(&["jog", "X", "+", "low", "--for", "10s"]);
+    let failure = stopped.unwrap_err();
+    assert_eq!(failure.kind, Kind::ConditionNotMet);
+    assert!(
+        failure
+            .message
+            .starts_with("the axis came to rest before its time: somebody else stopped it; the axis was stopped"),
+        "{failure}"
+    );
 }

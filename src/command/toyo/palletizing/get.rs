@@ -46,8 +46,10 @@ impl Command for Get {
         let Context { link, screen, several, .. } = context;
         let target = files::target(self.toml.as_deref(), self.force, several)?;
         let wanted = if self.records.is_empty() { RECORDS.iter().collect() } else { self.records.clone() };
+        let letters = super::letters(link, &wanted, target.is_some()).await?;
         let answers = read_each(link, screen, "reading records", &reads(self.program, &wanted)?).await?;
-        let records = wanted.iter().copied().zip(&answers).map(|(pallet, answer)| Entry::answered(pallet, answer));
+        let records =
+            wanted.iter().copied().zip(&answers).map(|(pallet, answer)| Entry::answered(pallet, answer, letters));
         let records = records.collect();
         let kept = wanted.into_iter().zip(answers);
         let kept = kept.filter_map(|(pallet, answer)| Some((pallet, answer.ok().filter(Record::is_listed)?)));

@@ -9,11 +9,12 @@ use serde::Serialize;
 
 use super::eeprom::Cell;
 use super::items::in_a_word;
-use super::link::wrong;
+use super::link::{Link, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
 use super::stores::Store;
 use super::values::{self, Shown};
+use crate::client::toyo::Letters;
 use crate::command::commands;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::{Field, Value};
@@ -86,6 +87,22 @@ pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure>
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
 
+/// The letters by which coordinates of these records are told, if there are any. A file of records has axes 1 to 4 as x,
+/// y, z and r: it is refused where the machine has other letters.
+async fn letters(link: &mut Link, records: &[&Pallet], is_file: bool) -> Result<Letters, Failure> {
+    if !records.iter().any(|record| values::has_coordinates(&record.layout)) {
+        return Ok(Letters::USUAL);
+    }
+    let letters = link.letters().await?;
+    if is_file && !letters.are_usual() {
+        let message = format!("a file of records means X, Y and Z of the usual axes: {}", values::machine(&letters));
+        return Err(Failure::usage(message).hint(
+            "`toyo palletizing set PROGRAM RECORD` takes coordinates by their letters; `armctl backup` keeps all",
+        ));
+    }
+    Ok(letters)
+}
+
 /// A record of a program as something that is stored.
 pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Store, Failure> {
     let cell = Cell {
@@ -120,15 +137,16 @@ pub struct Entry {
 }
 
 impl Entry {
-    fn of(pallet: &'static Pallet, record: &Record) -> Self {
-        let (record, values, name, about) = (pallet.number, values::shown(record), pallet.name, pallet.about);
+    fn of(pallet: &'static Pallet, record: &Record, letters: Letters) -> Self {
+        let values = values::shown_by(record, &letters);
+        let (record, name, about) = (pallet.number, pallet.name, pallet.about);
         Self { record, name, about, values, ok: true, error: None }
     }
 
     /// What was answered.
-    fn answered(pallet: &'static Pallet, answer: &Result<Record, Failure>) -> Self {
+    fn answered(pallet: &'static Pallet, answer: &Result<Record, Failure>, letters: Letters) -> Self {
         match answer {
-            Ok(record) => Self::of(pallet, record),
+            Ok(record) => Self::of(pallet, record, letters),
             Err(failure) => Self {
                 record: pallet.number,
                 name: pallet.name,

@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Entry, parse_program, parse_record};
+use crate::client::toyo::Letters;
 use crate::command::toyo::complete;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::files;
@@ -65,10 +66,17 @@ impl Command for Set {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
         let Context { link, screen, authority, .. } = context;
+        let mut letters = Letters::USUAL;
         let records = match (&self.from, self.record) {
-            (Some(file), _) => from_file(file)?.into_iter().map(|filled| (filled, CellState::NotAsked)).collect(),
+            (Some(file), _) => {
+                let filled = from_file(file)?;
+                letters =
+                    super::letters(link, &filled.iter().map(|(record, _)| *record).collect::<Vec<_>>(), true).await?;
+                filled.into_iter().map(|filled| (filled, CellState::NotAsked)).collect()
+            }
             (None, Some(record)) => {
-                let changes = Changes::read(record.name, &record.layout, &self.values)?;
+                letters = super::letters(link, &[record], false).await?;
+                let changes = Changes::read_by(record.name, &record.layout, &letters, &self.values)?;
                 let read = Request::read_pallet(self.program, record).map_err(|error| wrong(&error))?;
                 let sketch = |values: &[Option<Value>]| super::sketch(self.program, record, values);
                 let (values, found) = changes.completed(link, &read, sketch).await?;
@@ -79,8 +87,8 @@ impl Command for Set {
         let mut entries = Vec::with_capacity(records.len());
         let mut stores = Vec::with_capacity(records.len());
         for ((record, values), found) in records {
-            let store = Store { found, ..super::store(self.program, record, values)? };
-            entries.push(Entry::of(record, &store.cell.wanted));
+            let store = Store { found, ..super::store(self.program, record, values)?.by(letters) };
+            entries.push(Entry::of(record, &store.cell.wanted, letters));
             stores.push(store);
         }
         stores::look(link, screen, &mut stores).await?;

@@ -37,9 +37,9 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Points, Failure> {
         let Context { link, screen, .. } = context;
         let points = Numbers::of(&self.points, &field());
-        let axes = link.letters().await?.all();
+        let letters = link.letters().await?;
         let (task, answers) = read_all(link, screen, self.task, &points).await?;
-        Ok(Points { task, points: Row::items(&points, &answers), axes })
+        Ok(Points { task, points: Row::items(&points, &answers, letters), axes: letters.all() })
     }
 }
 
@@ -49,7 +49,7 @@ pub struct Points {
     /// Whose points these are.
     pub task: u8,
     pub points: Vec<Item<Row>>,
-    /// The letters of axes 1 to 4, of which `x_mm`, `y_mm`, `z_mm` and `r_mm` are the coordinates in this order.
+    /// The letters of axes 1 to 4; empty where the controller does not tell.
     pub axes: [String; 4],
 }
 

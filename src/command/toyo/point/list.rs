@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::get::Points;
 use super::{OTHER_TASK, Row, read_all};
-use crate::command::frame::sheet::{self, SheetOptions};
+use crate::command::frame::sheet::{self, SheetOptions, SheetTarget};
+use crate::command::toyo::files;
 use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
@@ -23,16 +24,17 @@ use crate::output::view::{Section, View};
     after_help = format!(
         "999 points take a minute and a half at 9600 baud. The file of --csv is whole or is not written; `point set \
          --from` reads it. With --update, a file that is there keeps its comments (columns whose names begin with \
-         comment), its order and the points that are not read.\n\n{OTHER_TASK}"
+         comment), its order and its points: without --from and \
+         --to, only those are read.\n\n{OTHER_TASK}"
     )
 )]
 pub struct List {
-    /// First point
-    #[arg(long, value_name = "POINT", default_value_t = 1, value_parser = clap::value_parser!(i32).range(1..=999))]
-    from: i32,
-    /// Last point
-    #[arg(long, value_name = "POINT", default_value_t = 999, value_parser = clap::value_parser!(i32).range(1..=999))]
-    to: i32,
+    /// First point; without it, 1
+    #[arg(long, value_name = "POINT", value_parser = clap::value_parser!(i32).range(1..=999))]
+    from: Option<i32>,
+    /// Last point; without it, 999
+    #[arg(long, value_name = "POINT", value_parser = clap::value_parser!(i32).range(1..=999))]
+    to: Option<i32>,
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
@@ -51,22 +53,32 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Listing, Failure> {
         let Context { link, screen, several, .. } = context;
-        if self.to < self.from {
-            return Err(Failure::usage(format!("--to {} is before --from {}", self.to, self.from))
-                .hint("name the lower row with --from"));
+        let (from, to) = (self.from.unwrap_or(1), self.to.unwrap_or(999));
+        if to < from {
+            return Err(
+                Failure::usage(format!("--to {to} is before --from {from}")).hint("name the lower row with --from")
+            );
         }
         let target = self.sheet.target(several)?;
-        let points: Vec<i32> = (self.from..=self.to).collect();
-        let axes = if target.is_none() { link.letters().await?.all() } else { Default::default() };
+        let old = target.as_ref().and_then(SheetTarget::old).filter(|_| self.from.is_none() && self.to.is_none());
+        let points = match old {
+            Some(old) => points::numbers(old).map_err(|errors| files::faulty("the file of --csv", &errors))?,
+            None => (from..=to).collect(),
+        };
+        let letters = link.letters().await?;
         let (task, answers) = read_all(link, screen, self.task, &points).await?;
-        let items = Row::items(&points, &answers);
+        let items = Row::items(&points, &answers, letters);
         let Some(target) = target else {
-            return Ok(Listing::Points(Points { task, points: items, axes }));
+            return Ok(Listing::Points(Points { task, points: items, axes: letters.all() }));
         };
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
         let settings: Vec<Setting> =
             answers.iter().flatten().filter(|record| record.is_listed()).map(setting).collect();
-        let file = target.write(&points::columns(AXES), &points::rows(&settings), sheet::number)?;
+        let file = target.write(
+            &points::columns_by([0, 1, 2, 3].map(|axis| letters.name(axis))),
+            &points::rows(&settings),
+            sheet::number,
+        )?;
         let left_out = items.into_iter().filter(|item| item.value().is_none()).collect();
         Ok(Listing::File(Saved { task, file, saved: settings.len(), asked: points.len(), left_out }))
     }

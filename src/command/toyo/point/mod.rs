@@ -16,6 +16,7 @@ use super::link::{self, Link};
 use super::numbers::Numbers;
 use super::position::{Coordinates, heading};
 use super::tasks;
+use crate::client::toyo::Letters;
 use crate::command::commands;
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
@@ -51,8 +52,8 @@ pub struct Row {
 }
 
 impl Row {
-    fn of(record: &Record) -> Self {
-        Self { point: record.number("row").unwrap_or_default(), place: Coordinates::of(record) }
+    fn of(record: &Record, letters: Letters) -> Self {
+        Self { point: record.number("row").unwrap_or_default(), place: Coordinates::of(record, letters) }
     }
 
     /// With the columns of a CSV file that `point set --from` reads.
@@ -61,16 +62,20 @@ impl Row {
         let mut table = Table::new(&["point", x, y, z, r], "no points");
         let mm = |value: f64| Cell::number(format!("{value:.2}"));
         for row in rows {
-            row.show(&mut table, |Self { point, place: Coordinates { x_mm, y_mm, z_mm, r_mm } }| {
-                vec![(*point).into(), mm(*x_mm), mm(*y_mm), mm(*z_mm), mm(*r_mm)]
+            row.show(&mut table, |Self { point, place }| {
+                std::iter::once((*point).into()).chain(place.mm().map(mm)).collect()
             });
         }
         table
     }
 
     /// Of what was answered for these points.
-    fn items(points: &[i32], answers: &Answers) -> Vec<Item<Self>> {
-        points.iter().zip(answers).map(|(point, answer)| Item::of("point", *point, answer, Self::of)).collect()
+    fn items(points: &[i32], answers: &Answers, letters: Letters) -> Vec<Item<Self>> {
+        points
+            .iter()
+            .zip(answers)
+            .map(|(point, answer)| Item::of("point", *point, answer, |record| Self::of(record, letters)))
+            .collect()
     }
 }
 

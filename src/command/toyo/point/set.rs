@@ -7,9 +7,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{OTHER_TASK, Row, field};
+use crate::client::toyo::Letters;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Known as _, unknown};
-use crate::command::frame::teach::printed;
+use crate::command::frame::teach::printed_position;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
@@ -32,7 +33,9 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(
     after_help = format!(
-        "A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it; with \
+        "Names and columns are the letters that the teach pendant shows (parameter E01). Where those are not X, Y, Z and R \
+         in this order, coordinates need their names; ax1 to ax4, and columns ax1_mm to ax4_mm, are axes 1 to 4 everywhere.\n\n\
+         A file begins with point,x_mm,y_mm,z_mm,r_mm and has a point a line, as `point list --csv` writes it; with \
          commas, semicolons or tabs, and with decimal commas where cells are not parted by commas. Coordinates that it \
          has no column for stay as they are on the controller. Columns beginning with comment are yours. All of it is \
          checked before anything is sent. What the controller holds already is not written: its EEPROM takes about \
@@ -44,8 +47,8 @@ pub struct Set {
     /// Row of the coordinate table, 1 to 999
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
     point: Option<i32>,
-    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others; or @FILE with what
-    /// `position --json` printed, @- for stdin, or here
+    /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others; names are the letters of the
+    /// teach pendant, or ax1 to ax4; or @FILE with what `position --json` printed, @- for stdin, or here
     #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "MM", allow_negative_numbers = true)]
     values: Vec<String>,
     /// Write the points of this CSV file; - is stdin
@@ -76,20 +79,24 @@ impl Command for Set {
             let point = self.point.unwrap_or_default();
             let given = printed_values(&self.values)?;
             let values = given.as_ref().unwrap_or(&self.values);
-            let changes = Changes::read(&format!("point {point}"), &points::table().body(), values)?;
+            let letters = link.letters().await?;
+            let changes = Changes::read_by(&format!("point {point}"), &points::table().body(), &letters, values)?;
             let task = tasks::choose(link, self.task).await?;
-            let stored = self.store_one(link, screen, &authority, (task, point), &changes).await;
+            let stored = self.store_one(link, screen, &authority, (task, point), letters, &changes).await;
             return tasks::done(link, stored).await;
         };
         let name = files::shown(file);
-        let points = points::read_partial(&files::read(file)?).map_err(|errors| files::faulty(&name, &errors))?;
+        let text = files::read(file)?;
+        let letters = link.letters().await?;
+        let names = [0, 1, 2, 3].map(|axis| letters.name(axis));
+        let points = points::read_partial(&text, names).map_err(|errors| files::faulty(&name, &errors))?;
         if points.is_empty() {
             return Err(
                 Failure::usage(format!("{name} has no points")).hint("`toyo point list --csv FILE` writes such a file")
             );
         }
         let task = tasks::choose(link, self.task).await?;
-        let stored = self.store_file(link, screen, &authority, (task, &points)).await;
+        let stored = self.store_file(link, screen, &authority, (task, &points), letters).await;
         tasks::done(link, stored).await
     }
 }
@@ -102,12 +109,13 @@ impl Set {
         screen: &Screen,
         authority: &Authority<'_>,
         (task, point): (u8, i32),
+        letters: Letters,
         changes: &Changes,
     ) -> Result<Stored, Failure> {
         let read = Request::read_parameter(points::table(), Some(point)).map_err(|error| link::wrong(&error))?;
         let sketch = |values: &[Option<Value>]| parameter_sketch(points::table(), Some(point), values);
         let (coordinates, found) = changes.completed(link, &read, sketch).await?;
-        let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect())?;
+        let stored = store(std::iter::once(Value::Number(point)).chain(coordinates).collect(), letters)?;
         self.store_all(link, screen, authority, (task, vec![stored.over(found)]), 0).await
     }
 
@@ -118,10 +126,12 @@ impl Set {
         screen: &Screen,
         authority: &Authority<'_>,
         (task, points): (u8, &[Partial]),
+        letters: Letters,
     ) -> Result<Stored, Failure> {
         // With zeros for what is not known yet.
-        let whole =
-            |point: &Partial| store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect());
+        let whole = |point: &Partial| {
+            store(point.values.iter().map(|v| v.clone().unwrap_or(Value::Number(0))).collect(), letters)
+        };
         let mut stores = points.iter().map(whole).collect::<Result<Vec<Store>, Failure>>()?;
         let left_out = stores::left_out(&stores, self.resume.as_deref())?;
         if points.iter().all(|point| point.values.iter().all(Option::is_some)) {
@@ -141,7 +151,7 @@ impl Set {
             let CellState::This(found) = &store.found else { continue };
             let whole = Changes::of(point.values[1..].to_vec()).over(found)?;
             let number = std::iter::once(Value::Number(point.row()));
-            store.cell = self::store(number.chain(whole).collect())?.cell;
+            store.cell = self::store(number.chain(whole).collect(), letters)?.cell;
         }
         self.store_all(link, screen, authority, (task, stores), left_out).await
     }
@@ -162,25 +172,18 @@ impl Set {
     }
 }
 
-pub(super) fn store(values: Vec<Value>) -> Result<Store, Failure> {
+pub(super) fn store(values: Vec<Value>, letters: Letters) -> Result<Store, Failure> {
     let cell = parameter_cell(points::table(), values).map_err(|error| link::wrong(&error))?;
     let row = cell.wanted.number("row").unwrap_or_default();
-    Ok(Store::new(row.to_string(), cell))
+    Ok(Store::new(row.to_string(), cell).by(letters))
 }
 
 /// The values of a position that another command printed, where a file of one is given.
 fn printed_values(values: &[String]) -> Result<Option<Vec<String>>, Failure> {
     let [only] = values else { return Ok(None) };
     let Some(file) = only.strip_prefix('@') else { return Ok(None) };
-    let position = printed(Path::new(file))?;
-    let value = |key: &str| {
-        let number = position.get(key).filter(|value| value.is_number());
-        number.map(ToString::to_string).ok_or_else(|| {
-            Failure::usage(format!("{file}: no number {key}"))
-                .hint("it holds a position as `toyo position --json` prints it")
-        })
-    };
-    ["x_mm", "y_mm", "z_mm", "r_mm"].into_iter().map(value).collect::<Result<_, _>>().map(Some)
+    let text = printed_position(Path::new(file))?;
+    Ok(Some(text.split_whitespace().map(ToOwned::to_owned).collect()))
 }
 
 /// Result of points.
@@ -205,8 +208,10 @@ pub struct StoredRow {
 
 impl Stored {
     fn new(task: u8, stores: &[Store], fates: &[StoreResult]) -> Self {
-        let rows =
-            stores.iter().zip(fates).map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted), result: *fate });
+        let rows = stores
+            .iter()
+            .zip(fates)
+            .map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted, store.letters), result: *fate });
         Self { task, points: rows.collect(), items: stores::written(stores), cells: stores::sum(fates) }
     }
 }

@@ -8,7 +8,7 @@ use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::teach::Taught;
 use crate::command::toyo::link::{self, Link, Toyo};
 use crate::command::toyo::numbers::number;
-use crate::command::toyo::position::Coordinates;
+use crate::command::toyo::position::{Coordinates, UNIT};
 use crate::command::toyo::stores::{self, StoreResult, parameter_sketch};
 use crate::command::toyo::tasks;
 use crate::command::{Command, Context};
@@ -46,7 +46,7 @@ fn shown(place: &Coordinates) -> String {
 
 impl Command for Teach {
     type Family = Toyo;
-    type Report = Taught<Coordinates, Coordinates>;
+    type Report = Taught;
     const ID: &'static str = "toyo.teach";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite a point";
@@ -68,10 +68,11 @@ impl Command for Teach {
 }
 
 impl Teach {
-    async fn teach(&self, context: Context<'_, Toyo>, task: u8) -> Result<Taught<Coordinates, Coordinates>, Failure> {
+    async fn teach(&self, context: Context<'_, Toyo>, task: u8) -> Result<Taught, Failure> {
         let Context { link, screen, authority, .. } = context;
         let name = self.point.to_string();
         let read = Request::read_parameter(table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
+        let letters = link.letters().await?;
         let here = stands(link).await.known()?;
         let found = link.ask(&read).await.known()?;
         let Some((here, found)) = here.zip(found) else {
@@ -79,15 +80,15 @@ impl Teach {
             link.plan_overwriting(&read, &sketch).await?;
             return Err(unknown());
         };
-        let place = Coordinates::of(&here);
-        let old = Coordinates::of(&found);
+        let place = Coordinates::of(&here, letters);
+        let old = Coordinates::of(&found, letters);
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(here.number(axis).unwrap_or_default()));
         let values = std::iter::once(Value::Number(self.point)).chain(axes).collect();
-        let stores = [store(values)?.over(Some(found))];
+        let stores = [store(values, letters)?.over(Some(found))];
         let is_asked = authority.asks();
         authority.confirm(&stores::replacing(WORK, &stores, &format!(" of task {task}"))).await?;
         if is_asked {
-            let now = Coordinates::of(&stands(link).await?);
+            let now = Coordinates::of(&stands(link).await?, letters);
             if now != place {
                 let message = format!("the axes have moved since the question, to {}", shown(&now));
                 return Err(outdated(format!("{message}; nothing was stored")));
@@ -95,7 +96,8 @@ impl Teach {
         }
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
         // What was written has been read back and is that.
-        let taught = Taught::new(name, Some(old), place, place, shown).unchanged(fates == [StoreResult::Unchanged]);
+        let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT))
+            .unchanged(fates == [StoreResult::Unchanged]);
         Ok(taught.with("point", self.point).with("task", task))
     }
 }

@@ -6,14 +6,14 @@ use crate::command::toyo::testing::{Bench, Fault, blocks, objection};
 fn points_and_ranges_are_read_once_each() {
     assert_eq!(
         blocks(&["point", "get", "9-10,20", "9"]).unwrap(),
-        ["@SYSP", "@RPAR E01", "@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
+        ["@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
     );
     assert_eq!(
         blocks(&["point", "get", "1", "--task", "2"]).unwrap(),
-        ["@SYSP", "@RPAR E01", "@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001", "@CTSK TASK=?"]
+        ["@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001", "@CTSK TASK=?"]
     );
-    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 3 + 999);
-    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[3..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
+    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 1 + 999);
+    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[1..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
     assert!(objection(&["point", "get", "1000"]).contains("1000 is out of range (a number, 1 to 999)"));
     assert_eq!(blocks(&["point", "list", "--from", "5", "--to", "4"]).unwrap_err().kind.exit(), 2);
 }
@@ -143,4 +143,91 @@ fn a_task_that_was_chosen_is_put_back() {
     assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["task"], 2);
     assert_eq!(bench.data(&["point", "get", "1", "--task", "2"])["points"][0]["x_mm"], 1.0);
     assert_eq!(bench.data(&["point", "get", "1"])["task"], 3);
+}
+
+/// Axes 2 and 3 have the other's letters, as on a machine whose second axis goes up and down.
+const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = true\n";
+
+#[test]
+fn a_letter_is_the_same_axis_everywhere() {
+    let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
+    let stored = bench.data(&["point", "set", "1", "z=12.5"]);
+    assert_eq!((&stored["points"][0]["z_mm"], &stored["items"][0]["new"]["z"]), (&12.5.into(), &12.5.into()));
+    let last = |word: &str| heard.borrow().iter().rfind(|block| block.starts_with(word)).cloned();
+    assert_eq!(last("@WPAR").unwrap(), "@WPAR T1 PT=001 X=+0000.00 Y=+0012.50 Z=+0000.00 R=+0000.00");
+    bench.data(&["point", "set", "1", "ax3=7"]);
+    assert_eq!(bench.data(&["point", "get", "1"])["points"][0]["y_mm"], 7.0);
+    let jogged = bench.data(&["jog", "Z", "+", "low", "--for", "1s"]);
+    assert_eq!((&jogged["axis"], &jogged["axis_number"]), (&"Z".into(), &2.into()));
+    let position = bench.data(&["position"]);
+    let place = &position["positions"][0];
+    assert_eq!((&place["z_mm"], &place["y_mm"]), (&jogged["position"]["z_mm"], &0.0.into()));
+    let taught = bench.data(&["teach", "2"]);
+    assert_eq!(taught["new"]["z_mm"], place["z_mm"]);
+    bench.data(&["coordinate", "set", "x=1", "y=2", "z=3", "r=4"]);
+    assert_eq!(last("@MRSS").unwrap(), "@MRSS TASK=01 X=+0001.00 Y=+0003.00 Z=+0002.00 R=+0004.00 V=00");
+    bench.data(&["palletizing", "set", "1", "source-p0", "z=3"]);
+    assert_eq!(last("@WPLT").unwrap(), "@WPLT 01 SNO=02 X=+0000.00 Y=+0003.00 Z=+0000.00");
+}
+
+#[test]
+fn values_without_names_are_refused_where_they_could_mean_two_axes() {
+    let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
+    for words in [&["point", "set", "1", "1", "2", "3", "4"][..], &["coordinate", "set", "1", "2", "3", "4"]] {
+        let failure = bench.run(words).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2);
+        assert!(failure.message.ends_with("the letters of axes 1 to 4 are X, Z, Y, R"), "{failure}");
+        assert!(failure.hint.unwrap().starts_with("give them by name: x=… z=… y=… r=…"));
+    }
+    assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
+}
+
+#[test]
+fn letters_that_are_not_told_mean_no_axis() {
+    let mute = |block: &str, _| match block {
+        "@SYSP" | "@RPAR E01" => Fault::Answered("@NG"),
+        _ => Fault::None,
+    };
+    let (mut bench, heard) = Bench::with_faults("origin = true\n", mute);
+    for words in [&["point", "set", "1", "z=12.5"][..], &["jog", "Z", "+", "low", "--for", "1s"]] {
+        let failure = bench.run(words).unwrap_err();
+        assert_eq!(failure.kind.exit(), 2, "{failure}");
+        assert!(failure.message.contains("which axis Z is, is not known"), "{failure}");
+    }
+    assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
+    assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["points"][0]["ax3_mm"], 12.5);
+    assert_eq!(bench.data(&["jog", "3", "+", "low", "--for", "1s"])["axis_number"], 3);
+}
+
+#[test]
+fn a_file_has_the_letters_of_the_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (letters, numbers, saved) = (path("letters.csv"), path("numbers.csv"), path("saved.csv"));
+    std::fs::write(&letters, "point,x_mm,y_mm,z_mm,r_mm\n1,1.00,2.00,3.00,4.00\n").unwrap();
+    std::fs::write(&numbers, "point,ax3_mm\n1,9.00\n").unwrap();
+    let (mut bench, _) = Bench::with_faults(CROSSED, |_, _| Fault::None);
+    bench.data(&["point", "set", "--from", &letters]);
+    bench.data(&["point", "list", "--to", "1", "--csv", &saved]);
+    let text = std::fs::read_to_string(&saved).unwrap();
+    assert_eq!(text, "point,x_mm,z_mm,y_mm,r_mm\n1,1.00,3.00,2.00,4.00\n");
+    bench.data(&["point", "set", "--from", &numbers]);
+    assert_eq!(bench.data(&["point", "get", "1"])["points"][0]["y_mm"], 9.0);
+}
+
+#[test]
+fn an_update_keeps_to_the_points_of_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.csv").to_str().unwrap().to_owned();
+    std::fs::write(&path, "comment,point,x_mm,y_mm,z_mm,r_mm\ngate,7,,,,\nbin,3,1,1,1,1\n").unwrap();
+    let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
+    bench.data(&["point", "set", "7", "1", "2", "3", "4"]);
+    let asked = heard.borrow().len();
+    assert_eq!(bench.data(&["point", "list", "--csv", &path, "--update"])["saved"], 2);
+    let text = "comment,point,x_mm,y_mm,z_mm,r_mm\ngate,7,1.00,2.00,3.00,4.00\nbin,3,0.00,0.00,0.00,0.00\n";
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
+    let reads = heard.borrow()[asked..].iter().filter(|block| block.starts_with("@RPAR T1")).count();
+    assert_eq!(reads, 2);
+    bench.data(&["point", "list", "--csv", &path, "--update", "--to", "3"]);
+    assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 5);
 }

@@ -100,7 +100,7 @@ impl Insert {
             return Err(Failure::new(Kind::Rejected, message)
                 .hint("delete it first, or give the task more steps by the machine parameter E22 (task-steps)"));
         }
-        authority.confirm(&Change::nothing()).await?;
+        authority.confirm(&self.change(task, &before)).await?;
         steps::open(link).await?;
         link.ask(&self.order()).await?;
         if step < room {
@@ -112,6 +112,12 @@ impl Insert {
         let mut cells = Cells::default();
         link.store(screen, &steps::cell(step, instruction)?, &mut cells).await?;
         Ok(Inserted { task, inserted: Step::of(step.into(), instruction) })
+    }
+
+    fn change(&self, task: u8, before: &Record) -> Change {
+        let step = self.step;
+        let behind = format!("step {step} ({}) and the steps behind it move on by one", before.written());
+        Change::new(format!("insert a step before step {step} of task {task}")).item(behind)
     }
 
     async fn dry_run(

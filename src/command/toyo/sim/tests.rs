@@ -108,7 +108,7 @@ fn an_error_is_told_with_its_code_and_place() {
     let desk = Desk::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
     let (data, failure) = desk.run(&["./a.txt"]).unwrap();
     let failure = failure.unwrap();
-    assert_eq!((data["error"]["code"].as_str(), failure.code.as_deref()), (Some("C0"), Some("C0")));
+    assert_eq!((data["alarm"]["code"].as_str(), failure.code.as_deref()), (Some("C0"), Some("C0")));
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     assert!(failure.message.contains("a.txt:2, task 1, step 2: MOV a X=+8000.00"), "{}", failure.message);
 }

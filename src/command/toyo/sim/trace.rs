@@ -7,8 +7,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::Report;
+use crate::command::robot::alarm::Alarm;
+use crate::command::toyo::explain::told;
 use crate::command::toyo::position::Coordinates;
-use crate::command::toyo::status::ErrorCode;
 use crate::controller::toyo::errors;
 use crate::controller::toyo::program::Program;
 use crate::controller::toyo::request::instruction;
@@ -61,8 +62,8 @@ pub struct Recorder {
 pub struct Trace {
     /// `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
-    /// The error, if it ended with one.
-    error: Option<ErrorCode>,
+    /// The error that it ended with; null without one.
+    alarm: Option<Alarm>,
     /// Time of the program until then.
     elapsed_s: f64,
     /// Where the axes were then.
@@ -169,7 +170,7 @@ impl Recorder {
         let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
         Trace {
             end: end.name(),
-            error: if let End::Error(code) = end { Some(ErrorCode::of(code)) } else { None },
+            alarm: if let End::Error(code) = end { Some(told(code)) } else { None },
             elapsed_s: at.as_secs_f64(),
             position: Coordinates::at(state.position),
             outputs: ports.map(|((station, port), bits)| Port::new(*station, *port, *bits)).collect(),
@@ -318,7 +319,7 @@ impl Trace {
 }
 
 /// A column, and what stands there.
-type Axis = (&'static str, fn(&Coordinates) -> f64);
+type Axis = (&'static str, usize);
 
 impl Report for Trace {
     fn rows(&self) -> RowsOf {
@@ -327,11 +328,10 @@ impl Report for Trace {
 
     /// Axes that stay at 0 have no column, nor has the task where there is one only.
     fn view(&self) -> View {
-        let axes: [Axis; 4] =
-            [("x (mm)", |p| p.x_mm), ("y (mm)", |p| p.y_mm), ("z (mm)", |p| p.z_mm), ("r (mm)", |p| p.r_mm)];
+        let axes: [Axis; 4] = [("x (mm)", 0), ("y (mm)", 1), ("z (mm)", 2), ("r (mm)", 3)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));
-        let moves = |of: fn(&Coordinates) -> f64| self.trace.iter().any(|row| of(&row.place) != 0.0);
-        let axes: Vec<_> = axes.into_iter().filter(|(name, of)| *name == "x (mm)" || moves(*of)).collect();
+        let moves = |axis: usize| self.trace.iter().any(|row| row.place.mm()[axis] != 0.0);
+        let axes: Vec<_> = axes.into_iter().filter(|(name, axis)| *name == "x (mm)" || moves(*axis)).collect();
         let mut columns = vec!["time (s)"];
         columns.extend(has_tasks.then_some("task"));
         columns.extend(["step", "line", "what"]);
@@ -348,7 +348,7 @@ impl Report for Trace {
             let mut cells = vec![Cell::number(format!("{:.3}", row.time_s))];
             cells.extend(has_tasks.then(|| number(|at| at.task)));
             cells.extend([number(|at| at.step), number(|at| at.line), Cell::from(row.what.as_str()).tone(tone)]);
-            cells.extend(axes.iter().map(|(_, of)| Cell::number(format!("{:.2}", of(&row.place)))));
+            cells.extend(axes.iter().map(|(_, axis)| Cell::number(format!("{:.2}", row.place.mm()[*axis]))));
             table.rows.push(cells);
         }
         View::table(table)

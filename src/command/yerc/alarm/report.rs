@@ -3,76 +3,36 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::Report;
-use crate::command::face::sample;
-use crate::command::frame::items;
-use crate::command::frame::items::{ItemError, ItemOutcome};
+use crate::command::robot::alarm::{Alarm, AlarmEntry, Besides, Kind, Standing};
 use crate::command::yerc::link::Link;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
 use crate::controller::yerc::payload;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::Robot;
-use crate::settings::alarms::{Explanation, Origin};
+use crate::settings::alarms::Origin;
 use crate::settings::target::Family;
 
-/// The alarms that are present, the latest first.
+/// Whether the controller has texts of sub-codes.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct ActiveAlarms {
-    pub(super) alarms: Vec<ActiveAlarm>,
+pub struct WithTexts {
     /// Whether sub-code texts were asked for and the controller has them.
-    pub(super) with_texts: bool,
-    #[serde(skip)]
-    pub(super) asked: usize,
+    pub with_texts: bool,
 }
 
-/// The alarms of the past.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct PastAlarms {
-    pub(super) alarms: Vec<PastAlarm>,
-    /// Whether sub-code texts were asked for and the controller has them.
-    pub(super) with_texts: bool,
-    #[serde(skip)]
-    pub(super) asked: usize,
-}
+impl Standing for WithTexts {}
 
+/// What the protocol tells of an alarm besides.
 #[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct ActiveAlarm {
-    /// 1 is the latest.
-    pub(super) slot: u8,
-    #[serde(flatten)]
-    pub(super) outcome: ItemOutcome<AlarmEntry>,
-}
-
-#[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct PastAlarm {
-    /// `major`, `monitor`, `system`, `user` or `offline`.
-    pub(super) class: &'static str,
-    /// 1 is the latest of its class.
-    pub(super) number: u8,
-    #[serde(flatten)]
-    pub(super) outcome: ItemOutcome<AlarmEntry>,
-}
-
-/// An alarm in words.
-#[derive(Debug, Serialize, JsonSchema)]
-pub(super) struct AlarmEntry {
-    /// 1 to 9999.
-    pub(super) code: u32,
-    pub(super) name: String,
-    /// As the controller shows it, `YYYY/MM/DD HH:MM`.
-    pub(super) time: String,
+pub struct Own {
     /// How to read the sub-code.
     #[serde(rename = "type")]
     kind: u32,
     /// The type in words.
     type_name: &'static str,
-    pub(super) sub_code: SubCode,
+    sub_code: SubCode,
     /// Where it comes from, such as `[SV#1]`; null without texts.
-    pub(super) board: Option<String>,
-    /// What `alarms.toml` says of it; null where it says nothing.
-    explained: Option<Explanation>,
+    board: Option<String>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -100,61 +60,58 @@ impl SubCode {
     }
 }
 
-impl AlarmEntry {
-    pub(super) fn new(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> Self {
-        let rendered = alarm.sub_code(model);
-        let texts = alarm.texts.as_ref();
-        Self {
-            code: alarm.code,
-            name: encoding.decode(alarm.name.as_bytes()),
-            time: encoding.decode(alarm.time.as_bytes()),
-            kind: alarm.kind.0,
-            type_name: rendered.type_name,
-            sub_code: SubCode {
-                raw: alarm.data,
-                trust: rendered.trust.name(),
-                text: texts.map(|texts| encoding.decode(texts.sub_code.as_bytes())),
-                reversed: texts.map(|texts| encoding.decode(texts.reversed.as_bytes())),
-                shown: rendered.to_string(),
-                rendered: rendered.text,
-            },
-            board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
-            explained: None,
-        }
-    }
+/// An alarm as received.
+pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> AlarmEntry<Own> {
+    let rendered = alarm.sub_code(model);
+    let texts = alarm.texts.as_ref();
+    let own = Own {
+        kind: alarm.kind.0,
+        type_name: rendered.type_name,
+        sub_code: SubCode {
+            raw: alarm.data,
+            trust: rendered.trust.name(),
+            text: texts.map(|texts| encoding.decode(texts.sub_code.as_bytes())),
+            reversed: texts.map(|texts| encoding.decode(texts.reversed.as_bytes())),
+            shown: rendered.to_string(),
+            rendered: rendered.text,
+        },
+        board: texts.map(|texts| encoding.decode(texts.source.as_bytes())),
+    };
+    let alarm = Alarm {
+        code: Some(alarm.code.to_string()),
+        text: Some(encoding.decode(alarm.name.as_bytes())),
+        kind: Some(Kind::Alarm),
+        time: Some(encoding.decode(alarm.time.as_bytes())),
+        ..Alarm::default()
+    };
+    AlarmEntry { alarm, own }
+}
 
-    /// With what `alarms.toml` says of it.
-    pub(super) async fn explained(mut self, robot: &Robot, link: &mut Link) -> Result<Self, Failure> {
-        let code = self.code.to_string();
-        let find = |model| {
-            robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code)
-        };
-        let model = link.model_for(find).await?;
-        self.explained = find(model)?;
-        Ok(self)
-    }
+/// The same with what `alarms.toml` says of it.
+pub(super) async fn explained(
+    entry: AlarmEntry<Own>,
+    robot: &Robot,
+    link: &mut Link,
+) -> Result<AlarmEntry<Own>, Failure> {
+    let code = entry.alarm.code.clone().unwrap_or_default();
+    let find =
+        |model| robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code);
+    let model = link.model_for(find).await?;
+    Ok(AlarmEntry { alarm: entry.alarm.with(find(model)?), ..entry })
+}
 
-    /// The same as a line below a table.
-    fn explanation(&self) -> Option<String> {
-        Some(format!("{}: {}", self.code, self.explained.as_ref()?.line()))
-    }
+/// The same for one line: its sub-code is part of the text.
+pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
+    let parts = [alarm.text.as_deref(), own.sub_code.describe()].into_iter().flatten();
+    let text = parts.collect::<Vec<_>>().join(" ");
+    Alarm { text: Some(text), ..alarm }
+}
 
-    pub(super) fn sample(&self) -> sample::Alarm {
-        let sub_code = self.sub_code.describe().unwrap_or_default();
-        let text = [self.name.as_str(), sub_code].join(" ").trim_end().to_owned();
-        sample::Alarm { code: self.code.to_string(), text, remedy: String::new() }
-    }
-
-    /// Code, name, sub-code, time, board. The type is in JSON alone: here it would leave no room for the name.
-    fn cells(&self) -> [Cell; 5] {
-        let given = |text: &str| (!text.is_empty()).then(|| Cell::from(text));
-        [
-            Cell::from(self.code).tone(Tone::Bad),
-            self.name.as_str().into(),
-            Cell::maybe(self.sub_code.describe().map(Cell::from)),
-            Cell::from(self.time.as_str()).whole(),
-            Cell::maybe(self.board.as_deref().and_then(given)),
-        ]
+impl Besides for Own {
+    // The type is in JSON alone: here it would leave no room for the text.
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
+        vec![("sub-code", self.sub_code.describe().map(ToOwned::to_owned)), ("board", board.map(ToOwned::to_owned))]
     }
 }
 
@@ -165,68 +122,15 @@ pub(in crate::command::yerc) fn in_a_line(alarm: &payload::Alarm, encoding: Enco
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-/// The cells of an alarm, or of the reason why it is not there.
-fn cells(outcome: &ItemOutcome<AlarmEntry>) -> [Cell; 5] {
-    let blank = || Cell::maybe(None::<Cell>);
-    match (outcome.data(), outcome.error()) {
-        (Some(alarm), _) => alarm.cells(),
-        (None, error) => [blank(), error.map_or_else(blank, ItemError::cell), blank(), blank(), blank()],
-    }
-}
-
-impl ActiveAlarms {
-    pub(super) fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
-    }
-}
-
-impl PastAlarms {
-    pub(super) fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        self.alarms.iter().filter_map(|alarm| alarm.outcome.error())
-    }
-}
-
-impl Report for ActiveAlarms {
-    fn view(&self) -> View {
-        let mut table = Table::new(&["slot", "code", "name", "sub-code", "time", "board"], "no alarm");
-        for ActiveAlarm { slot, outcome } in &self.alarms {
-            let [code, name, sub_code, time, board] = cells(outcome);
-            table.row([(*slot).into(), code, name, sub_code, time, board]);
-        }
-        let told = self.alarms.iter().filter_map(|alarm| alarm.outcome.data()?.explanation());
-        let told: Vec<Cell> = told.map(Cell::from).collect();
-        let view = View::table(table);
-        if told.is_empty() { view } else { view.and(Section::Lines(told)) }
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked, self.errors())
-    }
-}
-
-impl Report for PastAlarms {
-    fn view(&self) -> View {
-        let columns = ["class", "#", "code", "name", "sub-code", "time", "board"];
-        let mut table = Table::new(&columns, "no alarm");
-        for PastAlarm { class, number, outcome } in &self.alarms {
-            let [code, name, sub_code, time, board] = cells(outcome);
-            table.row([(*class).into(), (*number).into(), code, name, sub_code, time, board]);
-        }
-        View::table(table)
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked, self.errors())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::Report as _;
+    use crate::command::robot::alarm::{Alarms, Row};
     use crate::controller::yerc::payload::{AlarmKind, AlarmTexts, Text};
     use crate::output::render;
 
-    fn entry(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry {
+    fn collision(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry<Own> {
         let alarm = payload::Alarm {
             code: 4315,
             data,
@@ -235,38 +139,36 @@ mod tests {
             name: Text::cut(b"\x8F\xD5\x93\xCB"),
             texts,
         };
-        AlarmEntry::new(&alarm, Encoding::ShiftJis, Model::Dx200)
+        entry(&alarm, Encoding::ShiftJis, Model::Dx200)
+    }
+
+    fn of(alarms: Vec<Row<Own>>) -> Alarms<Own, WithTexts> {
+        Alarms { alarms, standing: WithTexts { with_texts: true }, asked: 4 }
     }
 
     #[test]
     fn a_sub_code_shows_how_far_it_can_be_trusted() {
-        let alarm = entry(3, 3, None);
+        let alarm = collision(3, 3, None);
         let json = serde_json::to_value(&alarm).unwrap();
         assert_eq!(json["sub_code"]["raw"], 3);
         assert_eq!(json["sub_code"]["rendered"], "[SL]");
         assert_eq!(json["sub_code"]["trust"], "inferred");
         assert_eq!(json["type_name"], "user axes (SLURBT)");
-        assert_eq!(json["name"], "衝突");
-        assert_eq!(alarm.cells()[2].text, "[SL]? (3 = 0x3)");
+        assert_eq!(json["text"], "衝突");
+        assert_eq!(alarm.own.cells()[0].1.as_deref(), Some("[SL]? (3 = 0x3)"));
     }
 
     #[test]
     fn the_text_of_the_controller_wins_in_the_table() {
         let texts =
             AlarmTexts { source: Text::cut(b"[SV#1]"), sub_code: Text::cut(b"[R1: S]"), reversed: Text::cut(b"0") };
-        let outcome = ItemOutcome::new("alarm slot 1", Ok(entry(20, 1, Some(texts))));
-        let alarms = ActiveAlarms { alarms: vec![ActiveAlarm { slot: 1, outcome }], with_texts: true, asked: 4 };
-        let csv = render::csv(&alarms.view());
-        assert_eq!(
-            csv,
-            "slot,code,name,sub_code,time,board\n\
-             1,4315,衝突,[R1: S],2026/01/02 03:04,[SV#1]\n"
-        );
+        let alarms = of(vec![Row::new(1, "alarm slot 1", Ok(collision(20, 1, Some(texts))))]);
+        let shown = render::text(&alarms.view(), 80, false);
+        assert!(shown.contains("4315: 衝突") && shown.contains("[R1: S]") && shown.contains("[SV#1]"), "{shown}");
     }
 
     #[test]
     fn nothing_is_said_as_such() {
-        let none = ActiveAlarms { alarms: Vec::new(), with_texts: true, asked: 4 };
-        assert_eq!(render::text(&none.view(), 80, false), "no alarm\n");
+        assert_eq!(render::text(&of(Vec::new()).view(), 80, false), "no alarm\n");
     }
 }

@@ -77,7 +77,7 @@ impl Command for Get {
             results.push(FileResult::pending(name, placed.as_ref().ok().map(|(_, target)| target.path())));
             work.push(placed);
         }
-        if several {
+        if !to_stdout && folder != Path::new("") && work.iter().any(Result::is_ok) {
             make_folder(&folder)?;
         }
         for (work, result) in work.into_iter().zip(&mut results) {

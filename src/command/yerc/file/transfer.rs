@@ -247,14 +247,18 @@ fn given(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Fai
         UploadEnd::Refused { status, taken, .. } => {
             Err(about(&format!("after {taken} of {total} bytes"), Refusal::of_file(service::LOAD, status).into()))
         }
+        UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
+            let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
+            unknown(format!(
+                "the request was sent once, and no answer came{seen}: no data was sent, but the controller may wait for it"
+            ))
+        }
         UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
             unknown("all was sent, but the last acknowledgement did not come: the file may be there".to_owned())
         }
         UploadEnd::OutcomeUnknown { taken, .. } => {
             unknown(format!("no acknowledgement after {taken} of {total} bytes: a part may be there"))
         }
-        UploadEnd::NoAnswer(counters) => Err(Failure::new(Kind::NoAnswer, format!("no answer ({counters})"))
-            .hint("check that the controller is on and its file port; `armctl robots check` looks for more")),
     }
 }
 

@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::time::Instant;
 
-use super::{Select, without_suffix};
+use super::{Select, about, without_suffix};
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::yerc::chosen::Chosen;
@@ -81,7 +81,8 @@ impl Command for Start {
             chosen.check_again(link).await?;
         }
         if let Some((name, select)) = named {
-            link.is_for("selects it").ask(&select).await?;
+            let selected = link.is_for("selects it").ask(&select).await;
+            selected.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
             if let Some(now) = Chosen::ask(link.is_for("whether it is selected")).await.known()?
                 && !link.is_dry()
             {

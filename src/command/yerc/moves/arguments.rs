@@ -5,6 +5,7 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 
 use crate::command::frame::names;
+use crate::command::robot::motion;
 use crate::command::yerc::complete;
 use crate::command::yerc::numbers::within;
 use crate::command::yerc::position::{extended_words, form_words, in_a_line};
@@ -341,7 +342,9 @@ const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
 impl Speed {
     /// Of a joint move: `10%`.
     pub(super) fn percent(text: &str) -> Result<Self, String> {
-        match Self::parse(text)? {
+        // A bare number is percent.
+        let bare = text.trim_end().ends_with(|last: char| last.is_ascii_digit()).then(|| format!("{text}%"));
+        match Self::parse(bare.as_deref().unwrap_or(text))? {
             Self { class: SpeedClass::Percent, word } if word > FULL_SPEED => {
                 Err(format!("'{text}' is more than 100%"))
             }
@@ -358,6 +361,15 @@ impl Speed {
             }
             speed => Ok(speed),
         }
+    }
+
+    /// As reports have it.
+    pub(super) fn reported(self) -> motion::Speed {
+        let (unit, by) = SPEEDS
+            .iter()
+            .find(|(_, class, _)| *class == self.class)
+            .map_or(("", 1), |(unit, _, decimal)| (*unit, 10_u32.pow(decimal.decimals.into())));
+        motion::Speed { value: f64::from(self.word) / f64::from(by), unit }
     }
 
     fn parse(text: &str) -> Result<Self, String> {
@@ -511,7 +523,8 @@ mod tests {
         assert_eq!(Speed::percent("100.00 %").map(|speed| speed.word), Ok(10_000));
         assert_eq!(Speed::path("70mm/s"), Ok(Speed { class: SpeedClass::Linear, word: 700 }));
         assert_eq!(Speed::path("20.5deg/s"), Ok(Speed { class: SpeedClass::Angular, word: 205 }));
-        for wrong in ["10", "100.01%", "0%", "-1%", "1.234%", "100mm/s", "%", "fast"] {
+        assert_eq!(Speed::percent("10"), Speed::percent("10%"));
+        for wrong in ["101", "100.01%", "0%", "-1%", "1.234%", "100mm/s", "%", "fast"] {
             assert!(Speed::percent(wrong).is_err(), "{wrong}");
         }
         for wrong in ["10%", "0mm/s", "0.05mm/s", "10mm", "1e3mm/s", "10cm/s"] {

@@ -7,16 +7,18 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::question::{Question, moved_meanwhile};
+use crate::client::yerc::Fitted;
 use crate::command::frame::dry_run::Known as _;
+use crate::command::robot::motion::Motion;
+use crate::command::robot::position as robot;
 use crate::command::yerc::link::{Link, Refusal, Yerc};
 use crate::command::yerc::motion::{LOOK_EVERY, START_WITHIN, StandstillCause, lost, plan_alarm};
-use crate::command::yerc::position::{self, PositionReport, in_a_line};
-use crate::command::yerc::var::PositionData;
+use crate::command::yerc::position::{self, as_reported, in_a_line};
 use crate::command::{Context, Report};
 use crate::controller::units::{self, Unit};
 use crate::controller::yerc::Model;
 use crate::controller::yerc::group::Group;
-use crate::controller::yerc::payload::{ControllerStatus, Position, PositionKind};
+use crate::controller::yerc::payload::{Axes, ControllerStatus, ExtendedForm, Form, Position, PositionKind};
 use crate::controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
 use crate::controller::yerc::status::is_absent;
 use crate::failure::{Failure, Kind};
@@ -72,6 +74,17 @@ impl Goal {
             *value = there;
         }
         Self::Base(target, tool)
+    }
+
+    /// The target as a position, where it is one that can be compared.
+    fn position(&self) -> Option<Position> {
+        let (kind, axes, tool) = match self {
+            Self::Pulses(axes) => (PositionKind::Pulse, &axes[..], 0),
+            Self::Base(axes, tool) => (PositionKind::Base, &axes[..], *tool),
+            Self::Shift(..) | Self::Unknown(_) => return None,
+        };
+        let (form, extended) = (Form(0), ExtendedForm(0));
+        Some(Position { kind, form, tool, user: 0, extended, axes: Axes::new(axes)? })
     }
 
     /// Whether this position is the target; `None` if that cannot be told.
@@ -155,7 +168,16 @@ impl<Q: Query<Answer = ()>> Going<Q> {
         if link.is_dry() && !no_wait {
             plan_looks(link, group, coordinates).await?;
         }
-        let mut moved = MotionReport { accepted: true, group: group.to_string(), ..MotionReport::default() };
+        let per_degree = link.pulses_per_degree(group).to_vec();
+        let motion = Motion {
+            accepted: true,
+            group: Some(group.to_string()),
+            from: start.map(|start| as_reported(group, start, Fitted::ALL, &per_degree).of_group(group.to_string())),
+            to: goal.position().map(|target| as_reported(group, target, Fitted::ALL, &per_degree)),
+            speed: Some(question.speed.reported()),
+            ..Motion::default()
+        };
+        let mut moved = MotionReport { motion, variable: None };
         let Some(start) = start else { return Ok(moved) };
 
         let done = format!("the motion of {group} was accepted");
@@ -178,9 +200,9 @@ impl<Q: Query<Answer = ()>> Going<Q> {
                     .hint("somebody or something stopped it without an alarm: look at the pendant before going on"));
                 }
                 Look::Ended => {
-                    moved.at_target = at_target;
-                    moved.reached = Some(report);
-                    moved.elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
+                    let motion = &mut moved.motion;
+                    (motion.reached, motion.position) = (at_target, Some(report));
+                    motion.elapsed_ms = u64::try_from(began.elapsed().as_millis()).ok();
                     return Ok(moved);
                 }
                 Look::Stopped(trouble) => {
@@ -336,43 +358,32 @@ pub(in crate::command::yerc) fn stands(one: &Position, other: &Position) -> bool
 /// Result of a motion.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct MotionReport {
-    /// The controller took the order.
-    accepted: bool,
-    /// Who moved.
-    group: String,
-    /// The variable whose position was the target.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    to: Option<String>,
-    /// What that held, or what --deg comes to.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    target: Option<PositionData>,
-    /// Whether the position reached is the target; null if nobody waited, or if base coordinates do not tell.
-    at_target: Option<bool>,
-    /// Where it stands; null if nobody waited.
-    reached: Option<PositionReport>,
-    /// From the acceptance to the end; null if nobody waited.
-    elapsed_ms: Option<u64>,
+    #[serde(flatten)]
+    motion: Motion,
+    /// The variable whose position is the target; null where it was typed.
+    variable: Option<String>,
 }
 
 impl MotionReport {
-    /// Says which variable led where.
-    pub(super) fn leads_to(&mut self, name: Option<String>, target: Option<PositionData>) {
-        (self.to, self.target) = (name, target);
+    /// With the position that was read of a variable, or computed of degrees.
+    pub(super) fn leads_to(&mut self, name: Option<String>, target: robot::Position) {
+        (self.variable, self.motion.to) = (name, Some(target));
     }
 }
 
 impl Report for MotionReport {
     fn view(&self) -> View {
-        let motion = match (&self.reached, self.at_target) {
+        let Motion { group, reached, position, elapsed_ms, .. } = &self.motion;
+        let motion = match (position, reached) {
             (None, _) => Cell::from("accepted"),
             (Some(_), Some(true)) => Cell::from("target reached").tone(Tone::Good),
             (Some(_), _) => Cell::from("ended").tone(Tone::Good),
         };
         View::fields([
-            ("group", self.group.as_str().into()),
+            ("group", Cell::maybe(group.as_deref())),
             ("motion", motion),
-            ("position", Cell::maybe(self.reached.as_ref().map(PositionReport::line))),
-            ("elapsed (ms)", Cell::maybe(self.elapsed_ms)),
+            ("position", Cell::maybe(position.as_ref().map(robot::Position::line))),
+            ("elapsed (ms)", Cell::maybe(*elapsed_ms)),
         ])
     }
 }
@@ -380,7 +391,7 @@ impl Report for MotionReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::controller::yerc::payload::{Axes, ExtendedForm, Form, StatusBit};
+    use crate::controller::yerc::payload::StatusBit;
 
     const HOME: [i32; 6] = [100_000, 0, 500_000, 1_800_000, 0, 0];
 

@@ -11,7 +11,7 @@ use crate::command::yerc::each::Denied;
 use crate::command::yerc::link::{Link, Yerc};
 use crate::command::yerc::orders::usage;
 use crate::command::yerc::position;
-use crate::command::yerc::var::{PositionData, called, is_undefined, unlike};
+use crate::command::yerc::var::{called, is_undefined, unlike};
 use crate::controller::units;
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{
@@ -54,7 +54,8 @@ impl Motion<'_> {
                 }
             }
         };
-        let data = PositionData::of(&value);
+        let per_degree = context.link.pulses_per_degree(self.target.mover.group).to_vec();
+        let target = position::taught(self.target.mover.group, &value, &per_degree);
         let called = name.map(|variable| called(names::of(context.robot, context.screen), variable));
         let mut report = match value {
             Value::Position(position) if position.kind.is_cartesian() => {
@@ -66,7 +67,7 @@ impl Motion<'_> {
                 self.pulses(context.link, &value, name).await?.run(context, &question).await?
             }
         };
-        report.leads_to(name.map(|name| name.to_string()), data);
+        report.leads_to(name.map(|name| name.to_string()), target);
         Ok(report)
     }
 

@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 
 use super::in_form;
 use super::position::{self, PositionData};
@@ -325,27 +325,6 @@ fn from_hex(digits: &Json) -> Result<Vec<u8>, &'static str> {
     digits.chunks_exact(2).map(|pair| Ok(digit(pair[0])? << 4 | digit(pair[1])?)).collect()
 }
 
-/// The position in a JSON file: the object itself, an entry that holds it, or the whole report of `var get` for one
-/// variable.
-pub fn position_in(json: &Json) -> Result<&Json, &'static str> {
-    let inner = |object: &Map<String, Json>, key: &str| object.contains_key(key);
-    match json {
-        Json::Object(object) if inner(object, "text") || inner(object, "type") => Ok(json),
-        // Where a group stands: in pulses, which are complete whatever tool and frame are.
-        Json::Object(object) if inner(object, "pulse") || inner(object, "base") => {
-            let text = ["pulse", "base"].iter().find_map(|kind| object.get(*kind)?.get("text"));
-            text.ok_or("the file holds no position that was answered")
-        }
-        Json::Object(object) if inner(object, "value") => Ok(&object["value"]),
-        Json::Object(object) if inner(object, "data") => position_in(&object["data"]),
-        Json::Object(object) if inner(object, "variables") => match object["variables"].as_array().map(Vec::as_slice) {
-            Some([only]) => position_in(only),
-            _ => Err("the file holds several variables; keep the one that is meant"),
-        },
-        _ => Err("the file holds no position; `var get P1 --json` and `position --json` show one"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -429,16 +408,5 @@ mod tests {
         let refused = Entry::new(p, &refused(0x2010), READING.encoding);
         assert_eq!(refused.shown(), "the controller refused 0x7F (instance 3): manipulator is moving [0x2010]");
         assert_eq!(serde_json::to_value(&refused).unwrap()["error"]["asked"], "P3");
-    }
-
-    #[test]
-    fn a_position_is_found_in_what_var_get_printed() {
-        let position = json!({"text": "pulse:1=1"});
-        let entry = json!({"name": "EX1", "value": position});
-        for json in [position.clone(), entry.clone(), json!({"ok": true, "data": {"variables": [entry]}})] {
-            assert_eq!(position_in(&json), Ok(&position));
-        }
-        assert!(position_in(&json!({"variables": [entry, entry]})).is_err());
-        assert!(position_in(&json!([])).is_err());
     }
 }

@@ -5,6 +5,7 @@ mod entry;
 mod get;
 #[cfg(test)]
 mod lines;
+mod overwrite;
 mod part;
 mod position;
 mod read;
@@ -15,8 +16,9 @@ mod sheet;
 use std::convert::Infallible;
 
 pub use self::entry::is_undefined;
+pub use self::overwrite::confirm_raw;
 pub use self::part::unlike;
-pub use self::position::{PositionData, held};
+pub use self::position::{PositionData, as_position, held};
 use super::link::Link;
 use crate::command::commands;
 use crate::command::frame::watch::Watch;

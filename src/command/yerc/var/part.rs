@@ -79,8 +79,8 @@ impl Word {
 /// The words to write of each position.
 pub type Words = BTreeMap<Reference, Vec<Word>>;
 
-/// Reads the positions and changes them; nothing is written yet.
-pub async fn changed(link: &mut Link, words: &Words) -> Result<Vec<(Reference, Position, WriteVariable)>, Failure> {
+/// Reads the positions, and says how each is before and after; nothing is written yet.
+pub async fn changed(link: &mut Link, words: &Words) -> Result<Vec<(Reference, Position, Position)>, Failure> {
     let mut changed = Vec::with_capacity(words.len());
     for (reference, words) in words {
         let old = read(link, *reference).await?;
@@ -88,8 +88,7 @@ pub async fn changed(link: &mut Link, words: &Words) -> Result<Vec<(Reference, P
         for word in words {
             word.set(&mut position);
         }
-        let write = WriteVariable::new(reference.number, Value::Position(position)).map_err(usage)?;
-        changed.push((*reference, old, write));
+        changed.push((*reference, old, position));
     }
     Ok(changed)
 }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
+use super::part::unlike;
 use crate::controller::units::{self, Quantity, Unit};
 use crate::controller::yerc::group::Group;
 use crate::controller::yerc::payload::{
@@ -20,6 +21,17 @@ pub fn held(group: Group, position: Position) -> Value {
         Group::Robot(_) => Value::Position(position),
         Group::Base(_) => Value::Base(BasePosition { kind, axes }),
         Group::Station(_) => Value::External(ExternalPosition { kind, axes }),
+    }
+}
+
+/// A value in the form of a robot's position: of a base or a station only kind and axes mean something.
+pub fn as_position(value: &Value) -> Position {
+    let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
+    match value {
+        Value::Position(position) => *position,
+        Value::Base(track) => bare(track.kind, track.axes),
+        Value::External(station) => bare(station.kind, station.axes),
+        _ => unlike()[0],
     }
 }
 

@@ -12,7 +12,8 @@ use serde_json::Value as Json;
 use super::super::orders::usage;
 use super::super::writes::{WriteOrder, write_all};
 use super::dump::{FORMAT, VERSION, is_sheet};
-use super::entry::{Entry, Reading, is_undefined};
+use super::entry::{Reading, is_undefined};
+use super::overwrite::{overwritten, same};
 use super::read::{Answers, read_whatever};
 use super::sheet::{self, Kept};
 use super::{listed, parse_kind};
@@ -23,12 +24,11 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::yerc::Model;
-use crate::controller::yerc::payload::{Axes, Position};
 use crate::controller::yerc::query::{Query as _, WriteVariable};
 use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_writes};
 use crate::failure::Failure;
 use crate::files;
-use crate::gate::{Change, Confirmation};
+use crate::gate::Confirmation;
 use crate::output::view::{Cell, View};
 
 /// What to write back.
@@ -101,7 +101,7 @@ impl Command for Restore {
             known.get(reference).is_some_and(|old| old.as_ref().is_ok_and(|old| same(old, value)))
         };
         let (unchanged, differing): (Vec<_>, Vec<_>) = values.into_iter().partition(is_same);
-        authority.confirm(&change(&known, &differing, dump.encoding)).await?;
+        authority.confirm(&overwritten(&known, &differing, dump.encoding)).await?;
         let numbered: Vec<(u16, Value)> =
             differing.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
         let steps = plan_writes(&numbered).map_err(usage)?;
@@ -159,39 +159,6 @@ fn resolved(values: Vec<(Reference, Kept)>, known: &Answers, is_dry: bool) -> Re
         Ok((reference, kept.over(reference.kind, old).map_err(|error| format!("{reference}: {error}"))?))
     };
     values.map(whole).collect()
-}
-
-/// What is overwritten. A variable that holds nothing yet is not.
-fn change(known: &Answers, differing: &[(Reference, Value)], encoding: Encoding) -> Change {
-    let mut overwritten = Vec::new();
-    for (reference, value) in differing {
-        let old = match known.get(reference) {
-            Some(Err(denied)) if is_undefined(denied) => continue,
-            Some(old @ Ok(_)) => Entry::new(*reference, old, encoding).shown(),
-            Some(Err(_)) => "not read".to_owned(),
-            None => continue,
-        };
-        overwritten.push((reference.to_string(), old, Entry::new(*reference, &Ok(value.clone()), encoding).shown()));
-    }
-    if overwritten.is_empty() {
-        return Change::nothing();
-    }
-    let plural = if overwritten.len() == 1 { "" } else { "s" };
-    let change = Change::new(format!("overwrite {} variable{plural}", overwritten.len()));
-    overwritten.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
-}
-
-/// Whether a controller that holds `old` would hold the same after `new` was written: axes that are not told are 0.
-fn same(old: &Value, new: &Value) -> bool {
-    match (old, new) {
-        (Value::Position(old), Value::Position(new)) => {
-            let full = |position: &Position| Position { axes: Axes::full(position.axes.padded()), ..*position };
-            full(old) == full(new)
-        }
-        // Zeros of both signs are equal, a number that is none is never.
-        (Value::Real(old), Value::Real(new)) => old.to_bits() == new.to_bits(),
-        (old, new) => old == new,
-    }
 }
 
 /// A dump of every variable that a controller can have is smaller.

@@ -9,12 +9,15 @@ use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::writes::{WriteOrder, before, write_all};
-use super::entry::{Entry, Reading, position_in};
+use super::entry::Entry;
+use super::overwrite::{overwritten, read_taught, with_field};
 use super::part::{self, Word, Words};
+use super::position::as_position;
+use super::read::once;
 use super::{in_form, listed, model_of};
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::orders::Old;
-use crate::command::frame::teach::printed;
+use crate::command::frame::teach::printed_position;
 use crate::command::frame::{names, orders};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
@@ -26,10 +29,9 @@ use crate::controller::typed::{self, integer};
 use crate::controller::yerc::payload::{PayloadError, Position};
 use crate::controller::yerc::query::{Query, WriteField, WriteVariable};
 use crate::controller::yerc::request::Request;
-use crate::controller::yerc::variables::{
-    ReadStep, Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes,
-};
+use crate::controller::yerc::variables::{Reference, Value, VariableKind, WriteStep, plan_reads, plan_writes};
 use crate::failure::Failure;
+use crate::gate::{self, Confirmation};
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
@@ -175,10 +177,17 @@ impl Command for Set {
     type Family = Yerc;
     type Report = Written;
     const ID: &'static str = "yerc.var.set";
-    const RISK: Risk = Risk::Write;
+    const INTENT: &'static str = "overwrite taught positions";
+    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
+
+    /// Only positions are taught.
+    fn risk(&self) -> Risk {
+        let is_position = self.assignments.iter().any(|assignment| assignment.reference.kind.is_position());
+        if is_position { Risk::Destroy } else { Risk::Write }
+    }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Written, Failure> {
-        let Context { link, screen, robot, .. } = context;
+        let Context { link, screen, robot, authority, .. } = context;
         let names = names::of(robot, screen);
         let mut values = Vec::new();
         let mut fields = Vec::new();
@@ -220,35 +229,47 @@ impl Command for Set {
             values.iter().map(|(reference, value)| (reference.number, value.clone())).collect();
         let steps = plan_writes(&plain).map_err(usage)?;
         let replaced = values.iter().map(|(reference, _)| *reference).chain(changed_in_part(&fields));
-        let old = before(link, &replaced_by(replaced)).await?;
-        let position = |reference: &Reference| match old.get(reference) {
-            Some(Value::Position(position)) => Some(position),
-            _ => None,
-        };
+        let (positions, others): (Vec<_>, Vec<_>) = replaced.partition(|reference| reference.kind.is_position());
+        let plain_old = before(link, &plan_reads(&others)).await?;
+        let taught = read_taught(link, &once(positions)).await?;
+        let old = |reference: &Reference| plain_old.get(reference).or_else(|| taught.get(reference)?.as_ref().ok());
+        let position = |reference: &Reference| old(reference).map(as_position);
         let mut parts: Vec<Part> = self.assignments.iter().filter_map(|it| it.part(position(&it.reference))).collect();
         parts.extend(
             whole_words
                 .into_iter()
-                .map(|(reference, word)| Part::new(reference, word, position(&reference).map(|old| word.old(old)))),
+                .map(|(reference, word)| Part::new(reference, word, position(&reference).map(|old| word.old(&old)))),
         );
         let mut changes: Vec<Change> = steps.into_iter().map(Change::Values).chain(fields).collect();
         if link.is_dry() && !words.is_empty() {
             part::plan_reads(link, &words);
+            authority.confirm(&gate::Change::nothing()).await?;
             for change in &changes {
                 link.plan(&change.request(), &format!("writes {}", Change::listed(change.items())));
             }
             part::plan_writes(link, &words)?;
             return Err(unknown());
         }
-        for (reference, old, write) in part::changed(link, &words).await? {
+        let mut known = taught.clone();
+        let mut differing = values.clone();
+        for change in &changes {
+            let Change::Field(reference, field) = change else { continue };
+            let new = old(reference).and_then(|old| with_field(old, &field.request()));
+            differing.extend(new.map(|new| (*reference, new)));
+        }
+        for (reference, old, new) in part::changed(link, &words).await? {
             let words = words.get(&reference).into_iter().flatten();
             parts.extend(words.map(|word| Part::new(reference, *word, Some(word.old(&old)))));
+            known.insert(reference, Ok(Value::Position(old)));
+            differing.push((reference, Value::Position(new)));
+            let write = WriteVariable::new(reference.number, Value::Position(new)).map_err(usage)?;
             changes.push(Change::Position(reference, write));
         }
+        authority.confirm(&overwritten(&known, &differing, link.encoding)).await?;
         write_all(link, screen, &changes).await?;
         let entry = |reference, value| Entry::new(reference, &Ok(value), link.encoding).labelled(names);
         let written = values.into_iter().map(|(reference, value)| {
-            let old = old.get(&reference).map(|old| entry(reference, old.clone()).data());
+            let old = old(&reference).map(|old| entry(reference, old.clone()).data());
             let item = entry(reference, value);
             let new = item.data();
             orders::Written::new(item, Old::read(old), new)
@@ -262,15 +283,8 @@ fn changed_in_part(fields: &[Change]) -> impl Iterator<Item = Reference> {
     fields.iter().flat_map(WriteOrder::items)
 }
 
-/// What reads variables that are written. Positions are read one by one, as each may hold nothing yet.
-fn replaced_by(references: impl Iterator<Item = Reference>) -> Vec<ReadStep> {
-    let (positions, others): (Vec<_>, Vec<_>) = references.partition(|reference| reference.kind.is_position());
-    let positions = positions.iter().flat_map(|position| plan_reads(&[*position]));
-    plan_reads(&others).into_iter().chain(positions).collect()
-}
-
 impl Assignment {
-    fn part(&self, old: Option<&Position>) -> Option<Part> {
+    fn part(&self, old: Option<Position>) -> Option<Part> {
         let Input::Field(field) = &self.input else { return None };
         let request = field.request();
         let word = request.data.first_chunk().map_or(0, |word| i32::from_le_bytes(*word));
@@ -305,12 +319,9 @@ fn value_of(reference: Reference, input: &Input, link: &Link) -> Result<Value, F
                 let hint = "the file holds a position as `yerc var get P1 --json` or `yerc position --json` prints it";
                 Failure::usage(format!("{}: {error}", path.display())).hint(hint)
             };
-            let json = printed(path)?;
-            let position = position_in(&json).map_err(|error| wrong(error.to_owned()))?;
-            let reading = Reading { model: link.model_to_show(), encoding: link.encoding };
-            reading.value(reference.kind, position).map_err(|error| {
-                let error = error.trim_start_matches([':', '.', ' ']);
-                wrong(error.to_owned()).hint(format!("it must be a position of {}", reference.kind.letters()))
+            let text = printed_position(path)?;
+            Value::from_text(reference.kind, text.as_bytes()).map_err(|error| {
+                wrong(error.to_string()).hint(format!("it must be a position of {}", reference.kind.letters()))
             })
         }
         Input::Field(_) | Input::Word(_) => Err(wrong("a part is no value".to_owned())),

@@ -9,7 +9,7 @@ mod shift;
 pub use comment::Comment;
 pub use hand::HandData;
 pub use pallet::PalletData;
-pub use point::{Coordinates, Point};
+pub use point::Point;
 pub use shift::ShiftData;
 
 use crate::controller::yrcx::order::Draft;

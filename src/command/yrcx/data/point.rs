@@ -6,16 +6,17 @@ use clap::ArgGroup;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Four, four, mm};
-use crate::command::frame::teach::printed;
+use super::{Four, four};
+use crate::command::frame::teach::printed_position;
+use crate::command::robot::position::{Joint, Position};
 use crate::command::yrcx::backup::{Dump, Restore};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::position::{Position, Unit};
+use crate::command::yrcx::position::position;
 use crate::command::yrcx::several::by_number;
-use crate::command::yrcx::single::shown;
+use crate::command::yrcx::teach::unit_of;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::yrcx::table;
@@ -52,43 +53,20 @@ by_number! {
     /// Points.
     Points,
     /// Which point.
-    point of Coordinates: Coordinates::of,
+    point of Position: point,
     columns ["axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"],
-    cells Coordinates::cells;
+    cells cells;
 }
 
-/// A point.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Coordinates {
-    /// In the unit that it was defined in; the other one is null.
-    #[serde(flatten)]
-    position: Position,
-    /// `right` or `left`: the hand system of a point in millimetres, null unless it has one.
-    hand: Option<String>,
+/// A point of the values of an answer.
+fn point(values: &Values) -> Position {
+    position(values, unit_of(values)).unwrap_or_default()
 }
 
-impl Coordinates {
-    /// Of the values of an answer.
-    pub fn of(values: &Values) -> Self {
-        let unit = if values.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse };
-        let hand = shown(table::Command::PointGet, values, Key::HandSystem).filter(|hand| hand != "none");
-        Self { position: Position::of(values, Some(unit)), hand }
-    }
-
-    /// Its axes.
-    pub fn position(&self) -> &Position {
-        &self.position
-    }
-
-    fn cells(&self) -> [Cell; 6] {
-        let unit = if self.position.position_mm.is_some() { "mm" } else { "pulses" };
-        let [first, second, third, fourth] = match (self.position.position_mm, self.position.position_pulses) {
-            (Some(axes), _) => axes.map(mm),
-            (None, Some(axes)) => axes.map(Cell::from),
-            (None, None) => std::array::from_fn(|_| "-".into()),
-        };
-        [first, second, third, fourth, unit.into(), Cell::maybe(self.hand.as_deref())]
-    }
+fn cells(point: &Position) -> [Cell; 6] {
+    let axis = |at: usize| point.joints.get(at).map_or_else(|| "-".into(), Joint::cell);
+    let unit = if point.frame == "joint" { "pulses" } else { "mm" };
+    [axis(0), axis(1), axis(2), axis(3), unit.into(), Cell::maybe(point.form.as_deref())]
 }
 
 /// Defines a point.
@@ -157,21 +135,21 @@ impl Set {
     }
 }
 
-/// The point in what `position --json` printed, or an entry of `point get --json`.
+/// The point in what `position --json` or `point get --json` printed.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
-    let json = printed(file)?;
-    let of_unit = |(key, unit): (&str, &'static str)| {
-        let axes: Option<Vec<String>> =
-            json.get(key)?.as_array()?.iter().map(|axis| Some(axis.as_f64()?.to_string())).collect();
-        Some((unit, Four(axes?.try_into().ok()?)))
+    let text = printed_position(file)?;
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let (unit, axes, hand) = match words[..] {
+        ["--mm", axes] => ("mm", axes, None),
+        ["--mm", axes, "--hand", hand] => ("mm", axes, Some(hand.to_owned())),
+        ["--pulse", axes] => ("pulse", axes, None),
+        _ => {
+            return Err(Failure::usage(format!("{}: not a position of a YRCX: {text}", file.display()))
+                .hint("write the file with `yrcx position --json` or `yrcx point get --json`"));
+        }
     };
-    let found = [("position_mm", "mm"), ("position_pulses", "pulse")].into_iter().find_map(of_unit);
-    let (unit, four) = found.ok_or_else(|| {
-        Failure::usage(format!("{}: neither position_mm nor position_pulses with four numbers", file.display()))
-            .hint("it holds a position as `yrcx position --json` prints it")
-    })?;
-    let hand = json.get("hand").and_then(|hand| hand.as_str()).filter(|hand| unit == "mm" && *hand != "none");
-    Ok(Given { unit, four, hand: hand.map(ToOwned::to_owned) })
+    let four = four(axes).map_err(|error| Failure::usage(error).hint("four numbers with commas between"))?;
+    Ok(Given { unit, four, hand })
 }
 
 #[cfg(test)]
@@ -187,14 +165,12 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
         assert_eq!(written(&set).unwrap(), [example("4.3.1-define")]);
-        assert_eq!(
-            read_example("4.3.1-define", &set)["new"]["position_pulses"],
-            json!([10_000, -20_000, 5000, -18_000])
-        );
+        assert_eq!(read_example("4.3.1-define", &set)["new"]["text"], json!("--pulse 10000,-20000,5000,-18000"));
         let read = read_example("4.3.1-reference", &["point", "get", "50"]);
-        let mm = [10.0, -20.0, 5.0, -18.0];
-        let row = json!({"point": 50, "ok": true, "position_mm": mm, "position_pulses": null, "hand": null});
-        assert_eq!(read, json!({"points": [row]}));
+        let row = &read["points"][0];
+        assert_eq!((&row["point"], &row["ok"], &row["frame"]), (&json!(50), &json!(true), &json!("base")));
+        assert_eq!(row["text"], json!("--mm 10.000,-20.000,5.000,-18.000"));
+        assert_eq!((&row["x_mm"], &row["joints"][3]["mm"]), (&json!(10.0), &json!(-18.0)));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::{Four, four, mm};
 use crate::command::commands;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::position::{Position, Unit};
+use crate::command::yrcx::position::mm as mm_of;
 use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
 use crate::controller::yrcx::table;
@@ -33,7 +33,7 @@ by_number! {
     /// Shifts.
     Shifts,
     /// Which shift.
-    shift of ShiftReport: |values| ShiftReport { shift_mm: Position::of(values, Some(Unit::Mm)).position_mm.unwrap_or_default() },
+    shift of ShiftReport: |values| ShiftReport { shift_mm: mm_of(values).unwrap_or_default() },
     columns ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"],
     cells |way| way.shift_mm.map(mm);
 }

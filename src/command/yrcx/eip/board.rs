@@ -21,13 +21,16 @@ use crate::transport::eip::client::Client;
 use crate::transport::eip::error::EipError;
 use crate::transport::eip::explicit::{Answer, Message};
 use crate::transport::eip::link::as_advice;
-use crate::transport::eip::probe::{self, Findings, Instances};
+use crate::transport::eip::probe::{self, Findings, Instances, Presence};
 use crate::transport::eip::status;
 use crate::transport::eip::wire;
 use crate::transport::image::LinkError;
 
 /// The attribute of an assembly that is its image.
 const IMAGE: u32 = 3;
+/// The assemblies of a YRCX: to it, from it.
+const USUAL_OUTPUT: u32 = 150;
+const USUAL_INPUT: u32 = 100;
 
 /// A session for messages with a board.
 #[derive(Debug)]
@@ -111,23 +114,35 @@ impl Board {
         })
     }
 
-    /// Finds assemblies, their sizes, and what makes a connection; `identity` is what the board says of itself.
+    /// Finds assemblies and their sizes by reading; `identity` is what the board says of itself.
+    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
+        let thought = self.thought();
+        let exchanged = Instances { output: thought.input, input: thought.output, ..thought };
+        let usual = Instances { output: USUAL_OUTPUT, input: USUAL_INPUT, ..thought };
+        let found = probe::survey(&mut self.client, &[thought, usual, exchanged]).await;
+        Ok(Probed::of(&found.map_err(|error| self.failure(error))?, &self.eip, identity))
+    }
+
+    /// Finds what makes a connection by asking for some, too; likewise.
     pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let found = probe::probe(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
     }
 
-    /// Whether a connection as the URL says could be opened, without opening one; likewise.
-    pub async fn dry_run(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
-        let thought = self.thought();
-        let found = probe::dry_run(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
-        Ok(Probed::of(&found, &self.eip, identity))
+    /// What can be read of the assemblies of the URL: from the controller, to it.
+    pub async fn assemblies(&mut self) -> Result<[(u32, Presence); 2], Failure> {
+        let Instances { output, input, .. } = self.thought();
+        let mut found = [(input, Presence::Unknown), (output, Presence::Unknown)];
+        for (instance, presence) in &mut found {
+            *presence = probe::assembly(&mut self.client, *instance).await.map_err(|error| self.failure(error))?;
+        }
+        Ok(found)
     }
 
     /// The instances of the URL, which are those of an owner only if it says nothing else.
     fn thought(&self) -> Instances {
-        let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { 150 };
+        let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { USUAL_OUTPUT };
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
     }
 
@@ -320,12 +335,12 @@ impl Identity {
 pub struct Probed {
     /// Assemblies that can be read.
     pub assemblies: Vec<Assembly>,
-    /// Connections that were asked for with sizes that none has, so that none is opened.
+    /// With `--try`: connections that were asked for with sizes that none has, so that none is opened.
     pub attempts: Vec<Attempt>,
-    /// What a connection would be made of; null if nothing fits.
+    /// What a connection would be made of; without `--try`, by the assemblies that can be read. Null if nothing fits.
     pub connectable: Option<Connectable>,
-    /// Another master owns the outputs now: the board says so of itself, or refuses another owner. Some boards do but one
-    /// of them.
+    /// Another master owns the outputs now: the board says so of itself, or, with `--try`, refuses another owner. Some
+    /// boards do but one of them.
     pub owned: bool,
 }
 

@@ -1,8 +1,10 @@
 //! The layers of a network board for `armctl robots check`: from its name to what the controller shows.
 
-use super::board::{Board, MAKER, Probed};
+use super::board::{Board, MAKER};
 use crate::command::face::layers::Layers;
 use crate::controller::yrcx::image::Image;
+use crate::settings::target::eip::Eip;
+use crate::transport::eip::probe::Presence;
 
 /// In the order in which they are looked at.
 pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
@@ -33,16 +35,11 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         }
         None => layers.warn("identity", "it does not say who it is", "check the address"),
     }
-    let owned = match board.dry_run(identity.as_ref()).await {
-        Err(failure) => {
-            layers.fail("connection", &failure);
-            identity.is_some_and(|identity| identity.owned)
-        }
-        Ok(probed) => {
-            connection(board, &probed, layers);
-            probed.owned
-        }
-    };
+    match board.assemblies().await {
+        Err(failure) => layers.fail("connection", &failure),
+        Ok(found) => connection(board.settings(), found, layers),
+    }
+    let owned = identity.is_some_and(|identity| identity.owned);
     layers.judge(
         "owner",
         !owned,
@@ -61,22 +58,28 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     }
 }
 
-/// Whether the URL fits the board.
-fn connection(board: &Board, probed: &Probed, layers: &mut Layers) {
+/// Whether the URL fits the board, as far as its assemblies tell: to ask for a connection could take command.
+fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) {
     let layer = "connection";
-    let settings = board.settings();
-    let Some(found) = &probed.connectable else {
-        let last = probed.attempts.last();
-        let found = last.map_or_else(|| "it was not asked for".to_owned(), |last| last.answer.clone());
-        return layers.wrong(layer, found, "`yrcx eip probe` finds in, out and config of the board");
-    };
+    if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
+        let what = format!("the board has no assembly {instance}");
+        return layers.wrong(layer, what, "`yrcx eip probe` finds in and out of the board");
+    }
+    let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
+        Presence::Readable(assembly) => (instance, assembly.size),
+        Presence::Absent | Presence::Unknown => (instance, None),
+    });
     let differs = |size: Option<u16>, said: u16| size.is_some_and(|size| size != said);
-    if differs(found.in_size, settings.input_size) || differs(found.out_size, settings.output_size) {
+    if differs(from, settings.input_size) || differs(to, settings.output_size) {
         let size = |size: Option<u16>| size.map_or_else(|| "?".to_owned(), |size| size.to_string());
-        let (from, to) = (size(found.in_size), size(found.out_size));
+        let (from, to) = (size(from), size(to));
         let what = format!("the board has {from} bytes from it and {to} to it, the URL others");
         return layers.wrong(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
     }
-    let instances = format!("in {}, out {}", found.input, found.output);
+    let instances = format!("in {input}, out {output}");
+    if from.is_none() || to.is_none() {
+        let advice = "`yrcx eip probe --try` asks for a connection, which may take command";
+        return layers.warn(layer, format!("{instances}: the board does not tell their sizes"), advice);
+    }
     layers.ok(layer, format!("{instances}, {} and {} bytes fit", settings.input_size, settings.output_size));
 }

@@ -2,7 +2,6 @@
 
 mod alarm;
 mod arm;
-pub mod message;
 mod origin;
 mod position;
 mod robot;
@@ -40,13 +39,11 @@ commands! {
         Line(tasks::Line),
         /// Boards in the option slots
         Slots(slots::Slots),
-        /// Messages from the alarm history
-        Message(message::Message),
-        /// An alarm from the history, or the last one of a remote command
+        /// The last alarm of a remote command
         Alarm(alarm::Alarm),
     }
 }
 
-pub use alarm::AlarmReport;
+pub use alarm::{Part, entry, told};
 pub use position::Where;
 pub use servo::{AxisServo, servos};

@@ -6,15 +6,16 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::frame::plot::{Past, Plot};
+use crate::command::face::shared::Alike;
+use crate::command::frame::plot::Past;
+use crate::command::robot::position::{AllPositions, Joint, Positions};
 use crate::command::yrcx::link::Yrcx;
-use crate::command::yrcx::position::{Position, Unit};
-use crate::command::yrcx::single::shown;
+use crate::command::yrcx::position::{Unit, group, position};
 use crate::command::{Command, Context, Report};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Section, Table, View};
+use crate::output::view::{Cell, Table, View};
 use crate::settings::duration;
 
 /// Reads the position, once or as it changes.
@@ -85,21 +86,9 @@ impl Command for Where {
         };
         let order = link.draft(command)?.with(Key::Continuous, self.continuous).build()?;
         let done = if self.continuous { link.next_output(&order).await? } else { link.ask(&order).await? };
-        let position = Position::of(&done.values, Some(self.report));
-        let values = done.values.axes().into_iter().flatten().enumerate().map(|(at, value)| {
-            let (decimals, value) = match self.report {
-                Unit::Mm => (3, f64::from(value) / 1000.0),
-                Unit::Pulse => (0, f64::from(value)),
-            };
-            (format!("axis {}", at + 1), self.report.symbol(), decimals, value)
-        });
-        let plot = self.plot.then(|| self.past.add(values));
-        Ok(Place {
-            position,
-            plot,
-            hand: shown(table::Command::PositionMm, &done.values, Key::HandSystem),
-            elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)),
-        })
+        let place = position(&done.values, self.report).unwrap_or_default();
+        let positions = Positions::one(&group(order.values().int(Key::Robot)), place).plotted(self.plot, &self.past);
+        Ok(Place { positions, elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)) })
     }
 }
 
@@ -111,41 +100,34 @@ fn milliseconds(time: Duration) -> u64 {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Place {
     #[serde(flatten)]
-    position: Position,
-    /// `right`, `left` or `none`: the hand system of a position in millimetres.
-    hand: Option<String>,
+    positions: Positions,
     /// Since the output began; null unless it is continuous.
     elapsed_ms: Option<u64>,
-    #[serde(skip)]
-    plot: Option<Plot>,
+}
+
+impl Alike for Place {
+    type Core = AllPositions;
+
+    fn core(&self) -> AllPositions {
+        self.positions.core()
+    }
 }
 
 impl Place {
     /// One of many: a line.
     fn line(&self, elapsed_ms: u64) -> Table {
         let mut table = Table::new(&["elapsed (ms)", "axis 1", "axis 2", "axis 3", "axis 4", "unit"], "");
-        let (axes, unit) = match (self.position.position_mm, self.position.position_pulses) {
-            (Some(axes), _) => (axes.map(|axis| Cell::number(format!("{axis:.3}"))), "mm"),
-            (None, axes) => (axes.unwrap_or_default().map(Cell::from), "pulses"),
-        };
-        let [first, second, third, fourth] = axes;
-        table.row([elapsed_ms.into(), first, second, third, fourth, unit.into()]);
+        let joints: Vec<&Joint> = self.positions.read().flat_map(|position| &position.joints).collect();
+        let axis = |at: usize| Cell::maybe(joints.get(at).map(|joint| joint.cell()));
+        let unit = if joints.iter().any(|joint| joint.mm.is_some()) { "mm" } else { "pulses" };
+        table.row([elapsed_ms.into(), axis(0), axis(1), axis(2), axis(3), unit.into()]);
         table
     }
 }
 
 impl Report for Place {
     fn view(&self) -> View {
-        if let Some(plot) = &self.plot {
-            return View { sections: vec![plot.section()] };
-        }
-        if let Some(elapsed_ms) = self.elapsed_ms {
-            return View::table(self.line(elapsed_ms));
-        }
-        let table = self.position.table().map(Section::Table);
-        let hand = self.hand.as_ref().filter(|hand| *hand != "none");
-        let hand = hand.map(|hand| Section::Fields(vec![("hand system", hand.as_str().into())]));
-        View { sections: table.into_iter().chain(hand).collect() }
+        self.elapsed_ms.map_or_else(|| self.positions.view(), |elapsed_ms| View::table(self.line(elapsed_ms)))
     }
 }
 
@@ -153,7 +135,7 @@ impl Report for Place {
 mod tests {
     use std::time::Duration;
 
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use crate::command::yrcx::testing::{Bench, Reply, Scripted, example, read_example, words};
     use crate::failure::Kind;
@@ -163,11 +145,12 @@ mod tests {
         assert_eq!(words(&["info", "position", "--report", "pulse"]).unwrap(), [example("4.7.4-pulse")]);
         assert_eq!(words(&["info", "position"]).unwrap(), [example("4.7.4-mm")]);
         let pulses = read_example("4.7.4-pulse", &["info", "position", "--report", "pulse"]);
-        assert_eq!((&pulses["position_mm"], &pulses["hand"]), (&json!(null), &json!(null)));
-        assert_eq!(pulses["position_pulses"].as_array().unwrap().len(), 4);
-        let place = read_example("4.7.4-mm", &["info", "position"]);
-        assert_eq!(place["hand"], json!("none"), "bit 0, which the example has, is not used");
-        assert!(place["position_mm"][0].is_f64() && place["position_pulses"].is_null(), "{place}");
+        let (pulses, place) = (&pulses["positions"][0], |place: &Value| place["positions"][0].clone());
+        assert_eq!((&pulses["frame"], &pulses["x_mm"]), (&json!("joint"), &json!(null)));
+        assert!(pulses["joints"].as_array().unwrap().iter().all(|joint| joint["pulses"].is_i64()), "{pulses}");
+        let place = place(&read_example("4.7.4-mm", &["info", "position"]));
+        assert_eq!(place["form"], json!(null), "bit 0, which the example has, is not used");
+        assert!(place["x_mm"].is_f64() && place["joints"][0]["pulses"].is_null(), "{place}");
     }
 
     const CONTINUOUS: [&str; 3] = ["info", "position", "--continuous"];
@@ -186,7 +169,7 @@ mod tests {
             Bench::new(Scripted::new([Reply::Shows(vec![output(0), output(1000), output(1000), output(2500)])]));
         let first = bench.run(&CONTINUOUS).unwrap();
         let second = bench.run(&CONTINUOUS).unwrap();
-        assert_eq!((&first["position_mm"][0], &second["position_mm"][0]), (&json!(1.0), &json!(2.5)));
+        assert_eq!((&first["positions"][0]["x_mm"], &second["positions"][0]["x_mm"]), (&json!(1.0), &json!(2.5)));
         assert!(first["elapsed_ms"].as_u64() < second["elapsed_ms"].as_u64(), "{first} {second}");
         bench.interrupt(&CONTINUOUS, Duration::from_secs(60));
         let peer = bench.into_peer();
@@ -196,7 +179,7 @@ mod tests {
     #[test]
     fn zeros_that_stay_are_a_position() {
         let mut bench = Bench::new(Scripted::new([Reply::Shows(vec![output(0)])]));
-        assert_eq!(bench.run(&CONTINUOUS).unwrap()["position_mm"], json!([0.0, 0.0, 0.0, 0.0]));
+        assert_eq!(bench.run(&CONTINUOUS).unwrap()["positions"][0]["x_mm"], json!(0.0));
     }
 
     #[test]
@@ -206,7 +189,7 @@ mod tests {
         let script = [Reply::Shows(vec![output(1000)]), Reply::Ends(1, done)];
         let mut bench = Bench::new(Scripted::new(script));
         bench.run(&CONTINUOUS).unwrap();
-        assert_eq!(bench.run(&["info", "position"]).unwrap()["position_mm"][0], json!(0.007));
+        assert_eq!(bench.run(&["info", "position"]).unwrap()["positions"][0]["x_mm"], json!(0.007));
         assert_eq!(bench.into_peer().taken.len(), 2);
     }
 
@@ -215,6 +198,6 @@ mod tests {
         let script = [Reply::Loses(2, Duration::from_millis(50)), Reply::Shows(vec![output(1000)])];
         let mut bench = Bench::new(Scripted::new(script));
         assert_eq!(bench.run(&CONTINUOUS).unwrap_err().kind, Kind::NoAnswer);
-        assert_eq!(bench.run(&CONTINUOUS).unwrap()["position_mm"][0], json!(1.0));
+        assert_eq!(bench.run(&CONTINUOUS).unwrap()["positions"][0]["x_mm"], json!(1.0));
     }
 }

@@ -30,7 +30,7 @@ fn a_motion_is_awaited_and_reported() {
     let moved = moved.unwrap();
     let elapsed = moved["elapsed_ms"].as_u64().unwrap();
     assert!((500..520).contains(&elapsed), "100 scans of 5 ms take {elapsed} ms");
-    assert_eq!(moved["position_mm"][0], 12.345);
+    assert_eq!(moved["position"]["x_mm"], 12.345);
     assert_eq!(peer.taken, [words(&[1, 0x8004, 0, 50, 19])]);
     assert_eq!(peer.bits, [REST]);
 }
@@ -145,7 +145,7 @@ fn a_program_that_was_started_is_stopped_by_an_interrupt() {
 fn signals_are_switched_while_a_command_runs() {
     let mut bench = Bench::new(Scripted::new([ends(200, &[0x0200]), ends(0, &[0x0200])]));
     let begun = bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
-    assert_eq!((&begun["ended"], &begun["elapsed_ms"]), (&false.into(), &serde_json::Value::Null));
+    assert_eq!((&begun["reached"], &begun["elapsed_ms"]), (&serde_json::Value::Null, &serde_json::Value::Null));
     let switched = bench.run(&["io", "set", "20=on"]).unwrap();
     assert_eq!(switched["items"], json!([{"set": "SI(20)", "old": false, "new": true}]));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
@@ -199,8 +199,8 @@ fn status_puts_signals_servos_and_position_together() {
     let position = ends(1, &[0x0200, 0, 0, 0, 0x2710, 0, 0xD8F0, 0xFFFF]);
     let (status, peer) = run_on(Scripted::new([servos, position]), &["status"]);
     let status = status.unwrap();
-    assert_eq!((&status["auto_mode"], &status["emergency_stop"]), (&true.into(), &false.into()));
-    assert_eq!((&status["servos"][2]["state"], &status["position_mm"][1]), (&"brake".into(), &(-10.0).into()));
+    assert_eq!((&status["mode"], &status["emergency_stop"]), (&"automatic".into(), &false.into()));
+    assert_eq!((&status["servos"][2]["state"], &status["joints"][1]["mm"]), (&"brake".into(), &(-10.0).into()));
     assert_eq!(peer.taken, [words(&[0x503]), words(&[0x506])]);
 }
 

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, MotionReport, Target};
+use super::{Motion, MotionReport, Target, single_target};
 use crate::command::yrcx::arguments::Pace;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -109,7 +109,7 @@ impl Motion for Drive {
 
     fn targets(&self) -> Vec<Target> {
         let Destination { to, to_pulse, .. } = &self.destination;
-        Target::one(&self.axis, to.as_ref(), to_pulse.as_ref())
+        single_target(&self.axis, to.as_ref(), to_pulse.as_ref())
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
@@ -166,7 +166,7 @@ impl Motion for Drivei {
 
     fn targets(&self) -> Vec<Target> {
         let Distance { by, by_pulse, .. } = &self.distance;
-        Target::one(&self.axis, by.as_ref(), by_pulse.as_ref())
+        single_target(&self.axis, by.as_ref(), by_pulse.as_ref())
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {

@@ -21,8 +21,10 @@ use serde::Serialize;
 
 use super::arguments::{Axes, Ending, Which};
 use super::link::{Done, Link};
-use super::position::{Position, Unit};
+use super::position::{Unit, group, position};
 use crate::command::frame::dry_run::{Reason, unknown};
+use crate::command::robot::motion::{self as robot, Target};
+use crate::command::robot::position::joint_table;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -139,8 +141,8 @@ impl<M: Motion> Command for Moving<M> {
         let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
         let has_done = format!("{moved} {object}");
         let words = if done.is_some() { has_done } else { doing };
-        let report = MotionReport::new(words, &order, done.as_ref(), self.unit());
-        let report = MotionReport { targets: self.motion.targets(), ..report };
+        let mut report = MotionReport::new(words, &order, done.as_ref(), self.unit());
+        report.motion.targets = self.motion.targets();
         Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
     }
 }
@@ -220,9 +222,10 @@ impl Live {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct MotionReport {
     /// What kind of motion: `move-ptp`.
-    motion: &'static str,
-    /// Which robot; null where it is all.
-    robot: Option<i32>,
+    #[serde(rename = "motion")]
+    kind: &'static str,
+    #[serde(flatten)]
+    motion: robot::Motion,
     /// The axes that were named; empty for all.
     axes: Vec<u32>,
     /// The point that it goes by; null where it goes by none.
@@ -232,81 +235,67 @@ pub struct MotionReport {
     work_position: Option<i32>,
     /// Of a jog and the like: `plus` or `minus`.
     direction: Option<&'static str>,
-    /// Whether the motion has ended; false only with --no-wait.
-    ended: bool,
-    /// From sending the command to its end; null unless it has ended.
-    elapsed_ms: Option<u64>,
-    /// Where each axis was sent, or by how much, in the order typed; empty for points.
-    targets: Vec<Target>,
-    /// Where the robot is at the end, if that was asked for.
-    #[serde(flatten)]
-    position: Position,
     #[serde(skip)]
     words: String,
 }
 
-/// Where an axis is sent, or by how much.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Target {
-    /// 1 to 4.
-    axis: usize,
-    /// Millimetres, degrees of what turns; null where it is pulses.
-    mm: Option<f64>,
-    /// Pulses; null where it is mm.
-    pulses: Option<i32>,
+/// The targets of axes in mm, or of those in pulses.
+fn targets(axes: &Axes, mm: &[String], pulses: &[String]) -> Vec<Target> {
+    let (numbers, unit) = if mm.is_empty() { (pulses, Unit::Pulse) } else { (mm, Unit::Mm) };
+    let pairs = axes.pairs(numbers).unwrap_or_default();
+    pairs.into_iter().map(|(axis, text)| target(axis.to_string(), text, unit)).collect()
 }
 
-impl Target {
-    /// Of numbers in mm, or of those in pulses.
-    fn of(axes: &Axes, mm: &[String], pulses: &[String]) -> Vec<Self> {
-        let pairs = axes.pairs(if mm.is_empty() { pulses } else { mm }).unwrap_or_default();
-        let target = |(axis, text): (usize, &str)| match mm {
-            [] => Self { axis, mm: None, pulses: text.parse().ok() },
-            _ => Self { axis, mm: text.parse().ok(), pulses: None },
-        };
-        pairs.into_iter().map(target).collect()
-    }
-
-    /// Of one axis; none where it goes by a point.
-    fn one(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Self> {
-        let number = |text: &String| text.parse().ok();
-        let target = axis.parse().ok().filter(|_| mm.or(pulses).is_some());
-        let target = target.map(|axis| Self {
-            axis,
-            mm: mm.and_then(|text| text.parse().ok()),
-            pulses: pulses.and_then(number),
-        });
-        target.into_iter().collect()
-    }
+/// The target of one axis; none where it goes by a point.
+fn single_target(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Target> {
+    let mm = mm.map(|text| target(axis.to_owned(), text, Unit::Mm));
+    mm.or_else(|| pulses.map(|text| target(axis.to_owned(), text, Unit::Pulse))).into_iter().collect()
 }
+
+fn target(axis: String, text: &str, unit: Unit) -> Target {
+    Target { axis, from: None, to: text.parse().ok(), unit: unit.symbol() }
+}
+
+/// Where an order has its speed, by what its number is divided, and the unit.
+const SPEEDS: [(Key, f64, &str); 3] =
+    [(Key::SpeedPercent, 1.0, "%"), (Key::SpeedMmS, 1.0, "mm/s"), (Key::SpeedOfMax, 100.0, "%")];
 
 impl MotionReport {
     fn new(words: String, order: &Order, answer: Option<&Done>, unit: Option<Unit>) -> Self {
         let values = order.values();
         let field = |key| values.int(key);
         let axes = values.int(Key::Axes).unwrap_or_default();
+        let robot = values.int(Key::Robot).filter(|robot| *robot > 0);
+        let place = answer.zip(unit).and_then(|(answer, unit)| position(&answer.values, unit));
+        let motion = robot::Motion {
+            accepted: true,
+            group: robot.map(|robot| group(Some(robot))),
+            speed: SPEEDS.iter().find_map(|(key, by, unit)| {
+                field(*key).map(|speed| robot::Speed { value: f64::from(speed) / by, unit })
+            }),
+            reached: answer.map(|_| true),
+            position: place.map(|place| place.of_group(group(robot))),
+            elapsed_ms: answer.map(|answer| u64::try_from(answer.elapsed.as_millis()).unwrap_or(u64::MAX)),
+            ..robot::Motion::default()
+        };
         Self {
             words,
-            motion: order.row().id,
-            robot: values.int(Key::Robot).filter(|robot| *robot > 0),
+            kind: order.row().id,
+            motion,
             axes: (0..6).filter(|bit| axes >> bit & 1 == 1).map(|bit| bit + 1).collect(),
             point: field(Key::Point),
             pallet: field(Key::Pallet),
             work_position: field(Key::WorkPosition),
             direction: values.int(Key::Direction).map(|minus| if minus == 0 { "plus" } else { "minus" }),
-            ended: answer.is_some(),
-            targets: Vec::new(),
-            elapsed_ms: answer.map(|answer| u64::try_from(answer.elapsed.as_millis()).unwrap_or(u64::MAX)),
-            position: answer.map(|answer| Position::of(&answer.values, unit)).unwrap_or_default(),
         }
     }
 
     /// The view, with more to say after the time it took.
     fn view_with(&self, more: &str) -> View {
-        let elapsed = self.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000)).unwrap_or_default();
-        let view = View::text(format!("{}{elapsed}{more}", self.words));
-        match self.position.table() {
-            Some(table) => view.and(Section::Table(table)),
+        let elapsed = self.motion.elapsed_ms.map(|ms| format!(" in {}.{:03} s", ms / 1000, ms % 1000));
+        let view = View::text(format!("{}{}{more}", self.words, elapsed.unwrap_or_default()));
+        match &self.motion.position {
+            Some(position) => view.and(Section::Table(joint_table(&position.joints))),
             None => view,
         }
     }

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, MotionReport, Target};
+use super::{Motion, MotionReport, Target, targets};
 use crate::command::yrcx::arguments::{Arch, Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
@@ -108,7 +108,7 @@ impl Motion for Move {
     }
 
     fn targets(&self) -> Vec<Target> {
-        Target::of(&self.axes, &self.to, &self.to_pulse)
+        targets(&self.axes, &self.to, &self.to_pulse)
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
@@ -150,7 +150,7 @@ mod tests {
         let (moved, peer) = run_on(Scripted::new([Reply::Ends(1, place), Reply::Ends(1, end)]), &line);
         assert_eq!(peer.taken[0][0], 0x0506, "the present position");
         assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
-        assert_eq!(moved.unwrap()["targets"], json!([{"axis": 4, "mm": 90.0, "pulses": null}]));
+        assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
         let noted = frames(&line).unwrap();
         assert_eq!((&noted[0]["about"], noted.len()), (&json!("where the robot is"), 2));
         // Nothing moves if nobody knows where it is.

@@ -2,7 +2,7 @@
 
 use clap::{ArgGroup, Args};
 
-use super::{Motion, MotionReport, Target};
+use super::{Motion, MotionReport, Target, targets};
 use crate::command::yrcx::arguments::{Axes, Hand, Pace, Ramps};
 use crate::command::yrcx::position::Unit;
 use crate::controller::yrcx::order::Draft;
@@ -89,7 +89,7 @@ impl Motion for Movei {
     }
 
     fn targets(&self) -> Vec<Target> {
-        Target::of(&self.axes, &self.by, &self.by_pulse)
+        targets(&self.axes, &self.by, &self.by_pulse)
     }
 
     fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {

@@ -22,6 +22,18 @@ pub fn table() -> &'static Parameter {
     Parameter::named("T1").expect("the coordinate table is in the table of parameters")
 }
 
+/// Where axes have numbers: the columns that mean the same on every machine.
+const NUMBERED_COLUMNS: [&str; 5] = ["point", "ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
+
+/// The names of axes 1 to 4: the letters that the pendant shows, or numbers.
+pub type Names = [&'static str; 4];
+
+/// The columns of axes with these names.
+pub fn columns_by(names: Names) -> Vec<Column> {
+    let axes = names.iter().map(|name| Column::number(format!("{name}_mm")));
+    std::iter::once(Column::number(COLUMNS[0])).chain(axes).collect()
+}
+
 /// The columns of so many axes (1 to 4).
 pub fn columns(axes: usize) -> Vec<Column> {
     COLUMNS[..=axes.clamp(1, 4)].iter().map(|name| Column::number(*name)).collect()
@@ -33,6 +45,12 @@ pub fn rows(points: &[Setting]) -> Vec<Vec<String>> {
         table().layout.fields.iter().zip(&point.values).map(|(field, value)| plain(field, value)).collect()
     };
     points.iter().map(cells).collect()
+}
+
+/// Points as CSV, with columns that mean the same on every machine.
+pub fn write_numbered(points: &[Setting]) -> String {
+    let columns = NUMBERED_COLUMNS.map(Column::number);
+    sheet::write(Dialect::COMMAS, &columns, &rows(points))
 }
 
 /// Points as CSV, with the columns of so many axes (1 to 4).
@@ -61,7 +79,7 @@ impl Partial {
 
 /// Points in a CSV file, for a controller of so many axes (1 to 4): each once, all coordinates in range.
 pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
-    let points = read_wanted(bytes, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
+    let points = read_wanted(bytes, COLUMNS, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
     let whole = |Partial { values, line }: Partial| {
         let values = values.into_iter().map(|value| value.unwrap_or(Value::Number(0))).collect();
         (Setting { parameter: table(), values }, line)
@@ -69,33 +87,65 @@ pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
     Ok(points.into_iter().map(whole).collect())
 }
 
-/// The same of a file that may have some of the coordinates: one of them at least.
-pub fn read_partial(bytes: &[u8]) -> Result<Vec<Partial>, Vec<Finding>> {
-    read_wanted(bytes, COLUMNS.len() - 1, &COLUMNS[..1])
+/// The same of a file that may have some of the coordinates: one of them at least, of axes with these names. Numbers are
+/// understood on every machine.
+pub fn read_partial(bytes: &[u8], names: Names) -> Result<Vec<Partial>, Vec<Finding>> {
+    let columns = names.map(|name| format!("{name}_mm"));
+    let names = [COLUMNS[0], &columns[0], &columns[1], &columns[2], &columns[3]];
+    read_wanted(bytes, names, COLUMNS.len() - 1, &COLUMNS[..1])
 }
 
-fn read_wanted(bytes: &[u8], axes: usize, wanted: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
+/// The points that a file has, in its order; coordinates may be missing.
+pub fn numbers(bytes: &[u8]) -> Result<Vec<i32>, Vec<Finding>> {
     let mut findings = Findings::default();
-    let expected = format!("the first line is {}", COLUMNS[..=axes.clamp(1, 4)].join(","));
+    let mut points = Vec::new();
+    let expected = format!("the first line begins with {}", COLUMNS[0]);
+    if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
+        match sheet.column(COLUMNS[0]) {
+            Some(at) => {
+                for row in sheet.rows() {
+                    match coordinate(&table().layout.fields[0], COLUMNS[0], &sheet, row, at) {
+                        Ok(Value::Number(point)) => points.push(point),
+                        Ok(_) => {}
+                        Err((message, hint)) => findings.error(row.place(at), message, hint),
+                    }
+                }
+            }
+            None => findings.error(sheet.end_of_head(), format!("column {} is missing", COLUMNS[0]), Some(expected)),
+        }
+    }
+    if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
+}
+
+/// Whether the columns of a file have the numbers of axes.
+fn has_numbers(bytes: &[u8]) -> bool {
+    let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
+    String::from_utf8_lossy(head).to_ascii_lowercase().contains(NUMBERED_COLUMNS[1].trim_end_matches("1_mm"))
+}
+
+fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> Result<Vec<Partial>, Vec<Finding>> {
+    let mut findings = Findings::default();
+    let names = if has_numbers(bytes) { NUMBERED_COLUMNS } else { names };
+    let expected = format!("the first line is {}", names[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
         // A row that is wrong hides no other mistake.
         let before = findings.errors();
-        let places = sheet.columns(&COLUMNS, &expected, &mut findings);
-        for (name, _) in COLUMNS.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
+        let places = sheet.columns(&names, &expected, &mut findings);
+        for (name, _) in names.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
             findings.error(sheet.end_of_head(), format!("column {name} is missing"), Some(expected.clone()));
         }
         if findings.errors() == before && places[1..].iter().all(Option::is_none) {
             findings.error(sheet.end_of_head(), "there is no column of coordinates", Some(expected));
         }
         if findings.errors() == before {
-            points = read_rows(&sheet, &places, &mut findings);
+            points = read_rows(&sheet, names, &places, &mut findings);
         }
     }
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
 
-fn read_rows(sheet: &Sheet, places: &[Option<usize>], findings: &mut Findings) -> Vec<Partial> {
+fn read_rows(sheet: &Sheet, names: [&str; 5], places: &[Option<usize>], findings: &mut Findings) -> Vec<Partial> {
     let mut points: Vec<Partial> = Vec::new();
     let mut seen = HashMap::new();
     for row in sheet.rows() {
@@ -105,7 +155,7 @@ fn read_rows(sheet: &Sheet, places: &[Option<usize>], findings: &mut Findings) -
         let before = findings.errors();
         let mut values = Vec::with_capacity(COLUMNS.len());
         for (index, place) in places.iter().enumerate() {
-            let read = place.map(|at| (at, coordinate(&table().layout.fields[index], COLUMNS[index], sheet, row, at)));
+            let read = place.map(|at| (at, coordinate(&table().layout.fields[index], names[index], sheet, row, at)));
             values.push(match read {
                 None => None,
                 Some((_, Ok(value))) => Some(value),
@@ -181,12 +231,26 @@ mod tests {
 
     #[test]
     fn some_coordinates_may_be_left_out() {
-        let points = read_partial(b"comment;point;y_mm\nabove;7;1,5\n").unwrap();
+        let points = read_partial(b"comment;point;y_mm\nabove;7;1,5\n", ["x", "y", "z", "r"]).unwrap();
         let value = |number| Some(Value::Number(number));
         assert_eq!(points, [Partial { values: vec![value(7), None, value(150), None, None], line: 2 }]);
-        let error = |text: &str| read_partial(text.as_bytes()).unwrap_err()[0].message.clone();
+        let error = |text: &str| read_partial(text.as_bytes(), ["x", "y", "z", "r"]).unwrap_err()[0].message.clone();
         assert_eq!(error("point,comment\n1,a\n"), "there is no column of coordinates");
         assert_eq!(error("x_mm\n1\n"), "column point is missing");
+    }
+
+    #[test]
+    fn columns_are_those_of_the_letters_or_of_the_numbers() {
+        let value = |number| Some(Value::Number(number));
+        let letters = ["x", "z", "y", "r"];
+        let read = |text: &str| read_partial(text.as_bytes(), letters).unwrap()[0].values.clone();
+        assert_eq!(read("point,z_mm,y_mm\n7,1,2\n"), [value(7), None, value(100), value(200), None]);
+        assert_eq!(read("point,ax3_mm\n7,1\n"), [value(7), None, None, value(100), None]);
+        assert!(read_partial(b"point,ax3_mm,z_mm\n7,1,2\n", letters).is_err());
+        assert_eq!(columns_by(letters)[2].name, "z_mm");
+        let points = super::read(b"point,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
+        let points: Vec<Setting> = points.into_iter().map(|(point, _)| point).collect();
+        assert_eq!(write_numbered(&points), "point,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n");
     }
 
     #[test]

@@ -64,7 +64,57 @@ fn a_yes_and_a_no_that_come_together_are_no_answer() {
     }
     let mut line = sent("@HOME", false);
     line.handle(ms(20), b"@OK\r\n@OK\r\n");
+    assert_eq!(line.poll(ms(20) + QUIET), answered("@OK"));
+}
+
+#[test]
+fn a_no_in_a_later_read_takes_a_yes_back() {
+    for text in ["@HOME", "@SVON", "@MINT PR=0"] {
+        let mut line = sent(text, false);
+        line.handle(ms(20), b"@OK\r\n");
+        assert_eq!(line.poll(ms(20)), Step::Wait(ms(20) + QUIET), "nothing is read back of {text}");
+        line.handle(ms(60), b"@NG\r\n");
+        let ended = line.poll(ms(60));
+        assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
+    }
+    // What runs is looked at without delay; who does not look waits for the no.
+    let mut line = sent("@SPST 0001", false);
+    line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
+    assert!(line.confirm(ms(20)));
+    assert_eq!(line.poll(ms(20)), Step::Wait(ms(20) + QUIET));
+    line.handle(ms(60), b"@NG\r\n");
+    assert!(matches!(line.poll(ms(60)), Step::Done(Ended::Unfitting { .. })));
+    assert!(!line.confirm(ms(60)));
+    // What is read back anyway waits for nothing.
+    let mut line = sent("@WOVR OV=050", false);
+    line.handle(ms(20), b"@OK\r\n");
+    assert_eq!(line.poll(ms(20)), answered("@OK"));
+}
+
+#[test]
+fn a_no_before_the_next_answer_takes_a_yes_back() {
+    let accepted = || {
+        let mut line = sent("@HOME", false);
+        line.handle(ms(20), b"@OK\r\n");
+        assert_eq!(line.poll(ms(70)), answered("@OK"));
+        line.begin(&request("@STAS SNO=0"), true);
+        assert_eq!(line.poll(ms(70)), Step::Send(b"@STAS SNO=0\r\n".to_vec()));
+        line.handle(ms(80), b"@NG\r\n");
+        assert_eq!(line.poll(ms(80)), Step::Wait(ms(80) + BEHIND_A_NO), "the question may still be answered");
+        line
+    };
+    let mut line = accepted();
+    line.handle(ms(100), b"@STAS SNO=0 ST1=22 ST2=00\r\n");
+    assert_eq!(line.poll(ms(100)), answered("@STAS SNO=0 ST1=22 ST2=00"));
+    let (order, ended) = line.take_refuted().unwrap();
+    assert_eq!(order.text(), "@HOME");
+    assert!(matches!(ended, Ended::Unfitting { why, .. } if why.contains("both")));
+    assert!(line.take_refuted().is_none(), "it is told once");
+    // Nothing follows: it was the question that was refused, as by a controller that is busy.
+    let mut line = accepted();
+    assert_eq!(line.poll(ms(80) + BEHIND_A_NO), answered("@NG"));
+    assert!(line.take_refuted().is_none());
 }
 
 #[test]

@@ -165,8 +165,10 @@ impl Download {
     }
 
     fn send(&mut self, now: Now) -> Step<DownloadEnd> {
-        let repeatable = self.transferring() || self.first_wait.is_none();
-        self.pace.sent(now, repeatable);
+        match self.first_wait.filter(|_| !self.transferring()) {
+            Some(wait) => self.pace.sent_for(now, wait),
+            None => self.pace.sent(now, true),
+        }
         Step::Send(self.last_sent.clone())
     }
 
@@ -193,7 +195,7 @@ impl Download {
     fn restart(&mut self, now: Now) {
         self.pace.restart(now);
         if let (Some(wait), false) = (self.first_wait, self.transferring()) {
-            self.pace.deadline = now.saturating_add(wait);
+            self.pace.patience = now.saturating_add(wait);
         }
         self.busy = None;
         self.pausing = false;
@@ -520,8 +522,8 @@ mod tests {
         for at in [2300, 2900, 4100] {
             sent(&mut session, ms(at));
         }
-        assert_eq!(session.poll(ms(4999)), Step::Wait(ms(5000)));
-        let DownloadEnd::NoAnswer { bytes, counters } = done(&mut session, ms(5000)) else { panic!("answered") };
+        assert_eq!(session.poll(ms(7099)), Step::Wait(ms(7100)));
+        let DownloadEnd::NoAnswer { bytes, counters } = done(&mut session, ms(7100)) else { panic!("answered") };
         assert_eq!((bytes, counters.repeats), (479, 3));
     }
 
@@ -532,7 +534,7 @@ mod tests {
         assert_eq!(session.poll(ms(1)), Step::Wait(ms(900_000)));
         exchange(&mut session, ms(600_000), &block(1, 1, &[1; 479]));
         assert_eq!(session.poll(ms(600_000)), Step::Wait(ms(600_300)));
-        assert!(matches!(done(&mut session, ms(603_000)), DownloadEnd::NoAnswer { bytes: 479, .. }));
+        assert!(matches!(done(&mut session, ms(605_100)), DownloadEnd::NoAnswer { bytes: 479, .. }));
     }
 
     #[test]
@@ -557,6 +559,6 @@ mod tests {
         session.handle(ms(20), &answer(1, LAST_BLOCK, Status::refused(0xE444), &[]));
         assert_eq!(sent(&mut session, ms(120)), ack);
         let status = Status::refused(0xE444);
-        assert_eq!(done(&mut session, ms(3010)), DownloadEnd::Refused { status, bytes: 479 });
+        assert_eq!(done(&mut session, ms(5110)), DownloadEnd::Refused { status, bytes: 479 });
     }
 }

@@ -220,9 +220,9 @@ mod tests {
         for at in [0, 300, 900, 2100] {
             sent(&mut session, ms(at));
         }
-        assert_eq!(session.poll(ms(2999)), Step::Wait(ms(3000)));
+        assert_eq!(session.poll(ms(5099)), Step::Wait(ms(5100)));
         let counters = Counters { repeats: 3, ..Counters::default() };
-        assert_eq!(done(&mut session, ms(3000)), Ended::NoAnswer(counters));
+        assert_eq!(done(&mut session, ms(5100)), Ended::NoAnswer(counters));
     }
 
     #[test]
@@ -259,7 +259,7 @@ mod tests {
         assert_eq!((&first[..11], &first[12..]), (&second[..11], &second[12..]));
         // The third copy of the old refusal must not cause a third request.
         session.handle(ms(111), &busy);
-        assert_eq!(session.poll(ms(111)), Step::Wait(ms(3000)));
+        assert_eq!(session.poll(ms(111)), Step::Wait(ms(3110)));
         session.handle(ms(120), &answer(&START, 1, Status::OK, &[]));
         let Ended::Answered(reply) = done(&mut session, ms(120)) else { panic!("not answered") };
         assert_eq!((reply.status, reply.attempts), (Status::OK, 2));
@@ -306,10 +306,10 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             };
-            // Pauses of 100, 200, 400, 800, 1000 ms; another second would leave no time for an answer.
-            assert_eq!((sends, now), (6, ms(2500)));
+            // Pauses of 100, 200, 400, 800 ms and three of 1 s; another second would leave no time for an answer.
+            assert_eq!((sends, now), (8, ms(4500)));
             let Ended::Answered(reply) = outcome else { panic!("not answered") };
-            assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 6));
+            assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 8));
         }
     }
 
@@ -319,7 +319,7 @@ mod tests {
         sent(&mut session, ms(0));
         session.handle(ms(10), &answer(&START, 0, Status::refused(0xFFF6), &[]));
         sent(&mut session, ms(110));
-        assert_eq!(done(&mut session, ms(3000)), Ended::OutcomeUnknown(Counters { busy: 1, ..Counters::default() }));
+        assert_eq!(done(&mut session, ms(3110)), Ended::OutcomeUnknown(Counters { busy: 1, ..Counters::default() }));
     }
 
     #[test]

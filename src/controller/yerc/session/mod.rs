@@ -10,6 +10,7 @@
 //! - **A transfer keeps one id** and is stop-and-wait. Only silence makes a session send its last frame again, never a
 //!   duplicate: two sides that answer every copy with a copy multiply the traffic until the end of the file.
 //! - **Blocks come in order or not at all.** A gap ends a transfer; nothing is guessed.
+//! - **A transfer that is broken off is ended at the controller too**, which else refuses others until its timer ends.
 //! - Frames that do not belong here are counted by class ([`Counters`]) and ignored.
 //!
 //! Who sent a datagram is the driver's to check: only what comes from the controller's address and port belongs here.
@@ -23,10 +24,12 @@ use super::status;
 use super::wire::{ANSWER_BIT, AnswerFrame, RequestFrame, Status, WireError};
 use crate::Now;
 
+mod abandon;
 mod download;
 mod exchange;
 mod upload;
 
+pub use abandon::Abandon;
 pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
@@ -51,21 +54,44 @@ pub fn is_damaged(result: Status) -> bool {
 /// How long to wait and how often to try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// Patience: for an exchange as a whole, for a transfer without progress.
-    pub deadline: Duration,
-    /// Silence before the first repeat.
+    /// The longest wait of one try for its answer. The last try has all of it.
+    pub timeout: Duration,
+    /// Silence before the first further try, if that is shorter.
     pub attempt: Duration,
-    /// Whether that silence doubles with each further repeat.
+    /// Whether that silence doubles with each further try, up to `timeout`.
     pub doubles: bool,
-    /// Most repeats of the same frame after silence.
+    /// Most further tries of the same frame after silence.
     pub retries: u32,
 }
 
 impl Default for Policy {
     /// A controller answers within 20 ms. With these, a frame goes out after 0, 0.3, 0.9 and 2.1 s and is given up
-    /// after 3 s.
+    /// after 5.1 s.
     fn default() -> Self {
-        Self { deadline: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
+        Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
+    }
+}
+
+impl Policy {
+    /// The same with another wait for a try, and another number of further tries.
+    #[must_use]
+    pub const fn with(self, timeout: Duration, retries: u32) -> Self {
+        Self { timeout, retries, ..self }
+    }
+
+    /// How long a frame that may be repeated is tried in all: `timeout` times (`retries` + 1) at most.
+    pub fn patience(&self) -> Duration {
+        // After so many doublings the silence does not grow any more.
+        let growing = self.retries.min(u32::BITS);
+        let grown = (0..growing).map(|tries| self.silence(tries)).fold(Duration::ZERO, Duration::saturating_add);
+        let longest = self.silence(growing).saturating_mul(self.retries - growing);
+        grown.saturating_add(longest).saturating_add(self.timeout)
+    }
+
+    /// The silence after so many further tries, before the next one.
+    fn silence(&self, tries: u32) -> Duration {
+        let doubled = if self.doubles { 1_u32.checked_shl(tries).unwrap_or(u32::MAX) } else { 1 };
+        self.attempt.saturating_mul(doubled).min(self.timeout)
     }
 }
 
@@ -241,6 +267,9 @@ impl Inbox {
 #[derive(Debug, Clone)]
 struct Pace {
     policy: Policy,
+    /// When patience ends with the frame and all its copies.
+    patience: Now,
+    /// When the present wait ends.
     deadline: Now,
     repeat_at: Option<Now>,
     /// Repeats of the present frame after silence.
@@ -258,23 +287,28 @@ enum Due {
 
 impl Pace {
     fn new(policy: Policy) -> Self {
-        Self { policy, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
+        Self { policy, patience: Now::ZERO, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
     }
 
     /// Patience starts anew.
     fn restart(&mut self, now: Now) {
-        self.deadline = now.saturating_add(self.policy.deadline);
+        self.patience = now.saturating_add(self.policy.patience());
         self.repeat_at = None;
         self.repeats = 0;
         self.pause = FIRST_PAUSE;
     }
 
-    /// A frame left, to be repeated after silence if `repeatable`.
+    /// A frame left, to be repeated after silence if `repeatable`; else it has one try.
     fn sent(&mut self, now: Now, repeatable: bool) {
-        let doubled = 1_u32.checked_shl(self.repeats).unwrap_or(u32::MAX);
-        let silence = self.policy.attempt.saturating_mul(if self.policy.doubles { doubled } else { 1 });
         let more = repeatable && self.repeats < self.policy.retries;
-        self.repeat_at = more.then(|| now.saturating_add(silence));
+        self.repeat_at = more.then(|| now.saturating_add(self.policy.silence(self.repeats)));
+        self.deadline = if repeatable { self.patience } else { now.saturating_add(self.policy.timeout) };
+    }
+
+    /// A frame left that is not repeated, and whose answer takes as long as `wait`.
+    fn sent_for(&mut self, now: Now, wait: Duration) {
+        self.repeat_at = None;
+        self.deadline = now.saturating_add(wait);
     }
 
     /// The last frame is about to leave again because of silence.
@@ -285,9 +319,10 @@ impl Pace {
     /// Makes room for a pause before the frame goes out again; `false` if patience ends before an answer could come.
     fn pause(&mut self, now: Now) -> bool {
         let resume = now.saturating_add(self.pause);
-        if resume.saturating_add(self.policy.attempt) > self.deadline {
+        if resume.saturating_add(self.policy.silence(0)) > self.patience {
             return false;
         }
+        self.deadline = self.patience;
         self.pause = self.pause.saturating_mul(2).min(LONGEST_PAUSE);
         self.repeat_at = Some(resume);
         self.repeats = 0;
@@ -377,12 +412,25 @@ mod tests {
             }
         }
         assert_eq!(sends, [ms(300), ms(900), ms(2100)]);
-        assert_eq!(now, ms(3000));
+        assert_eq!(now, ms(5100));
+    }
+
+    #[test]
+    fn the_timeout_is_that_of_a_try_and_the_last_try_has_all_of_it() {
+        let patience = |timeout, retries| Policy::default().with(ms(timeout), retries).patience();
+        assert_eq!(patience(300, 4), ms(5 * 300));
+        assert_eq!(patience(100, 9), ms(10 * 100));
+        assert_eq!(patience(3000, 0), ms(3000));
+        assert_eq!(patience(3000, 1), ms(300 + 3000));
+        assert_eq!(patience(1000, 40), ms(300 + 600 + 39 * 1000));
+        for (timeout, retries) in [(1, 0), (700, 3), (5000, 2), (60_000, 12), (250, 1_000_000)] {
+            assert!(patience(timeout, retries) <= ms(timeout).saturating_mul(retries + 1));
+        }
     }
 
     #[test]
     fn extreme_policies_neither_overflow_nor_hang() {
-        let policy = Policy { deadline: Duration::MAX, attempt: Duration::MAX, doubles: true, retries: u32::MAX };
+        let policy = Policy { timeout: Duration::MAX, attempt: Duration::MAX, doubles: true, retries: u32::MAX };
         let mut pace = Pace::new(policy);
         pace.restart(Duration::MAX);
         pace.repeats = 40;

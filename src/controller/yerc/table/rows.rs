@@ -49,33 +49,32 @@ const VARIABLE: &[Service] = &[
     set_single(Attribute::One, WRITE),
     set_all(Attribute::OneOrZero, WRITE),
 ];
+/// Somebody taught what is overwritten.
 const POSITION: &[Service] = &[
     get_single(Attribute::Field),
     get_all(Attribute::Zero),
-    set_single(Attribute::Field, WRITE),
-    set_all(Attribute::Zero, WRITE),
+    set_single(Attribute::Field, DESTROY),
+    set_all(Attribute::Zero, DESTROY),
 ];
 const SET_ONE: &[Service] = &[set_single(Attribute::One, WRITE)];
 const SWITCH: &[Service] = &[set_single(Attribute::One, RiskRule::Switches)];
 const START: &[Service] = &[set_single(Attribute::One, MOTION)];
 const SELECT: &[Service] = &[set_all(Attribute::Zero, WRITE)];
 const MOVE: &[Service] = &[set_all(Attribute::One, MOTION)];
-const PLURAL: &[Service] = &[
-    Service {
-        number: service::READ_PLURAL,
-        meaning: "read several elements",
-        action: Action::Read,
-        attribute: Attribute::Zero,
-        risk: READ,
-    },
-    Service {
-        number: service::WRITE_PLURAL,
-        meaning: "write several elements",
-        action: Action::Write,
-        attribute: Attribute::Zero,
-        risk: WRITE,
-    },
-];
+const PLURAL: &[Service] = &[READ_PLURAL, write_plural(WRITE)];
+const POSITIONS: &[Service] = &[READ_PLURAL, write_plural(DESTROY)];
+const READ_PLURAL: Service = Service {
+    number: service::READ_PLURAL,
+    meaning: "read several elements",
+    action: Action::Read,
+    attribute: Attribute::Zero,
+    risk: READ,
+};
+
+const fn write_plural(risk: RiskRule) -> Service {
+    let (number, meaning) = (service::WRITE_PLURAL, "write several elements");
+    Service { number, meaning, action: Action::Write, attribute: Attribute::Zero, risk }
+}
 
 const fn row(
     number: u16,
@@ -108,6 +107,11 @@ const fn plural(
     max: u16,
 ) -> Row {
     Row { plural: Some(Plural { max, even: false }), ..row(number, section, name, PLURAL, instances, fields) }
+}
+
+/// What somebody taught.
+const fn taught(row: Row) -> Row {
+    Row { services: POSITIONS, ..row }
 }
 
 /// Only even counts are valid.
@@ -174,9 +178,9 @@ pub const ROWS: &[Row] = &[
     plural(0x304, "3.3.31", "plural double-precision variable (D)", at::VARIABLES, data::D, 118),
     plural(0x305, "3.3.32", "plural real variable (R)", at::VARIABLES, data::R, 118),
     plural(0x306, "3.3.33", "plural string variable (S, 16 bytes)", at::VARIABLES, data::S16, 29),
-    plural(0x307, "3.3.34", "plural position variable (P)", at::POSITION_VARIABLES, data::POSITION, 9),
-    plural(0x308, "3.3.35", "plural base position variable (BP)", at::POSITION_VARIABLES, data::BASE_POSITION, 13),
-    plural(0x309, "3.3.36", "plural external axis variable (EX)", at::POSITION_VARIABLES, data::EXTERNAL_POSITION, 13),
+    taught(plural(0x307, "3.3.34", "plural position variable (P)", at::POSITION_VARIABLES, data::POSITION, 9)),
+    taught(plural(0x308, "3.3.35", "plural base position variable (BP)", at::POSITION_VARIABLES, data::BASE_POSITION, 13)),
+    taught(plural(0x309, "3.3.36", "plural external axis variable (EX)", at::POSITION_VARIABLES, data::EXTERNAL_POSITION, 13)),
     since_fs114(row(0x30A, "3.3.37", "alarm read with sub-code strings", READ_FIELDS, at::ALARMS, data::ALARM_WITH_TEXTS)),
     since_fs114(row(0x30B, "3.3.38", "alarm history read with sub-code strings", READ_FIELDS, at::HISTORY, data::ALARM_WITH_TEXTS)),
     dx200(plural(0x30C, "3.3.42", "plural string variable (S, 32 bytes)", at::LONG_STRINGS, data::S32, 14)),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use super::{ImageSession, Next, Policy, edge_due};
+use super::{EDGE_INTERVAL, ImageSession, Next, Policy, edge_due};
 use crate::yrcx::answer::{Answer, Status};
 use crate::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
 use crate::yrcx::order::Order;
@@ -97,7 +97,7 @@ impl fmt::Display for Silence {
             Self::TooLong => f.write_str("it still ran when patience was over"),
             Self::Vanished => f.write_str("the controller stopped showing that it runs, and showed no end"),
             Self::Undocumented(word) => write!(f, "the controller shows the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str("its end was not seen after the stop input went off"),
+            Self::Interrupted => f.write_str("its end was not seen in the time for a stop"),
         }
     }
 }
@@ -272,13 +272,15 @@ impl Exchange {
         }
         match self.interrupted {
             Some(_) if self.order.is_continuous() => return self.finish(now, output, Ended::Stopped),
-            Some(since) if self.moves() => {
-                self.hold_stop(output);
+            Some(since) => {
+                if self.moves() {
+                    self.hold_stop(output);
+                }
                 if now >= since.saturating_add(self.policy.stop) {
                     return self.finish(now, output, self.unanswered(Silence::Interrupted));
                 }
             }
-            _ => {}
+            None => {}
         }
         if now >= self.deadline() {
             let silence = match status {
@@ -321,8 +323,8 @@ impl Exchange {
         let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
         let reset_sent = output.last_sent().is_some_and(|sent| sent.command() == [0; COMMAND_WORDS]);
         self.outcome.released = self.linked && reset_sent && self.status() == Some(Status::Ready);
-        let patient = self.linked && now < since.saturating_add(self.policy.release);
-        if !self.linked && self.stopping {
+        let patient = self.linked && now < self.release_until(since);
+        if !patient && self.stopping {
             self.outcome.stop_held = true;
             self.stopping = false;
         }
@@ -332,7 +334,11 @@ impl Exchange {
         }
         let restored = !self.stopping
             && output.last_sent().is_none_or(|sent| input::STOP.is_on(sent) == input::STOP.is_on(&output.next));
-        if never_sent || (restored && self.outcome.released) || !patient {
+        let was_given_up = matches!(
+            self.outcome.ended,
+            Ended::OutcomeUnknown(Silence::Interrupted) | Ended::NoAnswer(Silence::Interrupted)
+        );
+        if never_sent || (restored && (self.outcome.released || was_given_up)) || !patient {
             self.phase = Phase::Over;
         }
     }
@@ -359,6 +365,14 @@ impl Exchange {
         self.started.unwrap_or(now)
     }
 
+    /// When patience with the ready status is over: after a stop no later than the stop's own, but for the edge of the
+    /// stop input.
+    fn release_until(&self, since: Now) -> Now {
+        let over = since.saturating_add(self.policy.release);
+        let edge = since.saturating_add(EDGE_INTERVAL * 2);
+        self.interrupted.map_or(over, |stop| over.min(stop.saturating_add(self.policy.stop).max(edge)))
+    }
+
     /// When patience with a command that was sent is over.
     fn deadline(&self) -> Now {
         let sane = self.sane.saturating_add(self.policy.accept);
@@ -376,11 +390,11 @@ impl Exchange {
         match self.phase {
             Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
             Phase::Command => match self.interrupted {
-                Some(since) if self.moves() => self.deadline().min(since.saturating_add(self.policy.stop)),
-                _ => self.deadline(),
+                Some(since) => self.deadline().min(since.saturating_add(self.policy.stop)),
+                None => self.deadline(),
             },
             Phase::Release(since) => {
-                let over = since.saturating_add(self.policy.release);
+                let over = self.release_until(since);
                 match edge_due(now, output, input::STOP) {
                     Some(edge) if self.stopping => over.min(edge),
                     _ => over,

@@ -22,6 +22,7 @@ const HELP: &[(&str, &str)] = &[
     ("load R1A3 PERCENT", "set the load of an axis"),
     ("power", "switch the controller off and on"),
     ("why", "say why the last command was refused"),
+    ("journal", "list the images that masters showed since the last `journal`"),
 ];
 
 /// Carries out a line; the answer says what is now.

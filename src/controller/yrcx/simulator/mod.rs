@@ -15,6 +15,7 @@
 //! | `robot`, `geometry`, `moves`, `motion` | axes, where they put the tool, targets and ways, ramps |
 //! | `program`, `task` | programs in a small part of the language, and the tasks that run them |
 //! | `console` | what somebody at the machine does |
+//! | `journal` | what masters showed |
 //!
 //! The manual tells what is sent, and less of what is done. Where it is silent, this was chosen:
 //!
@@ -48,6 +49,7 @@ mod commands;
 mod console;
 mod defaults;
 mod geometry;
+mod journal;
 mod memory;
 mod motion;
 mod motions;
@@ -69,6 +71,7 @@ mod tests;
 
 pub use start::{EXAMPLE, Start};
 
+use self::journal::Journal;
 use self::remote::Remote;
 use self::signals::Dedicated;
 use self::world::{Link, SCAN, World};
@@ -92,6 +95,7 @@ pub struct Simulator {
     world: World,
     remote: Remote,
     dedicated: Dedicated,
+    journal: Journal,
     /// What the controller shows.
     shown: Image,
     /// What is new about the master, for the next scan.
@@ -109,6 +113,7 @@ impl Simulator {
             world: start.world,
             remote: Remote::new(start.run_scans, start.seed),
             dedicated: Dedicated::new(),
+            journal: Journal::default(),
             shown: Image::default(),
             incoming: None,
             touched: None,
@@ -135,6 +140,7 @@ impl Simulator {
         };
         let incoming = image.map_or(Master::Gone, |image| Master::Shows(*image));
         if self.incoming.or(known) != Some(incoming) {
+            self.journal.note(image);
             self.incoming = Some(incoming);
             self.touched.get_or_insert(now);
         }
@@ -165,6 +171,9 @@ impl Simulator {
     /// Carries out one line of the console: `estop on`, `box on`, `state`. What to print, or what is wrong.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
+        if line.trim() == "journal" {
+            return Ok(self.journal.take());
+        }
         self.touched.get_or_insert(now);
         // Between scans as well, robots are where they are.
         self.world.move_on(now.max(self.world.now));

@@ -33,8 +33,7 @@ const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
 /// Overwrites what a person wrote or taught.
 const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
-const POWER_OFF: (Risk, Pace) = (Risk::Write, Pace::Power);
-/// Power on, or brakes off: an axis may drop.
+/// Power on, power off, or brakes off: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
 const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
 const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
@@ -97,7 +96,7 @@ commands! {
     OriginRobot 0x032 "origin-robot" "4.2.12" "return to origin, by robot" MOTION [ROBOT_OR_ALL ORIGIN_AXES] [];
     OriginAxis 0x033 "origin-axis" "4.2.12" "return to origin, one axis" MOTION [ROBOT AXIS] [];
     ServoOn 0x034 "servo-on" "4.2.13" "switch servos on" POWER [ROBOT AXIS_OR_ALL] [];
-    ServoOff 0x035 "servo-off" "4.2.13" "switch servos off" POWER_OFF [ROBOT AXIS_OR_ALL] [];
+    ServoOff 0x035 "servo-off" "4.2.13" "switch servos off" POWER [ROBOT AXIS_OR_ALL] [];
     ServoFree 0x036 "servo-free" "4.2.13" "switch servos off and release brakes" POWER [ROBOT AXIS_OR_ALL] [];
     SpeedManual 0x038 "speed-manual" "4.2.14" "set the manual speed" WRITE [ROBOT SPEED_SETTING] [];
     SpeedAuto 0x039 "speed-auto" "4.2.15" "set the automatic speed" WRITE [ROBOT SPEED_SETTING] [];
@@ -105,7 +104,7 @@ commands! {
     ShiftSelect 0x03B "shift-select" "4.2.17" "select a shift" WRITE [ROBOT SHIFT] [];
     HandSelect 0x03C "hand-select" "4.2.18" "select a hand" WRITE [ROBOT HAND] [];
     ArmSelect 0x03D "arm-select" "4.2.19" "select the hand system of the arm" WRITE [ROBOT ARM] [];
-    MotorOff 0x041 "motor-off" "4.2.20" "switch motor power and servos off" POWER_OFF [] [];
+    MotorOff 0x041 "motor-off" "4.2.20" "switch motor power and servos off" POWER [] [];
     MotorOn 0x042 "motor-on" "4.2.20" "switch motor power and servos on" POWER [] [];
     MotorPower 0x043 "motor-pwr" "4.2.20" "switch motor power on" POWER [] [];
     MovetPtp 0x044 "movet-ptp" "4.2.21" "move to a point in tool coordinates, point to point" MOTION

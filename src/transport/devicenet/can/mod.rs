@@ -258,6 +258,12 @@ pub enum PortError {
         /// How that showed.
         why: String,
     },
+    /// It sends without end, and more than a bus can carry.
+    #[error("{path} sends without end, as no adapter does")]
+    Flooded {
+        /// Which.
+        path: String,
+    },
     /// It takes no more frames.
     #[error("{path} takes no more frames to send")]
     Stuck {

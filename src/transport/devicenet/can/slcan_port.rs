@@ -1,6 +1,7 @@
 //! An adapter that speaks SLCAN, on a serial port or behind TCP.
 
 use std::collections::VecDeque;
+use std::io;
 use std::time::Duration;
 
 use tokio::time::{Instant, sleep_until, timeout_at};
@@ -11,6 +12,14 @@ use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting
 
 /// Silence after which what is left of an earlier use has been read.
 const QUIET: Duration = Duration::from_millis(50);
+/// How long that may take. An adapter that is off the bus has nothing more to send.
+const LEFTOVERS: Duration = Duration::from_millis(400);
+/// Bytes that may come within [`WINDOW`]: a full bus of 500 kbit/s makes lines of 250 kB in a second, and those of some seconds
+/// come together after a pause of this machine.
+const MOST_RECEIVED: usize = 8 * 1024 * 1024;
+const WINDOW: Duration = Duration::from_secs(1);
+/// What may come while a command is not answered.
+const MOST_SAID: usize = 4096;
 /// How long an adapter may take to answer a command.
 const ANSWER: Duration = Duration::from_millis(300);
 /// Between questions how it is.
@@ -28,6 +37,8 @@ pub struct SlcanPort {
     health: Health,
     /// When to ask for its flags; `None` if it does not tell them.
     flags_due: Option<Instant>,
+    /// When the window began, and the bytes that have come in it.
+    received: (Instant, usize),
 }
 
 impl SlcanPort {
@@ -43,12 +54,18 @@ impl SlcanPort {
             said: VecDeque::new(),
             health: Health::default(),
             flags_due: None,
+            received: (Instant::now(), 0),
         };
         // Ends whatever line an earlier use has left.
         port.write(b"\r\r\r")?;
         port.write(b"C\r")?;
-        while port.read(Instant::now() + QUIET).await? {}
-        port.said.clear();
+        let begun = Instant::now();
+        while port.read(Instant::now() + QUIET).await? {
+            port.said.clear();
+            if begun.elapsed() > LEFTOVERS {
+                return Err(PortError::Flooded { path: port.path.clone() });
+            }
+        }
         let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
         let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
         if rate == Some(Said::No) {
@@ -73,13 +90,18 @@ impl SlcanPort {
 
     /// Sends a command; what answers it: what is looked for, or no. Frames that come meanwhile are kept.
     async fn ask(&mut self, command: &[u8], wanted: impl Fn(&Said) -> bool) -> Result<Option<Said>, PortError> {
-        let before = self.said.len();
+        let mut before = self.said.len();
         self.write(command)?;
         let until = Instant::now() + ANSWER;
         loop {
             let is_answer = |said: &Said| wanted(said) || *said == Said::No;
             if let Some(at) = (before..self.said.len()).find(|at| self.said.get(*at).is_some_and(is_answer)) {
                 return Ok(self.said.remove(at));
+            }
+            if self.said.len() > MOST_SAID {
+                self.said.clear();
+                before = 0;
+                self.health.overruns += 1;
             }
             if !self.read(until).await? {
                 return Ok(None);
@@ -102,11 +124,27 @@ impl SlcanPort {
 
     /// Reads what there is; whether anything came in time.
     async fn read(&mut self, until: Instant) -> Result<bool, PortError> {
+        // What comes without end is always there in time.
+        if Instant::now() >= until {
+            return Ok(false);
+        }
         let Ok(read) = timeout_at(until, self.pipe.read()).await else { return Ok(false) };
+        self.take(read).map(|()| true)
+    }
+
+    /// Takes what was read.
+    fn take(&mut self, read: io::Result<Vec<u8>>) -> Result<(), PortError> {
         let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
+        if self.received.0.elapsed() > WINDOW {
+            self.received = (Instant::now(), 0);
+        }
+        self.received.1 += bytes.len();
+        if self.received.1 > MOST_RECEIVED {
+            return Err(PortError::Flooded { path: self.path.clone() });
+        }
         let Self { lines, said, .. } = self;
         said.extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.said()));
-        Ok(true)
+        Ok(())
     }
 
     fn flagged(&mut self, flags: u8) {
@@ -138,12 +176,7 @@ impl SlcanPort {
             }
             let due = self.flags_due;
             tokio::select! {
-                read = self.pipe.read() => {
-                    let bytes =
-                        read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
-                    let Self { lines, said, .. } = self;
-                    said.extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.said()));
-                }
+                read = self.pipe.read() => self.take(read)?,
                 () = async { sleep_until(due.unwrap_or_else(Instant::now)).await }, if due.is_some() => {
                     self.flags_due = Some(Instant::now() + FLAGS);
                     self.write(b"F\r")?;

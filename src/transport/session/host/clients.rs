@@ -9,7 +9,7 @@ use tokio::task::JoinHandle;
 use tokio::time::{Instant, timeout_at};
 
 use crate::session::socket::{ReadHalf, WriteHalf};
-use crate::session::wire::{Change, Control, Frame, Peer, Reader};
+use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
 
 /// What came from whom; `None` when he has gone.
 pub type Letter = (u64, Option<Frame>);
@@ -30,8 +30,8 @@ pub struct Client {
     pid: Option<u32>,
     /// What it says it is; `None` before its hello.
     name: Option<(u32, String)>,
-    /// Whether the robot moves on if it dies.
-    pub leaves_motion: bool,
+    /// What it comes for.
+    pub purpose: Purpose,
     /// Whether it said that it leaves.
     pub has_left: bool,
     /// What the device is shown if it dies.
@@ -60,7 +60,7 @@ impl Client {
             outbox,
             pid,
             name: None,
-            leaves_motion: false,
+            purpose: Purpose::Any,
             has_left: false,
             will: None,
             since: now,

@@ -229,7 +229,7 @@ impl Images {
                     self.show();
                     return Happening::Reopened;
                 }
-                Event::Shown(_) | Event::Timeout => {}
+                Event::Shown(_) | Event::Denied | Event::Timeout => {}
             }
         }
     }

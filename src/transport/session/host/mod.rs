@@ -5,19 +5,24 @@ pub mod held;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
+use std::time::Duration;
 
 use futures_util::future::join_all;
 use tokio::sync::mpsc;
-use tokio::time::Instant;
+use tokio::time::{Instant, sleep_until};
 
 use self::clients::{Client, Letter, milliseconds};
 use self::held::{Happening, Held};
 use super::place::Claim;
 use super::socket::{Listener, ReadHalf, WriteHalf};
-use super::wire::{Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Status, VERSION, Welcome, short};
+use super::wire::{
+    Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, short,
+};
 
 /// Letters that wait before clients must.
 const LETTERS: usize = 64;
+/// How long the line is kept for who stops the robot.
+const STOP_FIRST: Duration = Duration::from_secs(10);
 /// Clients at a time.
 const MOST_CLIENTS: usize = 64;
 
@@ -44,10 +49,12 @@ pub struct Host {
     reopenings: u32,
     /// Where what happens is told.
     say: Box<dyn FnMut(&str)>,
-    /// What clients may send; anything, if there is none.
-    guard: Option<Guard>,
+    /// What clients may send to a robot that is read-only; anything, if there is none.
+    lock: Option<Lock>,
     /// Stops the robot when the client that moved it has died; is given the reason.
-    stop: Box<dyn FnMut(&str)>,
+    stop: Option<Stop>,
+    /// Until when nobody but who stops the robot gets the line.
+    stop_first: Option<Instant>,
     /// Whether the link went down while a client moved the robot.
     was_lost_in_motion: bool,
 }
@@ -59,6 +66,17 @@ pub struct Guard {
     pub sends: fn(&[u8]) -> bool,
     /// Whether after the first image the second one may be shown.
     pub shows: fn(&[u8], &[u8]) -> bool,
+}
+
+/// Stops the robot; the text says why.
+type Stop = Box<dyn FnMut(&str)>;
+
+/// Keeps a robot that is, or becomes, read-only from changes.
+struct Lock {
+    guard: Guard,
+    is_closed: bool,
+    /// Whether it must be closed now.
+    must_close: Box<dyn FnMut() -> Result<bool, String>>,
 }
 
 impl Host {
@@ -83,23 +101,25 @@ impl Host {
             began: Instant::now(),
             reopenings: 0,
             say: Box::new(say),
-            guard: None,
-            stop: Box::new(|_| {}),
+            lock: None,
+            stop: None,
+            stop_first: None,
             was_lost_in_motion: false,
         })
     }
 
-    /// Lets only through what this allows.
+    /// Lets only through what this allows from the first time on that `is_read_only` says yes: what would change
+    /// something asks it, and a yes holds as long as the session. A no that it cannot give is an error in words.
     #[must_use]
-    pub fn guarded(self, guard: Guard) -> Self {
-        Self { guard: Some(guard), ..self }
+    pub fn guarded(self, guard: Guard, is_read_only: impl FnMut() -> Result<bool, String> + 'static) -> Self {
+        Self { lock: Some(Lock { guard, is_closed: false, must_close: Box::new(is_read_only) }), ..self }
     }
 
     /// Has `stop` stop the robot when a client that moved it has died, or when the link is open again that was lost in a
     /// motion.
     #[must_use]
     pub fn stopped_by(self, stop: impl FnMut(&str) + 'static) -> Self {
-        Self { stop: Box::new(stop), ..self }
+        Self { stop: Some(Box::new(stop)), ..self }
     }
 
     /// Serves until a client has it end. The future may be dropped: [`Host::end`] goes on from there.
@@ -113,6 +133,10 @@ impl Host {
                 }
                 Ok(connection) = self.listener.accept() => self.accept(connection),
                 happening = self.held.next() => self.happened(happening),
+                () = sleep_until(self.stop_first.unwrap_or_else(Instant::now)), if self.stop_first.is_some() => {
+                    self.stop_first = None;
+                    self.next_in_queue();
+                }
             }
         }
     }
@@ -165,7 +189,7 @@ impl Host {
             Frame::Control(Control::Motion) => self.claim_motion(id),
             Frame::Control(Control::Renew(channel)) => self.held.renew(id, channel),
             Frame::Show(change) if !self.may_show(&change) => self.refuse(id),
-            Frame::Data { bytes, .. } if self.guard.is_some_and(|guard| !(guard.sends)(&bytes)) => self.refuse(id),
+            Frame::Data { bytes, .. } if !self.passes(|guard| (guard.sends)(&bytes)) => self.refuse(id),
             Frame::Show(change) => {
                 let has_line = self.line == Some(id);
                 let changed = self.held.images().and_then(|images| {
@@ -198,10 +222,26 @@ impl Host {
     }
 
     fn may_show(&mut self, change: &Change) -> bool {
-        let (Some(guard), Some(images)) = (self.guard, self.held.images()) else { return true };
-        let mut after = images.shown.clone();
+        let Some(before) = self.held.images().map(|images| images.shown.clone()) else { return true };
+        let mut after = before.clone();
         change.apply(&mut after);
-        (guard.shows)(&images.shown, &after)
+        self.passes(|guard| (guard.shows)(&before, &after))
+    }
+
+    /// Whether what a client sends may pass: reads and stops always, anything else where the robot is not read-only.
+    fn passes(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
+        let Some(lock) = &mut self.lock else { return true };
+        if is_harmless(&lock.guard) {
+            return true;
+        }
+        if !lock.is_closed {
+            match (lock.must_close)() {
+                Ok(false) => {}
+                Ok(true) => lock.is_closed = true,
+                Err(why) => (self.say)(&why),
+            }
+        }
+        !lock.is_closed
     }
 
     /// What a client wants to send is not for a device that is only to be read.
@@ -210,7 +250,10 @@ impl Host {
             let by = client.peer(client.since);
             (self.say)(&format!("client {} was refused: the robot is read-only ({})", by.pid, by.command));
         }
-        self.break_to(id, &io::Error::new(io::ErrorKind::PermissionDenied, "the session is of a read-only robot"));
+        let shown = self.held.images().map(|images| images.shown.clone());
+        if let Some(client) = self.clients.get(&id) {
+            client.tell(Control::Denied { shown });
+        }
     }
 
     fn break_to(&self, id: u64, error: &io::Error) {
@@ -248,7 +291,7 @@ impl Host {
             return;
         }
         client.named(hello.pid, short(&hello.command));
-        client.leaves_motion = hello.leaves_motion;
+        client.purpose = hello.purpose;
         client.tell(Control::Welcome(Box::new(welcome)));
     }
 
@@ -264,12 +307,21 @@ impl Host {
             client.tell(Control::Queued(holder.peer(holder.line_since)));
         }
         self.queue.retain(|(other, _)| *other != id);
-        self.queue.push_back((id, take));
+        if self.is_stop(id) {
+            self.queue.push_front((id, take));
+        } else {
+            self.queue.push_back((id, take));
+        }
         self.next_in_queue();
     }
 
     fn next_in_queue(&mut self) {
         while self.line.is_none() {
+            // Who stops the robot stands in front.
+            let first = self.queue.front().map(|(id, _)| *id);
+            if self.stop_first.is_some() && !first.is_some_and(|id| self.is_stop(id)) {
+                return;
+            }
             let Some((id, take)) = self.queue.pop_front() else { return };
             let Some(client) = self.clients.get_mut(&id) else { continue };
             self.line = Some(id);
@@ -280,6 +332,24 @@ impl Host {
                 client.tell(Control::Lost(why.to_owned()));
             }
         }
+    }
+
+    /// Whether a client has come to stop the robot.
+    fn is_stop(&self, id: u64) -> bool {
+        self.clients.get(&id).is_some_and(|client| client.purpose == Purpose::Stop)
+    }
+
+    /// Has the robot stopped before anybody else gets the line; who has it loses it.
+    fn stop_before_all(&mut self, why: &str) {
+        let Some(stop) = &mut self.stop else { return };
+        stop(why);
+        self.stop_first = Some(Instant::now() + STOP_FIRST);
+        if let Some(id) = self.line.filter(|id| !self.is_stop(*id)) {
+            self.break_to(id, &io::Error::new(io::ErrorKind::NotConnected, "the robot is being stopped first"));
+            self.held.pause(id);
+            self.line = None;
+        }
+        self.next_in_queue();
     }
 
     /// A client does not want the line any more, or cannot have it.
@@ -315,7 +385,8 @@ impl Host {
         let died = client.is_named() && !client.has_left;
         let leaves = self.line == Some(id) && self.held.images().is_some_and(|images| !images.is_clear());
         let by = client.peer(client.since);
-        let mut orphans = died && self.motion == Some(id) && !client.leaves_motion && self.may_be_moving(leaves);
+        let mut orphans =
+            died && self.motion == Some(id) && client.purpose != Purpose::LeavesMotion && self.may_be_moving(leaves);
         if died {
             let mut what = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
@@ -339,10 +410,14 @@ impl Host {
             self.motion = None;
         }
         self.held.forget(id);
-        self.release(id);
         if orphans {
-            (self.stop)("the client that moved the robot has died");
+            self.stop_before_all("the client that moved the robot has died");
         }
+        if client.purpose == Purpose::Stop {
+            self.stop_first = None;
+        }
+        self.release(id);
+        self.next_in_queue();
     }
 
     /// Whether what the mover began may move on: of images it is known, by the command that is left there.
@@ -420,7 +495,7 @@ impl Host {
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
                 // A device that loses the link of its images stops by itself.
                 self.was_lost_in_motion |=
-                    mover.is_some_and(|mover| !mover.leaves_motion) && self.held.images().is_none();
+                    mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.held.images().is_none();
                 if self.leftover.take().is_some() {
                     (self.say)("what a client had left under way went with it");
                 }
@@ -430,7 +505,7 @@ impl Host {
                 self.reopenings = self.reopenings.saturating_add(1);
                 (self.say)("the link is open again");
                 if std::mem::take(&mut self.was_lost_in_motion) {
-                    (self.stop)("the link was lost while a client moved the robot");
+                    self.stop_before_all("the link was lost while a client moved the robot");
                 }
                 if let Some(images) = self.held.images() {
                     let (generation, shown) = (images.generation, images.shown.clone());

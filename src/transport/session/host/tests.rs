@@ -2,16 +2,20 @@
 
 use std::collections::VecDeque;
 use std::path::Path;
+use std::pin::Pin;
 use std::time::Duration;
 
+use tokio::io::AsyncReadExt as _;
 use tokio::time::Instant;
 
-use super::held::{Datagrams, Held, Images, Rules};
+use super::held::{Datagrams, Held, Images, Line, Opened, Rules};
 use super::*;
 use crate::image::{Event, ImageLink, ImagePeer};
 use crate::session::client::{Attached, Found, SessionBusy, attach_at, status};
 use crate::session::place::Spot;
 use crate::sim;
+use crate::stream::Stream;
+use crate::tcp::Tcp;
 
 /// Shows what it is shown.
 #[derive(Debug, Default)]
@@ -73,7 +77,7 @@ fn host(folder: &Path, held: Held) -> (Host, Spot) {
 }
 
 async fn client(spot: &Spot, name: &str) -> Box<Attached> {
-    match attach_at(spot, "key", name, false).await.unwrap() {
+    match attach_at(spot, "key", name, Purpose::Any).await.unwrap() {
         Found::Session(attached) => attached,
         found => panic!("{found:?}"),
     }
@@ -212,14 +216,14 @@ async fn the_end_is_told_to_everybody() {
     };
     assert_eq!((lost.to_string().as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
     assert!(matches!(link.take(soon()).await, Err(SessionBusy::Ended(_))));
-    assert!(matches!(attach_at(&spot, "key", "late", false).await.unwrap(), Found::Nothing));
+    assert!(matches!(attach_at(&spot, "key", "late", Purpose::Any).await.unwrap(), Found::Nothing));
 }
 
 #[tokio::test]
 async fn a_client_for_another_device_is_sent_away() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, spot) = host(folder.path(), images());
-    let refused = served(&mut host, attach_at(&spot, "other", "wrong", false)).await;
+    let refused = served(&mut host, attach_at(&spot, "other", "wrong", Purpose::Any)).await;
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
 
@@ -287,11 +291,58 @@ async fn a_client_of_another_version_is_refused_with_a_word() {
             key: "key".to_owned(),
             pid: 1,
             command: "armctl".to_owned(),
-            leaves_motion: false,
+            purpose: Purpose::Any,
         };
         let told = told(&spot, &[Control::Hello(hello)]).await;
         let [Frame::Control(Control::Refused(why))] = &told[..] else { panic!("{told:?}") };
         assert!(why.contains("another version"), "{why}");
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let device = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let port = device.local_addr().unwrap().port();
+    let open = move || -> Pin<Box<dyn Future<Output = Opened>>> {
+        Box::pin(async move {
+            let opened = Tcp::open("127.0.0.1", port, soon()).await;
+            opened.map(Stream::Tcp).map_err(|error| error.to_string())
+        })
+    };
+    let stream = open().await.unwrap();
+    let (mut line, _) = device.accept().await.unwrap();
+    let (host, spot) = host(folder.path(), Held::Stream(Line::new(stream, open)));
+    let (ordered, mut orders) = mpsc::unbounded_channel();
+    let mut host = host.stopped_by(move |why| ordered.send(why.to_owned()).unwrap());
+    served(&mut host, async {
+        let (mut mover, mut reader) = (client(&spot, "mover").await, client(&spot, "reader").await);
+        mover.claim_motion().await.unwrap();
+        mover.take(soon()).await.unwrap();
+        mover.send(0, b"go").await.unwrap();
+        line.read_exact(&mut [0; 2]).await.unwrap();
+        // Somebody waits for the line when it is lost; the stop comes last.
+        let read = async {
+            reader.take(soon()).await.unwrap();
+            reader.send(0, b"read").await.unwrap();
+        };
+        let stop = async {
+            drop(line);
+            let (mut line, _) = device.accept().await.unwrap();
+            assert!(orders.recv().await.unwrap().contains("the link was lost"));
+            mover.over();
+            let Found::Session(mut stop) = attach_at(&spot, "key", "stop", Purpose::Stop).await.unwrap() else {
+                panic!("the session is there")
+            };
+            stop.take(soon()).await.unwrap();
+            stop.send(0, b"stop").await.unwrap();
+            stop.leave().await;
+            let mut heard = [0; 8];
+            line.read_exact(&mut heard).await.unwrap();
+            assert_eq!(&heard, b"stopread");
+        };
+        tokio::join!(read, stop);
     })
     .await;
 }

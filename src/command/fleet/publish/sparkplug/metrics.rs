@@ -7,8 +7,8 @@ use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 
 use super::super::Kind;
 use super::super::also::Also;
-use crate::command::face::sample::Alarm;
 use crate::command::fleet::poll::Look;
+use crate::command::robot::state::Mode;
 
 /// Most metrics of one line of `--also`.
 const MOST: usize = 2000;
@@ -30,19 +30,20 @@ const UNITS: [(&str, &str); 9] = [
 
 /// All metrics of a look, of these kinds and lines.
 pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
-    let line = &look.sample.line;
+    let line = &look.sample.line.state;
     let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
     let flag = |flag: Option<bool>| flag.map(Value::BooleanValue);
     let mut metrics = Vec::new();
     for kind in kinds {
         match kind {
             Kind::Status => metrics.extend([
-                metric("status/mode", DataType::String, text(line.mode)),
+                metric("status/mode", DataType::String, text(line.mode.map(Mode::name))),
+                metric("status/controller_mode", DataType::String, text(line.controller_mode)),
                 metric("status/servo_on", DataType::Boolean, flag(line.servo_on)),
                 metric("status/running", DataType::Boolean, flag(line.running)),
                 metric("status/held", DataType::Boolean, flag(line.held)),
-                metric("status/alarm", DataType::Boolean, flag(line.alarm)),
-                metric("status/error", DataType::Boolean, flag(line.error)),
+                metric("status/homed", DataType::Boolean, flag(line.homed)),
+                metric("status/emergency_stop", DataType::Boolean, flag(line.emergency_stop)),
                 metric("status/faulted", DataType::Boolean, flag(line.fault.faulted)),
                 metric("status/fault_code", DataType::String, text(line.fault.fault_code.as_deref())),
                 metric("status/fault_text", DataType::String, text(line.fault.fault_text.as_deref())),
@@ -50,7 +51,7 @@ pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
             Kind::Alarms => {
                 let alarms = &look.sample.alarms;
                 let count = u32::try_from(alarms.len()).unwrap_or(u32::MAX);
-                let codes = alarms.iter().map(|alarm| alarm.code.as_str()).filter(|code| *code != Alarm::UNREADABLE);
+                let codes = alarms.iter().filter_map(|alarm| alarm.code.as_deref());
                 let codes = codes.collect::<Vec<_>>().join(",");
                 metrics.extend([
                     metric("alarms/count", DataType::Int32, Some(Value::IntValue(count))),

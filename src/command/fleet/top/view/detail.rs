@@ -5,9 +5,10 @@ use ratatui::style::{Modifier, Style};
 
 use super::chart::{self, Chart};
 use super::{answer, pace};
-use crate::command::face::sample::{Alarm, Axis, Bank, Indicator, Sample, Whole};
+use crate::command::face::sample::{Axis, Bank, Indicator, Sample, Whole};
 use crate::command::fleet::top::model::{Contact, Model, Moment, Seen};
 use crate::command::fleet::top::track::Track;
+use crate::command::robot::alarm::Alarm;
 use crate::output::painter::{Painter, after, line_of, width, wrapped};
 use crate::output::view::Tone;
 
@@ -125,10 +126,11 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
         return 1;
     }
     let mut taken = 0;
-    for Alarm { code, text, remedy } in &sample.alarms {
+    for Alarm { code, text, remedy, .. } in &sample.alarms {
         let place = line_of(area, taken);
+        let [code, text] = [code, text].map(|told| told.as_deref().unwrap_or("?"));
         let columns = painter.parts(place, &[(" ", bad), (code, bad), ("  ", bad), (text, bad)]);
-        if !remedy.is_empty() {
+        if let Some(remedy) = remedy {
             painter.parts(after(place, columns + 2), &[(remedy, Style::new())]);
         }
         taken += 1;

@@ -193,13 +193,13 @@ impl Column {
         let (text, style) = match self {
             Self::Name => (seen.name.as_str(), Style::new()),
             Self::Family => (seen.family.name(), palette.quiet()),
-            Self::Mode => line.and_then(|line| line.mode).map_or(dash, |mode| (mode, plain)),
-            Self::Servo => match line.and_then(|line| line.servo_on) {
+            Self::Mode => line.and_then(|line| line.state.controller_mode).map_or(dash, |mode| (mode, plain)),
+            Self::Servo => match line.and_then(|line| line.state.servo_on) {
                 Some(true) => ("on", toned(Tone::Good)),
                 Some(false) => ("off", plain),
                 None => dash,
             },
-            Self::State => match line.map(|line| (line.held, line.running)) {
+            Self::State => match line.map(|line| (line.state.held, line.state.running)) {
                 Some((Some(true), _)) => ("hold", toned(Tone::Warning)),
                 Some((_, Some(true))) => ("running", toned(Tone::Good)),
                 Some((_, Some(false))) => ("stopped", plain),
@@ -226,7 +226,7 @@ impl Column {
 /// Three coordinates, each in a column of its own.
 fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
     let Some(sample) = seen.sample() else { return painter.right(place, "-", painter.palette.quiet()) };
-    let Some(at) = sample.line.position else {
+    let Some(at) = sample.line.state.position else {
         let why = if sample.line.not_asked.is_some() { "not asked" } else { "-" };
         return painter.right(place, why, painter.palette.quiet());
     };

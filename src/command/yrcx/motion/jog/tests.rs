@@ -19,7 +19,7 @@ fn ends(scans: u32, head: &[u16]) -> Reply {
 fn it_goes_on_for_its_time_and_tells_where_it_stands() {
     let (outcome, peer) = run_on(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]), &TWO_SECONDS);
     let report = outcome.unwrap();
-    assert_eq!(report["position_pulses"], serde_json::json!([12345, -123, 2000, 0]));
+    assert_eq!(report["position"]["text"], "--pulse 12345,-123,2000,0");
     let elapsed = report["elapsed_ms"].as_u64().unwrap();
     assert!((2000..2030).contains(&elapsed), "{elapsed} ms");
     assert_eq!(peer.bits, [REST, HELD, REST]);
@@ -63,7 +63,7 @@ fn an_end_by_itself_is_told_as_it_is() {
     assert_eq!(outcome.unwrap_err().code.as_deref(), Some("12.400"));
     // With the normal end that the manual has a layout for.
     let (outcome, _) = run_on(Scripted::new([ends(100, &[0x0200, 0, 0, 0, 5])]), &TWO_SECONDS);
-    assert_eq!(outcome.unwrap()["position_pulses"][0], 5);
+    assert_eq!(outcome.unwrap()["position"]["joints"][0]["pulses"], 5);
 }
 
 #[test]

@@ -376,6 +376,7 @@ fn a_motion_that_does_not_end_keeps_the_stop_input_off() {
     world.interrupt = Some(500);
     let outcome = world.run();
     assert_eq!(outcome.ended, Ended::OutcomeUnknown(Silence::Interrupted));
+    assert!(world.now <= 3500, "it is told within 3 s: {}", world.now);
     assert!(outcome.stop_held);
     assert!(!input::STOP.is_on(&world.output.next));
 }

@@ -1,0 +1,132 @@
+//! Verbs that every family has: `armctl alarm history`, `alarm reset`, `stop`. Each robot gets the command of its family,
+//! and reports have the keys that all families share.
+
+use clap::Args;
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
+
+use super::declared::Declaration;
+use crate::command::frame::command::AnyContext;
+use crate::command::frame::connection;
+use crate::command::{AnyCommand, Command, ConnectMode, Driver, Outcome, Report};
+use crate::failure::Failure;
+use crate::gate::Intent;
+use crate::output::csv::RowsOf;
+use crate::output::view::View;
+use crate::settings::Robot;
+
+/// Which of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SharedVerb {
+    /// `armctl alarm history`.
+    AlarmHistory,
+    /// `armctl alarm reset`.
+    AlarmReset,
+    /// `armctl stop`.
+    Stop,
+    /// `armctl position`.
+    Position,
+}
+
+/// What a family reports of such a verb, as all families report it.
+pub trait Alike {
+    /// The keys that all share.
+    type Core: Report + 'static;
+
+    /// The report without what is the family's own.
+    fn core(&self) -> Self::Core;
+}
+
+/// The command of a family for such a verb, as it is without arguments.
+pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
+    match verb {
+        SharedVerb::AlarmHistory => Box::new(Reduced(usual::<F::AlarmHistory>())),
+        SharedVerb::AlarmReset => Box::new(Reduced(usual::<F::AlarmReset>())),
+        SharedVerb::Stop => Box::new(Reduced(F::stop_command())),
+        SharedVerb::Position => Box::new(Reduced(usual::<F::Position>())),
+    }
+}
+
+/// A command as it is without arguments.
+///
+/// # Panics
+/// If it takes arguments that have no default, which a test rules out.
+pub fn usual<C: Args>() -> C {
+    // The position of a YRCX takes notice of this flag of all commands.
+    let until = clap::Arg::new("until").long("until").global(true);
+    let command = C::augment_args(clap::Command::new("usual").arg(until));
+    let matches = command.try_get_matches_from(["usual"]).and_then(|matches| C::from_arg_matches(&matches));
+    matches.expect("a command that needs no arguments; a test holds that")
+}
+
+/// A command whose report is reduced to what all families share.
+struct Reduced<C>(C);
+
+impl<C: Command<Report: Alike>> AnyCommand for Reduced<C> {
+    fn id(&self) -> &'static str {
+        C::ID
+    }
+
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        AnyCommand::intent(&self.0, robot)
+    }
+
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Some(connection::driver::<C::Family>())
+    }
+
+    fn connect_mode(&self, _robot: &Robot) -> ConnectMode {
+        Command::connect_mode(&self.0)
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        async move {
+            let several = context.several;
+            let report = Command::run(&self.0, context.of()?).await?;
+            let core = report.core();
+            // One robot alone is shown as its family shows it.
+            let view = if several { core.view() } else { report.view() };
+            Ok(Box::new(Core { core, view, failure: report.failure() }) as Box<_>)
+        }
+        .boxed_local()
+    }
+}
+
+/// What all families share of a report, with the view and the failure of the whole.
+struct Core<R> {
+    core: R,
+    view: View,
+    failure: Option<Failure>,
+}
+
+impl<R: Serialize> Serialize for Core<R> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.core.serialize(serializer)
+    }
+}
+
+impl<R: JsonSchema> JsonSchema for Core<R> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        R::schema_name()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        R::json_schema(generator)
+    }
+}
+
+impl<R: Report> Report for Core<R> {
+    fn view(&self) -> View {
+        self.view.clone()
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        self.failure.clone()
+    }
+
+    fn rows(&self) -> RowsOf {
+        self.core.rows()
+    }
+}

@@ -1,0 +1,167 @@
+//! Limiter of repeated log lines: what a robot or a broker repeats is counted, and printed now and then with its count.
+
+use std::collections::HashMap;
+use std::time::{Duration, Instant};
+
+use crate::output::log::Level;
+use crate::settings::duration;
+
+/// Time in which repeated lines are counted.
+const WINDOW: Duration = Duration::from_secs(600);
+/// Lines of one kind that are printed in that time, before the others are only counted.
+const BURST: u32 = 5;
+/// Kinds of lines of one peer that are told apart; others count as one kind. A peer may choose the words of its errors.
+const KINDS: usize = 16;
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Line {
+    /// Its priority.
+    pub level: Level,
+    /// Its text.
+    pub text: String,
+    /// Names and values for the journal.
+    pub fields: Vec<(String, String)>,
+}
+
+impl Line {
+    /// A line with these fields.
+    pub fn new(level: Level, text: &str, fields: &[(&str, &str)]) -> Self {
+        let fields = fields.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
+        Self { level, text: text.to_owned(), fields: fields.collect() }
+    }
+
+    /// The robot or broker that it is about.
+    fn peer(&self) -> Option<&(String, String)> {
+        self.fields.iter().find(|(name, _)| name == "robot" || name == "broker")
+    }
+}
+
+/// Lines of one kind.
+#[derive(Debug)]
+struct Seen {
+    since: Instant,
+    printed: u32,
+    /// The last one that was not printed, when, and how many there were.
+    held: Option<(Line, Instant, u64)>,
+}
+
+/// The limiter: takes lines, and says which of them to print.
+#[derive(Debug, Default)]
+pub struct Repeats {
+    /// By peer, and by text with every number as `#`.
+    seen: HashMap<(String, String), HashMap<String, Seen>>,
+}
+
+impl Repeats {
+    /// Whether this line is to be printed now. Lines about this machine always are.
+    pub fn admits(&mut self, line: &Line, now: Instant) -> bool {
+        let Some(peer) = line.peer() else { return true };
+        let kinds = self.seen.entry(peer.clone()).or_default();
+        let mut kind = shape(&line.text);
+        if !kinds.contains_key(&kind) && kinds.len() >= KINDS {
+            kind.clear();
+        }
+        let seen = kinds.entry(kind).or_insert(Seen { since: now, printed: 0, held: None });
+        if seen.printed < BURST {
+            seen.printed += 1;
+            return true;
+        }
+        let count = seen.held.as_ref().map_or(0, |(_, _, count)| *count);
+        seen.held = Some((line.clone(), now, count.saturating_add(1)));
+        false
+    }
+
+    /// Summaries that are due, in the order in which their last lines came: so the last word about a peer is true.
+    /// At the end of the service all are due.
+    pub fn due(&mut self, now: Instant, is_end: bool) -> Vec<Line> {
+        let mut due = Vec::new();
+        for kinds in self.seen.values_mut() {
+            kinds.retain(|_, seen| {
+                let age = now.saturating_duration_since(seen.since);
+                if age < WINDOW && !is_end {
+                    return true;
+                }
+                let Some((mut line, at, count)) = seen.held.take() else { return false };
+                let times = if count == 1 { "once more".to_owned() } else { format!("{count} more times") };
+                let age = duration::display(Duration::from_secs(age.as_secs()));
+                line.text = format!("{} ({times} in {age})", line.text);
+                due.push((at, line));
+                // It goes on: one summary for each window from here on.
+                (seen.since, seen.printed) = (now, BURST);
+                true
+            });
+        }
+        self.seen.retain(|_, kinds| !kinds.is_empty());
+        due.sort_by_key(|(at, _)| *at);
+        due.into_iter().map(|(_, line)| line).collect()
+    }
+}
+
+/// The text with each number as `#`: pauses and counts differ in lines that say the same.
+fn shape(text: &str) -> String {
+    /// Characters that tell kinds of lines apart.
+    const LONGEST: usize = 200;
+
+    let mut shape = String::new();
+    for letter in text.chars().take(LONGEST) {
+        match letter {
+            '0'..='9' if shape.ends_with('#') => {}
+            '0'..='9' => shape.push('#'),
+            letter => shape.push(letter),
+        }
+    }
+    shape
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(text: &str) -> Line {
+        Line::new(Level::Warning, text, &[("broker", "mqtt://b:1883")])
+    }
+
+    #[test]
+    fn repeated_lines_are_counted_and_the_last_one_is_printed_with_the_count() {
+        let (mut repeats, start) = (Repeats::default(), Instant::now());
+        let printed = (0..1000).filter(|number| repeats.admits(&line(&format!("again in {number}.1s")), start));
+        assert_eq!(printed.count(), 5);
+        assert!(repeats.admits(&line("connected"), start), "other lines are not held");
+        assert!(repeats.due(start + WINDOW / 2, false).is_empty());
+        let due = repeats.due(start + WINDOW, false);
+        let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
+        assert_eq!(texts, ["again in 999.1s (995 more times in 10m)"]);
+        // It goes on: the next one waits for the next summary. Once it has been quiet for a window, it is forgotten.
+        assert!(!repeats.admits(&line("again in 7.0s"), start + WINDOW));
+        assert_eq!(repeats.due(start + WINDOW * 2, false)[0].text, "again in 7.0s (once more in 10m)");
+        assert!(repeats.due(start + WINDOW * 3, false).is_empty());
+        assert!(repeats.admits(&line("again in 8.0s"), start + WINDOW * 3));
+    }
+
+    #[test]
+    fn the_end_prints_what_is_held_in_the_order_in_which_it_came() {
+        let (mut repeats, start) = (Repeats::default(), Instant::now());
+        for number in 0..20 {
+            for (offset, text) in [(0, "lost"), (1, "back")] {
+                repeats.admits(&line(text), start + Duration::from_secs(number * 2 + offset));
+            }
+        }
+        let due = repeats.due(start + Duration::from_secs(60), true);
+        let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
+        assert_eq!(texts, ["lost (15 more times in 1m)", "back (15 more times in 59s)"]);
+    }
+
+    #[test]
+    fn a_peer_that_chooses_the_words_is_bounded_and_holds_up_no_other() {
+        let (mut repeats, now) = (Repeats::default(), Instant::now());
+        let word = |number: usize| "abcdefghij".chars().cycle().skip(number % 10).take(number).collect::<String>();
+        let printed = (0..500).filter(|number| repeats.admits(&line(&word(*number)), now)).count();
+        assert!(printed <= (KINDS + 1) * usize::try_from(BURST).unwrap(), "{printed}");
+        assert!(repeats.seen.values().all(|kinds| kinds.len() <= KINDS + 1));
+        let other = Line::new(Level::Warning, "no answer", &[("robot", "cell3")]);
+        assert!(repeats.admits(&other, now));
+        let own = Line::new(Level::Warning, "robots.toml:1: error", &[("kind", "usage")]);
+        assert!((0..100).all(|_| repeats.admits(&own, now)), "what a person changes here is always said");
+    }
+}

@@ -1,0 +1,49 @@
+//! What the inventory says of a robot while a session is open.
+
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use crate::settings::inventory::{Inventory, Location};
+use crate::settings::{Robot, Sources};
+
+/// The entry of a robot, read again whenever the file has changed. Once it is read-only it stays so.
+pub struct WatchedEntry {
+    robot: Robot,
+    /// What tells the version of the file that was read from the next one.
+    version: Option<(SystemTime, u64)>,
+}
+
+impl WatchedEntry {
+    pub fn new(robot: &Robot) -> Self {
+        Self { robot: robot.clone(), version: None }
+    }
+
+    /// Whether the robot is read-only by now.
+    ///
+    /// # Errors
+    /// In words, when the file cannot be read; once for each version of it.
+    pub fn is_read_only(&mut self) -> Result<bool, String> {
+        let Some(path) = self.robot.inventory.clone().filter(|_| !self.robot.read_only.value) else {
+            return Ok(self.robot.read_only.value);
+        };
+        let file = std::fs::metadata(&path).ok();
+        let version = file.and_then(|file| Some((file.modified().ok()?, file.len())));
+        if version != self.version {
+            self.version = version;
+            self.update(path)?;
+        }
+        Ok(self.robot.read_only.value)
+    }
+
+    fn update(&mut self, path: PathBuf) -> Result<(), String> {
+        // A file that is gone says nothing new.
+        let inventory = Inventory::load(&Location::Usual(path)).map_err(|failure| {
+            format!("whether {} is read-only could not be read again: {failure}", self.robot.name)
+        })?;
+        let sources = Sources { inventory, ..Sources::default() };
+        self.robot.read_only.value =
+            sources.read_only(self.robot.family).any(|(_, entry)| entry.name == self.robot.name);
+        sources.bind(&mut self.robot);
+        Ok(())
+    }
+}

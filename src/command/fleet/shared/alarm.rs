@@ -1,0 +1,107 @@
+//! `armctl alarm list|history|reset`: alarms of robots of any family.
+
+use clap::{Args, Subcommand};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Shared;
+use crate::command::face::shared::SharedVerb;
+use crate::command::fleet::status::{Fleet, Link};
+use crate::command::frame::orders::Done;
+use crate::command::robot::alarm::AllAlarms;
+use crate::command::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
+use crate::failure::Failure;
+use crate::output::envelope::Envelope;
+use crate::output::view::View;
+use crate::settings::alarms;
+
+/// Alarms of all robots.
+#[derive(Debug, Subcommand)]
+pub enum Alarm {
+    /// Show the present alarms of robots
+    List(List),
+    /// Alarm history, the latest first
+    History,
+    /// Reset the alarms of robots
+    Reset,
+}
+
+impl Alarm {
+    /// Whether it only reads, so that all robots are meant where none is named.
+    pub fn reads(&self) -> bool {
+        !matches!(self, Self::Reset)
+    }
+
+    /// As a command for robots.
+    pub fn command(&self) -> Box<dyn AnyCommand> {
+        match self {
+            Self::List(_) => Box::new(List {}),
+            Self::History => Box::new(Shared::new("alarm.history", SharedVerb::AlarmHistory)),
+            Self::Reset => Box::new(Shared::new("alarm.reset", SharedVerb::AlarmReset)),
+        }
+    }
+}
+
+/// The schemas of what is reported.
+pub fn schemas() -> [SchemaEntry; 3] {
+    [
+        SchemaEntry::of::<Present>("alarm.list"),
+        SchemaEntry::of::<AllAlarms>("alarm.history"),
+        SchemaEntry::of::<Done>("alarm.reset"),
+    ]
+}
+
+/// The alarms that are present. What takes command of a controller is not asked: which alarm a YRCX has, without a
+/// session.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "`armctl explain FAMILY CODE` says more of a code; `armctl FAMILY alarm list` all that the controller tells."
+)]
+pub struct List {}
+
+impl Command for List {
+    type Family = Fleet;
+    type Report = Present;
+    const ID: &'static str = "alarm.list";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
+
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<Present, Failure> {
+        let Context { robot, link, several, .. } = context;
+        let found = match link {
+            Link::Open(face, connection) => face.alarms(&mut **connection).await?,
+            Link::Absent(failure) => return Err(failure.clone()),
+        };
+        let mut alarms = Vec::with_capacity(found.len());
+        for alarm in found {
+            let site = alarm.code.as_deref().map(|code| alarms::find(robot, code)).transpose()?.flatten();
+            alarms.push(alarm.with(site));
+        }
+        Ok(Present { alarms: AllAlarms::present(alarms), several })
+    }
+
+    /// `3 robots, 1 with an alarm`.
+    fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
+        let has_alarm = |envelope: &&Envelope| {
+            envelope.data.as_ref().and_then(|data| data["alarms"].as_array()).is_some_and(|alarms| !alarms.is_empty())
+        };
+        let (robots, with) = (envelopes.len(), envelopes.iter().filter(has_alarm).count());
+        let plural = if robots == 1 { "" } else { "s" };
+        Some(format!("{robots} robot{plural}, {with} with an alarm"))
+    }
+}
+
+/// The alarms that are present.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Present {
+    #[serde(flatten)]
+    alarms: AllAlarms,
+    /// Whether other robots are shown beside.
+    #[serde(skip)]
+    several: bool,
+}
+
+impl Report for Present {
+    fn view(&self) -> View {
+        if self.several { self.alarms.view() } else { self.alarms.of_one() }
+    }
+}

@@ -1,0 +1,112 @@
+//! Verbs that every family has, for robots of any: each gets the command of its family.
+
+pub mod alarm;
+
+use futures_util::future::LocalBoxFuture;
+
+use crate::command::face::shared::SharedVerb;
+use crate::command::families::{self, FAMILIES};
+use crate::command::frame::command::AnyContext;
+use crate::command::frame::orders::Done;
+use crate::command::robot::position::AllPositions;
+use crate::command::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
+use crate::failure::Failure;
+use crate::gate::Intent;
+use crate::output::Screen;
+use crate::settings::Robot;
+use crate::settings::target::{Address, Family};
+
+/// A verb that each family carries out in its own way.
+pub struct Shared {
+    id: &'static str,
+    commands: [(Family, Box<dyn AnyCommand>); FAMILIES.len()],
+}
+
+impl Shared {
+    /// Such a verb; `id` is its name in envelopes and schemas.
+    pub fn new(id: &'static str, verb: SharedVerb) -> Self {
+        Self { id, commands: FAMILIES.map(|face| (face.family(), face.shared(verb))) }
+    }
+
+    fn of(&self, robot: &Robot) -> &dyn AnyCommand {
+        let found = self.commands.iter().find(|(family, _)| *family == robot.family);
+        found.map_or(&*self.commands[0].1, |(_, command)| &**command)
+    }
+}
+
+impl AnyCommand for Shared {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+
+    fn intent(&self, robot: Option<&Robot>) -> Intent {
+        if let Some(robot) = robot {
+            return self.of(robot).intent(Some(robot));
+        }
+        let [first, rest @ ..] = &self.commands;
+        let most = |most: Intent, (_, command): &(Family, Box<dyn AnyCommand>)| {
+            let intent = command.intent(None);
+            if intent.risk > most.risk { intent } else { most }
+        };
+        rest.iter().fold(first.1.intent(None), most)
+    }
+
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Some(&PerRobot)
+    }
+
+    fn connect_mode(&self, robot: &Robot) -> ConnectMode {
+        self.of(robot).connect_mode(robot)
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        self.of(context.robot).run(context)
+    }
+}
+
+/// `armctl stop`: what stops each robot.
+pub fn stop() -> Shared {
+    Shared::new("stop", SharedVerb::Stop)
+}
+
+/// `armctl position`: where each robot stands.
+pub fn position() -> Shared {
+    Shared::new("position", SharedVerb::Position)
+}
+
+/// The schemas of what is reported.
+pub fn schemas() -> Vec<SchemaEntry> {
+    let stop = SchemaEntry::of::<Done>("stop");
+    let position = SchemaEntry::of::<AllPositions>("position");
+    alarm::schemas().into_iter().chain([position, stop]).collect()
+}
+
+/// Connects to each robot as its family does.
+struct PerRobot;
+
+impl Driver for PerRobot {
+    fn family(&self) -> Option<Family> {
+        None
+    }
+
+    fn stop(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
+        families::of(robot.family).driver().entry(robot, mode)
+    }
+
+    fn addresses(&self, robot: &Robot) -> Result<Vec<Address>, Failure> {
+        families::of(robot.family).driver().addresses(robot)
+    }
+
+    fn connect<'a>(
+        &self,
+        robot: &'a Robot,
+        access: Access,
+        screen: &'a Screen,
+    ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>> {
+        families::of(robot.family).driver().connect(robot, access, screen)
+    }
+}

@@ -1,0 +1,39 @@
+//! `armctl wait`: until robots of any family are in a state.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::command::frame::condition::Condition;
+use crate::command::frame::run::Repeat;
+use crate::failure::Failure;
+use crate::settings::duration;
+
+/// Pause between two looks.
+const EVERY: Duration = Duration::from_millis(200);
+
+/// Wait until a condition holds, of several robots for all of them, and print how they are then
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Conditions: idle, running, held, faulted, homed, servo-on; NAME=VALUE, a key of `armctl status`; or a jq \
+    filter over its JSON, which begins with a dot. For signals and variables: `armctl yerc io get clamp --until clamp=on`."
+)]
+pub struct Wait {
+    /// What is waited for: idle, servo-on, fault_code=4315, '.data.position.z_mm > 100'
+    condition: String,
+    /// How long to wait before giving up with exit code 8 [default: for ever]
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
+}
+
+impl Wait {
+    /// How `status` is repeated for it.
+    ///
+    /// # Errors
+    /// A condition that is none.
+    pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
+        let until = Some(Condition::new(&self.condition)?);
+        let every = given.every.or(Some(EVERY));
+        Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true })
+    }
+}

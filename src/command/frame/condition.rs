@@ -1,0 +1,215 @@
+//! Conditions of `wait` and `--until`: a state, `NAME=VALUE`, or a jq filter.
+
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::output::jq::Filter;
+
+/// States by their words, and the filter over an envelope that tells whether a robot is in one.
+const STATES: [(&str, &str); 6] = [
+    ("idle", ".data.running == false and .data.held != true"),
+    ("running", ".data.running == true"),
+    ("held", ".data.held == true"),
+    ("faulted", ".data.faulted == true"),
+    ("homed", ".data.homed == true"),
+    ("servo-on", ".data.servo_on == true"),
+];
+
+/// Ways to compare, the longer ones first.
+const COMPARISONS: [&str; 7] = [">=", "<=", "!=", "==", "=", ">", "<"];
+
+/// What is waited for.
+#[derive(Debug)]
+pub struct Condition {
+    /// As it was typed.
+    text: String,
+    filter: Filter,
+    /// The keys that it names, each as a path from the envelope.
+    keys: Vec<Vec<String>>,
+}
+
+impl Condition {
+    /// A condition as typed.
+    ///
+    /// # Errors
+    /// A filter that is none.
+    pub fn new(text: &str) -> Result<Self, Failure> {
+        let (filter, keys) = match meant(text) {
+            Some((filter, keys)) => (each(&filter), keys),
+            None => (text.to_owned(), paths(text)),
+        };
+        let filter = Filter::new(&filter).map_err(|failure| {
+            failure.hint("a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such as .data.held")
+        })?;
+        Ok(Self { text: text.to_owned(), filter, keys })
+    }
+
+    /// Whether it holds; of several robots, of all of them.
+    ///
+    /// # Errors
+    /// What a filter fails with.
+    pub fn holds(&self, envelopes: &Value) -> Result<bool, Failure> {
+        self.filter.is_true(envelopes)
+    }
+
+    /// What is said where it can never hold, because a report has no such key.
+    pub fn never(&self, envelopes: &Value) -> Option<String> {
+        let first = envelopes.as_array().and_then(|all| all.first()).unwrap_or(envelopes);
+        first["data"].as_object()?;
+        let missing = self.keys.iter().find(|path| !has(first, path))?;
+        let found = path_of(first, missing).map(|keys| keys.join(", ")).unwrap_or_default();
+        let place = missing.join(".");
+        Some(format!("'{}': there is no key .{place}, so that this may never be true; there are {found}", self.text))
+    }
+}
+
+impl std::fmt::Display for Condition {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// The filter that a word or `NAME=VALUE` stands for, and the keys that it needs.
+fn meant(text: &str) -> Option<(String, Vec<Vec<String>>)> {
+    let text = text.trim();
+    if let Some((_, filter)) = STATES.iter().find(|(word, _)| *word == text) {
+        return Some(((*filter).to_owned(), paths(filter)));
+    }
+    let (at, sign) = COMPARISONS.iter().filter_map(|sign| Some((text.find(sign)?, *sign))).min_by_key(|(at, _)| *at)?;
+    let (name, value) = (text[..at].trim(), text[at + sign.len()..].trim());
+    let is_name = name.starts_with(|first: char| first.is_alphabetic())
+        && name.chars().all(|one| one.is_alphanumeric() || "_-()# ".contains(one));
+    if !is_name || value.is_empty() {
+        return None;
+    }
+    let sign = if sign == "=" { "==" } else { sign };
+    let value = match value {
+        "on" | "true" => json!(true),
+        "off" | "false" => json!(false),
+        "null" => Value::Null,
+        text => text
+            .parse::<f64>()
+            .ok()
+            .and_then(|number| serde_json::from_str(text).ok().or(Some(json!(number))))
+            .unwrap_or_else(|| json!(text.trim_matches(['"', '\'']))),
+    };
+    // A key of the report; else what is called so in it.
+    let name = json!(name);
+    let told = format!(
+        "(.data | if type == \"object\" and has({name}) then [.[{name}]] else \
+         [.. | objects | select([.[] | strings] | index({name})) | if has(\"value\") then .value elif has(\"on\") then .on else empty end] end)"
+    );
+    Some((format!("{told} as $told | ($told | length) > 0 and all($told[]; . {sign} {value})"), Vec::new()))
+}
+
+/// The same of one envelope, or of each of several.
+fn each(filter: &str) -> String {
+    format!("if type == \"array\" then length > 0 and all(.[]; {filter}) else ({filter}) end")
+}
+
+/// The plain paths from `.data` that a filter names: `.data.servo_on`.
+fn paths(filter: &str) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    for (at, _) in filter.match_indices(".data.") {
+        let is_whole =
+            filter[..at].chars().next_back().is_none_or(|before| !before.is_alphanumeric() && !"_]?".contains(before));
+        let path: String =
+            filter[at + 1..].chars().take_while(|one| one.is_alphanumeric() || "_.".contains(*one)).collect();
+        let words: Vec<String> = path.split('.').filter(|word| !word.is_empty()).map(ToOwned::to_owned).collect();
+        if is_whole && !filter[at + 1 + path.len()..].starts_with(['?', '(']) {
+            found.push(words);
+        }
+    }
+    found
+}
+
+/// Whether a value has this path; what is null may have anything below it.
+fn has(value: &Value, path: &[String]) -> bool {
+    let mut value = value;
+    for key in path {
+        match value {
+            Value::Object(fields) => match fields.get(key) {
+                Some(field) => value = field,
+                None => return false,
+            },
+            _ => return true,
+        }
+    }
+    true
+}
+
+/// The keys where a path ends that is not there.
+fn path_of<'a>(value: &'a Value, path: &[String]) -> Option<Vec<&'a str>> {
+    let mut value = value;
+    for key in path {
+        match value.get(key) {
+            Some(field) => value = field,
+            None => break,
+        }
+    }
+    Some(value.as_object()?.keys().map(String::as_str).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn holds(condition: &str, envelope: &Value) -> bool {
+        Condition::new(condition).unwrap().holds(envelope).unwrap()
+    }
+
+    #[test]
+    fn words_are_states_of_every_family() {
+        let of = |running: Option<bool>, held: bool| json!({ "data": { "running": running, "held": held, "servo_on": true } });
+        assert!(holds("idle", &of(Some(false), false)) && !holds("idle", &of(Some(false), true)));
+        assert!(!holds("idle", &of(None, false)), "what is not known is not so");
+        assert!(holds("servo-on", &of(None, false)) && holds("held", &of(None, true)));
+        assert!(holds("idle", &json!([of(Some(false), false), of(Some(false), false)])));
+        assert!(!holds("idle", &json!([of(Some(false), false), of(Some(true), false)])), "all of them");
+        assert!(!holds("idle", &json!([])));
+    }
+
+    #[test]
+    fn names_are_keys_signals_and_variables() {
+        let status = json!({ "data": { "servo_on": true, "fault_code": "4315", "speed": 5 } });
+        assert!(holds("servo_on=on", &status) && holds("servo_on=true", &status) && !holds("servo_on=off", &status));
+        assert!(holds("fault_code=\"4315\"", &status) && holds("speed>=5", &status) && holds("speed != 4", &status));
+        let signals = json!({ "data": { "signals": [
+            { "signal": "SI(20)", "label": "clamp", "on": true }, { "signal": "SI(21)", "label": null, "on": false },
+        ] } });
+        assert!(holds("clamp=on", &signals) && holds("SI(21)=off", &signals) && !holds("SI(21)=on", &signals));
+        assert!(!holds("gripper=on", &signals), "what is not there");
+        let variables = json!({ "data": { "variables": [{ "variable": "B5", "value": 3 }] } });
+        assert!(holds("B5>=3", &variables) && !holds("B5>3", &variables) && holds("B5<4", &variables));
+    }
+
+    #[test]
+    fn filters_stay_what_they_are() {
+        let status = json!({ "data": { "servo_on": true, "alarms": [] } });
+        assert!(holds(".data.servo_on", &status) && holds(".data.alarms == []", &status));
+        assert!(holds(".data.servo_on and (.data.alarms | length) <= 0", &status));
+        assert!(Condition::new(".[").is_err() && Condition::new("idel").is_err());
+    }
+
+    #[test]
+    fn a_key_that_is_not_there_is_told() {
+        let status = json!({ "data": { "running": false, "position": null } });
+        let never = |condition: &str| Condition::new(condition).unwrap().never(&status);
+        let told = never(".data.executing == false").unwrap();
+        assert!(told.contains(".data.executing") && told.contains("running"), "{told}");
+        assert_eq!(never(".data.running == false"), None);
+        assert_eq!(never(".data.position.x_mm > 5"), None, "it may come");
+        assert_eq!(
+            never(".data.alarms[0].code?"),
+            Some(never(".data.alarms").unwrap().replace(".data.alarms'", ".data.alarms[0].code?'"))
+        );
+        assert_eq!(
+            never("idle"),
+            Some(
+                "'idle': there is no key .data.held, so that this may never be true; there are running, position"
+                    .to_owned()
+            )
+        );
+        assert_eq!(Condition::new("servo_on=true").unwrap().never(&status), None, "a name may be one of an item");
+    }
+}

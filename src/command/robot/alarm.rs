@@ -1,0 +1,286 @@
+//! Alarms and errors: the same keys in `alarm list` and `alarm history` of every family, in `explain`, `top` and topics.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::command::Report;
+use crate::command::face::shared::Alike;
+use crate::command::frame::items::{ItemError, ItemOutcome, verdict};
+use crate::failure::Failure;
+use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::settings::alarms::Explanation;
+
+/// An alarm or error. Null: the protocol does not tell, or nobody knows.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Alarm {
+    /// As the controller writes it: `4315`, `12.600`, `28`.
+    pub code: Option<String>,
+    /// What it says; what `alarms.toml` has for it stands first.
+    pub text: Option<String>,
+    /// An alarm, an error or a warning.
+    pub kind: Option<Kind>,
+    /// The family's own level.
+    pub severity: Option<&'static str>,
+    /// When, as the controller tells it.
+    pub time: Option<String>,
+    /// What usually causes it.
+    pub cause: Option<String>,
+    /// What to do.
+    pub remedy: Option<String>,
+    /// Whose words these are.
+    pub source: Source,
+}
+
+/// What an entry of a list of alarms is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// An alarm (yerc, yrcx).
+    Alarm,
+    /// An error (toyo).
+    Error,
+    /// A warning (yrcx).
+    Warning,
+}
+
+/// Whose words explain an alarm.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// The controller's own.
+    #[default]
+    Controller,
+    /// Those of the operator: `alarms.toml`.
+    Site,
+    /// Those of this program.
+    Armctl,
+}
+
+impl Alarm {
+    /// With what `alarms.toml` says of it: its words before others.
+    #[must_use]
+    pub fn with(self, site: Option<Explanation>) -> Self {
+        let Some(Explanation { text, cause, remedy }) = site else { return self };
+        let text = match self.text {
+            Some(own) if own != text => format!("{text} ({own})"),
+            _ => text,
+        };
+        let [cause, remedy] = [cause.or(self.cause), remedy.or(self.remedy)];
+        Self { text: Some(text), cause, remedy, source: Source::Site, ..self }
+    }
+
+    /// Code and text in a line.
+    pub fn line(&self) -> String {
+        let parts = [&self.code, &self.text].into_iter().flatten().map(String::as_str);
+        parts.collect::<Vec<_>>().join(": ")
+    }
+}
+
+/// What a family tells of an alarm besides.
+pub trait Besides {
+    /// Each with the name of its column; `None` where there is none.
+    fn cells(&self) -> Vec<(&'static str, Option<String>)>;
+}
+
+/// What a family tells of an alarm besides, in words: for reports of all families.
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
+pub struct InWords {
+    /// A sub-code, an axis, a place.
+    data: Option<String>,
+}
+
+impl Besides for InWords {
+    fn cells(&self) -> Vec<(&'static str, Option<String>)> {
+        vec![("data", self.data.clone())]
+    }
+}
+
+/// What a family tells of its alarms as a whole.
+pub trait Standing {
+    /// What is said where the list is empty.
+    fn none(&self) -> &'static str {
+        "no alarm"
+    }
+}
+
+/// A family that tells nothing as a whole.
+#[derive(Debug, Clone, Copy, Default, Serialize, JsonSchema)]
+pub struct Nothing {}
+
+impl Standing for Nothing {}
+
+/// Alarms that are present, or were: what `alarm list` and `alarm history` report.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Alarms<T, S = Nothing> {
+    /// The latest first.
+    pub alarms: Vec<Row<T>>,
+    /// What is told as a whole.
+    #[serde(flatten)]
+    pub standing: S,
+    /// How many entries were asked for.
+    #[serde(skip)]
+    pub asked: usize,
+}
+
+/// An entry of a list.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Row<T> {
+    /// The list of the history, where a controller has several: `major`, `monitor`, `system`, `user`, `offline` (yerc).
+    pub list: Option<&'static str>,
+    /// 1 is the latest.
+    pub index: u16,
+    /// What is there, or why it could not be read.
+    #[serde(flatten)]
+    pub outcome: ItemOutcome<AlarmEntry<T>>,
+}
+
+/// An alarm with what the family tells besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct AlarmEntry<T> {
+    /// The concept.
+    #[serde(flatten)]
+    pub alarm: Alarm,
+    /// The family's own.
+    #[serde(flatten)]
+    pub own: T,
+}
+
+impl<T> Row<T> {
+    /// What was read at this place of a list; `asked` is how errors name it.
+    pub fn new(index: u16, asked: impl Into<String>, outcome: Result<AlarmEntry<T>, Failure>) -> Self {
+        Self { list: None, index, outcome: ItemOutcome::new(asked, outcome) }
+    }
+}
+
+impl<T: Besides, S> Alike for Alarms<T, S> {
+    type Core = AllAlarms;
+
+    fn core(&self) -> AllAlarms {
+        let own = |own: &T| {
+            let data: Vec<String> = own.cells().into_iter().filter_map(|(_, told)| told).collect();
+            InWords { data: Some(data.join(", ")).filter(|data| !data.is_empty()) }
+        };
+        let entry = |entry: &AlarmEntry<T>| AlarmEntry { alarm: entry.alarm.clone(), own: own(&entry.own) };
+        let row = |row: &Row<T>| Row { list: row.list, index: row.index, outcome: row.outcome.map(entry) };
+        AllAlarms { alarms: self.alarms.iter().map(row).collect() }
+    }
+}
+
+/// Alarms of a robot of any family.
+#[derive(Debug, Default, Serialize, JsonSchema)]
+pub struct AllAlarms {
+    /// The latest first.
+    alarms: Vec<Row<InWords>>,
+}
+
+impl AllAlarms {
+    /// Those that are present.
+    pub fn present(alarms: Vec<Alarm>) -> Self {
+        let row = |(index, alarm)| Row::new(index, "alarm", Ok(AlarmEntry { alarm, own: InWords::default() }));
+        Self { alarms: (1..).zip(alarms).map(row).collect() }
+    }
+
+    /// The same as a family shows its own.
+    pub fn of_one(&self) -> View {
+        shown(&self.alarms, "no alarm")
+    }
+}
+
+impl Report for AllAlarms {
+    /// A table, to stand among those of other robots.
+    fn view(&self) -> View {
+        let mut table = Table::new(&["list", "#", "code", "alarm", "data", "time"], "no alarm");
+        for row in &self.alarms {
+            table.rows.push(cells(row, table.columns.len()));
+        }
+        View::table(table)
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        verdict(self.alarms.len(), self.alarms.iter().filter_map(|row| row.outcome.error()))
+    }
+}
+
+impl<T, S> Alarms<T, S> {
+    /// Why entries could not be read.
+    pub fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.alarms.iter().filter_map(|row| row.outcome.error())
+    }
+
+    /// Those that could be.
+    pub fn known(&self) -> impl Iterator<Item = (&Row<T>, &AlarmEntry<T>)> {
+        self.alarms.iter().filter_map(|row| Some((row, row.outcome.data()?)))
+    }
+}
+
+impl<T: Besides> AlarmEntry<T> {
+    /// A row of a table of all columns.
+    fn cells(&self, list: Option<&'static str>, index: u16) -> Vec<Cell> {
+        let Alarm { code, text, time, .. } = &self.alarm;
+        let code = Cell::maybe(code.as_deref().map(|code| Cell::from(code).tone(Tone::Bad)));
+        let first = [Cell::maybe(list), index.into(), code, Cell::maybe(text.as_deref())];
+        let own = self.own.cells().into_iter().map(|(_, told)| Cell::maybe(told));
+        first.into_iter().chain(own).chain([Cell::maybe(time.as_deref()).whole()]).collect()
+    }
+
+    fn fields(&self, list: Option<&'static str>) -> Vec<(&'static str, Cell)> {
+        let Alarm { time, cause, remedy, .. } = &self.alarm;
+        let list = list.map(|list| ("list", Cell::from(list)));
+        let own = self.own.cells().into_iter().filter_map(|(name, told)| Some((name, told?.into())));
+        let known = [("time", time), ("cause", cause), ("what to do", remedy)];
+        let known = known.into_iter().filter_map(|(name, told)| Some((name, told.as_deref()?.into())));
+        let first = ("alarm", Cell::from(self.alarm.line()).tone(Tone::Bad));
+        list.into_iter().chain([first]).chain(own).chain(known).collect()
+    }
+}
+
+impl<T: Besides + Serialize + JsonSchema, S: Standing + Serialize + JsonSchema> Report for Alarms<T, S> {
+    fn view(&self) -> View {
+        shown(&self.alarms, self.standing.none())
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        verdict(self.asked, self.errors())
+    }
+}
+
+/// A single alarm with all its fields, several as a table; `none` where there is none.
+fn shown<T: Besides>(rows: &[Row<T>], none: &str) -> View {
+    let known = || rows.iter().filter_map(|row| row.outcome.data());
+    let told: Vec<Cell> = known().filter_map(|entry| site(&entry.alarm)).map(Cell::from).collect();
+    match (rows, known().next()) {
+        ([], _) => View::text(none),
+        ([row], Some(entry)) => View::default().and(Section::Fields(entry.fields(row.list))),
+        _ if told.is_empty() => View::table(table(rows)),
+        _ => View::table(table(rows)).and(Section::Lines(told)),
+    }
+}
+
+/// What `alarms.toml` says of an alarm, as a line below a table.
+fn site(alarm: &Alarm) -> Option<String> {
+    let Alarm { code, cause, remedy, source: Source::Site, .. } = alarm else { return None };
+    let parts: Vec<&str> = [cause, remedy].into_iter().flatten().map(String::as_str).collect();
+    (!parts.is_empty()).then(|| format!("{}: {}", code.as_deref().unwrap_or_default(), parts.join("; ")))
+}
+
+/// A row each, with the columns that something is told in.
+fn table<T: Besides>(rows: &[Row<T>]) -> Table {
+    let own = rows.iter().find_map(|row| Some(row.outcome.data()?.own.cells())).unwrap_or_default();
+    let own = own.into_iter().map(|(name, _)| name);
+    let columns: Vec<_> = ["list", "#", "code", "alarm"].into_iter().chain(own).chain(["time"]).collect();
+    let rows = rows.iter().map(|row| cells(row, columns.len())).collect();
+    let table = Table { columns: columns.clone(), rows, empty: "no alarm" };
+    columns.into_iter().fold(table, Table::without_blank)
+}
+
+/// A row of so many columns.
+fn cells<T: Besides>(row: &Row<T>, columns: usize) -> Vec<Cell> {
+    let mut cells = match (row.outcome.data(), row.outcome.error()) {
+        (Some(entry), _) => entry.cells(row.list, row.index),
+        (None, error) => {
+            vec![Cell::maybe(row.list), row.index.into(), "-".into(), Cell::maybe(error.map(ItemError::cell))]
+        }
+    };
+    cells.resize(columns, "-".into());
+    cells
+}

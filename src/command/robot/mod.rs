@@ -1,0 +1,6 @@
+//! What every robot has, whatever its family: one type a concept. JSON, schemas, CSV and tables of all families follow.
+
+pub mod alarm;
+pub mod motion;
+pub mod position;
+pub mod state;

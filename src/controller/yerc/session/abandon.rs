@@ -1,0 +1,131 @@
+//! The end of a transfer that is broken off.
+//!
+//! No manual has a request for it: a controller holds a transfer open until its timer ends (DX 5, E28B), and refuses
+//! others as busy meanwhile. It refuses a block or an ACK of a wrong number (E4A1, E4A2), and what is refused is over.
+//! So the wrong number is sent on purpose, without data and without the mark of the last block: nothing of it can be
+//! taken for content, nor for the end of the file.
+
+use std::time::Duration;
+
+use super::super::table::service;
+use super::super::wire::{ANSWER_BIT, AnswerFrame, LAST_BLOCK, RequestFrame};
+use super::is_busy;
+use crate::{Now, Session, Step};
+
+/// A block number that no transfer reaches.
+const NO_BLOCK: u32 = LAST_BLOCK - 1;
+/// Silence after which it is sent again.
+const EVERY: Duration = Duration::from_millis(200);
+/// How often it is sent.
+const TRIES: u32 = 3;
+
+/// Has a controller drop a transfer. The outcome is whether it confirmed that.
+#[derive(Debug, Clone)]
+pub struct Abandon {
+    frame: Vec<u8>,
+    is_open: bool,
+    tries: u32,
+    next: Now,
+    ended: Option<bool>,
+}
+
+impl Abandon {
+    /// What ends the transfer in which `last` was the last frame sent; `None` if that frame opens none, or ends it.
+    pub fn after(last: &[u8]) -> Option<Self> {
+        let last = RequestFrame::parse(last).ok()?;
+        let is_transfer = matches!(last.service, service::LOAD | service::SAVE | service::LIST);
+        let is_end = last.ack && last.block & LAST_BLOCK != 0;
+        (is_transfer && !is_end).then(|| Self {
+            frame: RequestFrame { ack: true, block: NO_BLOCK, data: &[], ..last }.emit(),
+            // A block or an ACK follows an answer of the controller.
+            is_open: last.ack,
+            tries: 0,
+            next: Now::ZERO,
+            ended: None,
+        })
+    }
+
+    /// The controller has answered the frame: it takes part in the transfer.
+    pub fn answered(&mut self) {
+        self.is_open = true;
+    }
+
+    /// Whether the controller takes part in the transfer, as far as it has answered.
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+}
+
+impl Session for Abandon {
+    type Outcome = bool;
+
+    fn poll(&mut self, now: Now) -> Step<bool> {
+        if let Some(ended) = self.ended {
+            return Step::Done(ended);
+        }
+        if self.tries > 0 && now < self.next {
+            return Step::Wait(self.next);
+        }
+        if self.tries == TRIES {
+            self.ended = Some(false);
+            return Step::Done(false);
+        }
+        self.tries += 1;
+        self.next = now.saturating_add(EVERY);
+        Step::Send(self.frame.clone())
+    }
+
+    fn handle(&mut self, _: Now, bytes: &[u8]) {
+        let (Ok(answer), Ok(sent)) = (AnswerFrame::parse(bytes), RequestFrame::parse(&self.frame)) else { return };
+        let fits = (answer.division, answer.id, answer.service) == (sent.division, sent.id, sent.service | ANSWER_BIT);
+        if self.tries > 0 && fits && !answer.status.is_ok() && !is_busy(answer.status) {
+            self.ended = Some(true);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::wire::{Division, Status};
+    use super::super::testing::FILE_REQUEST;
+    use super::*;
+    use crate::testing::{done, ms, sent};
+
+    const SAVE: RequestFrame<'static> = RequestFrame { service: service::SAVE, id: 7, ..FILE_REQUEST };
+
+    fn answer(id: u8, status: Status) -> Vec<u8> {
+        let (division, service) = (Division::File, service::SAVE | ANSWER_BIT);
+        AnswerFrame { division, ack: true, id, block: 4, service, status, data: &[] }.emit()
+    }
+
+    #[test]
+    fn only_a_transfer_that_the_controller_answered_is_open() {
+        let after = |frame: RequestFrame<'_>| Abandon::after(&frame.emit()).map(|abandon| abandon.is_open());
+        assert_eq!(after(SAVE), Some(false));
+        assert_eq!(after(RequestFrame { ack: true, block: 3, data: &[], ..SAVE }), Some(true));
+        assert_eq!(after(RequestFrame { ack: true, block: LAST_BLOCK | 3, data: &[], ..SAVE }), None);
+        assert_eq!(after(RequestFrame { service: service::DELETE, ..SAVE }), None);
+    }
+
+    #[test]
+    fn a_refusal_confirms_it_and_silence_does_not() {
+        let ack = RequestFrame { ack: true, block: 3, data: &[], ..SAVE }.emit();
+        let mut session = Abandon::after(&ack).unwrap();
+        let frame = sent(&mut session, ms(0));
+        let parsed = RequestFrame::parse(&frame).unwrap();
+        assert_eq!((parsed.id, parsed.block, parsed.data, parsed.ack), (7, 0x7FFF_FFFF, &[][..], true));
+        session.handle(ms(5), &answer(7, Status::OK));
+        session.handle(ms(6), &answer(8, Status::refused(0xE4A2)));
+        session.handle(ms(7), &answer(7, Status::refused(0xE444)));
+        assert_eq!(session.poll(ms(7)), Step::Wait(ms(200)));
+        assert_eq!(sent(&mut session, ms(200)), frame);
+        session.handle(ms(210), &answer(7, Status::refused(0xE4A2)));
+        assert!(done(&mut session, ms(210)));
+
+        let mut session = Abandon::after(&ack).unwrap();
+        for at in [0, 200, 400] {
+            sent(&mut session, ms(at));
+        }
+        assert!(!done(&mut session, ms(600)));
+    }
+}

@@ -1,0 +1,103 @@
+//! The examples of the help do the same on a served simulator, which they ask and order over a socket as they would a
+//! controller, as on the simulator inside the command.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use armctl::command::leaves::leaves;
+
+use crate::support::simulator::Simulator;
+
+/// What has no end of its own, names a robot, or takes seconds, as motions and whole backups do.
+const LEFT_OUT: [&str; 35] = [
+    "watch",
+    "--for",
+    "--continuous",
+    " -r ",
+    " -t ",
+    "toyo backup press",
+    "toyo backup press --current-task",
+    "toyo backup press --resume",
+    "toyo home",
+    "toyo point list",
+    "toyo point list --csv points.csv --update",
+    "toyo program edit",
+    "toyo robot-type 1 0",
+    "toyo run sequential",
+    "toyo run sequential 1 --repeat 20 --stats",
+    "toyo run sequential 10",
+    "yerc file cmos CMOSBK.BIN",
+    "yerc file cmos CMOSBK.BIN --download-only",
+    "yerc move joint --x 400 --y 0 --z 300 --rx 180 --ry 0 --rz 0 --speed 10%",
+    "yerc move linear --to 400,0,300,180,0,0 --speed 50mm/s",
+    "yerc move linear --to 400,0,300,180,0,0 --speed 50mm/s --tool 1",
+    "yrcx alarm history 1..50",
+    "yrcx backup press",
+    "yrcx backup press --points 0..999",
+    "yrcx comment get 0..29",
+    "yrcx hand-data get 0..31",
+    "yrcx move --point 19 --linear --speed 200mm/s",
+    "yrcx movet --point 19 --linear --speed 50mm/s",
+    "yrcx pallet --pallet 1 --position 21 --arch 3:0 --speed 20",
+    "yrcx pallet-data get 0..39",
+    "yrcx point dump points.csv 0..29 --update",
+    "yrcx point dump points.csv 0..99",
+    "yrcx point get 0..29,100",
+    "yrcx shift-data get 0..39",
+    "yrcx var get SGI0..SGI31 SGR5",
+];
+/// How many run at a time.
+const WORKERS: usize = 6;
+
+/// The exit code of a line in a folder of its own, and what it says.
+fn run(line: &str, robot: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().expect("there is room for a folder");
+    let path: &Path = folder.path();
+    let mut shell = Command::new("sh");
+    // The lines are quoted as for a shell.
+    shell.arg("-c").arg(format!("exec \"$0\" {robot} --yes {line}")).arg(env!("CARGO_BIN_EXE_armctl"));
+    shell.current_dir(path).env("HOME", path).env("XDG_RUNTIME_DIR", path).env_remove("ARMCTL_CONFIG");
+    let output = shell.stdin(Stdio::null()).output().expect("armctl starts");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+/// What is different on a served simulator.
+fn difference(line: &str) -> Option<String> {
+    let family = line.split(' ').next().expect("a family");
+    let simulator = Simulator::start(family);
+    let (within, _) = run(line, "--sim");
+    let (served, said) = run(line, &format!("-t '{}'", simulator.url));
+    (within != served).then(|| format!("{line}: {within:?} within the command, {served:?} served: {said}"))
+}
+
+#[test]
+fn examples_of_the_help_do_the_same_on_a_served_simulator() {
+    let lines: Vec<&str> = leaves()
+        .map(|(line, _)| *line)
+        .filter(|line| ["yerc ", "yrcx ", "toyo "].iter().any(|family| line.starts_with(family)))
+        .filter(|line| !LEFT_OUT.iter().any(|out| line.contains(out)))
+        .collect();
+    assert!(lines.len() > 300, "{} examples", lines.len());
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mine = std::iter::from_fn(|| lines.get(next.fetch_add(1, Ordering::Relaxed)));
+        mine.filter_map(|line| difference(line)).collect::<Vec<_>>()
+    };
+    let different: Vec<String> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..WORKERS).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().flat_map(|worker| worker.join().expect("no panic")).collect()
+    });
+    assert!(different.is_empty(), "{}", different.join("\n"));
+}
+
+/// A station and a base are stored in pulses, whatever the dry run before the question shows.
+#[test]
+fn stations_and_bases_are_taught() {
+    let simulator = Simulator::start("yerc");
+    for line in ["yerc teach EX1 --group S1", "yerc teach BP1", "yerc teach EX1 --dry-run", "yerc teach P9"] {
+        let (code, said) = run(line, &format!("-t '{}'", simulator.url));
+        assert_eq!(code, Some(0), "{line}: {said}");
+    }
+}

@@ -1,0 +1,297 @@
+//! Every line of the help against a controller that records what reaches it: on a read-only robot, without a yes, and in a
+//! dry run nothing dangerous is sent, on any link, directly or through a session.
+
+#[cfg(target_os = "linux")]
+mod network;
+mod relays;
+mod yrcx;
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use armctl::command::leaves::leaves;
+use armctl::controller::Risk;
+
+use super::desk::{Came, Desk, came};
+use crate::support::terminal::Terminal;
+
+/// What reached a controller, by the most that it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Effect {
+    /// A link comes or goes, and nothing is asked: the holder of a session does so by itself.
+    Link,
+    /// Nothing changes.
+    Read,
+    /// The robot stops.
+    Stop,
+    /// Something changes that can be set again.
+    Write,
+    /// What a person wrote is overwritten or deleted, or something moves.
+    Danger,
+}
+
+/// A controller that records what reaches it.
+pub trait Recorder {
+    /// The family of its lines.
+    fn family(&self) -> &'static str;
+    /// Its target URL.
+    fn url(&self) -> &str;
+    /// What reached it since the last call.
+    fn take(&mut self) -> Vec<(Effect, String)>;
+}
+
+const STOPS: [&str; 6] = ["stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+
+/// A line of the help as it is run here.
+#[derive(Debug)]
+struct Line {
+    words: Vec<String>,
+    risk: Risk,
+    is_stop: bool,
+}
+
+/// The lines for a family, with an end for those that have none, and without their own robots and formats: all that change
+/// something, and one of each command that reads. Stops come last, because much is refused behind them.
+fn lines(family: &str) -> Vec<Line> {
+    let mut seen = BTreeSet::new();
+    let mut lines = Vec::new();
+    for (line, risk) in leaves() {
+        let words = bounded(&split(line.split("  #").next().unwrap_or(line)));
+        let is_other = ["yerc", "yrcx", "toyo"].iter().any(|other| *other != family && words[0] == *other);
+        let is_name = |word: &&String| word.chars().all(|char| char.is_ascii_lowercase() || char == '-');
+        let command = || words.iter().take_while(is_name).cloned().collect();
+        if !is_other && seen.insert(if *risk == Risk::Read { command() } else { words.clone() }) {
+            let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
+            lines.push(Line { words, risk: *risk, is_stop });
+        }
+    }
+    lines.sort_by_key(|line| line.is_stop);
+    assert!(lines.len() > 60, "{family}: {} lines", lines.len());
+    lines
+}
+
+/// The words of a line, some in quotes.
+fn split(line: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut is_quoted = false;
+    for char in line.chars() {
+        match char {
+            '\'' => is_quoted = !is_quoted,
+            ' ' if !is_quoted => words.push(String::new()),
+            _ => words.last_mut().expect("there is one").push(char),
+        }
+    }
+    words
+}
+
+/// Without `-r`, `-t`, `--all` and `--dry-run`, and ended by time or count where it would go on.
+fn bounded(words: &[String]) -> Vec<String> {
+    let mut bounded: Vec<String> = Vec::new();
+    let mut rest = words.iter();
+    while let Some(word) = rest.next() {
+        match word.as_str() {
+            "-r" | "-t" | "--for" => drop(rest.next()),
+            "--all" | "--dry-run" | "--json" => {}
+            "--watch" => {
+                rest.next();
+                bounded.extend(["--watch", "100ms", "--count", "1"].map(str::to_owned));
+            }
+            _ => bounded.push(word.clone()),
+        }
+    }
+    if bounded.iter().any(|word| ["watch", "wait", "--continuous", "jog"].contains(&word.as_str())) {
+        bounded.extend(["--for", "100ms"].map(str::to_owned));
+    }
+    bounded
+}
+
+/// How the robot of a pass is, and how it is talked to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Pass {
+    ReadOnly,
+    WithoutYes,
+    DryRun,
+}
+
+impl Pass {
+    fn more(self) -> &'static [&'static str] {
+        match self {
+            Self::ReadOnly => &["--yes"],
+            Self::WithoutYes => &[],
+            Self::DryRun => &["--yes", "--dry-run"],
+        }
+    }
+
+    /// Whether a line says something here that it does not say in another pass. A station that takes another name or
+    /// address without a yes is not found again.
+    fn has(self, line: &Line) -> bool {
+        let is_renamed = || line.words.iter().any(|word| word == "--temporary");
+        self != Self::WithoutYes || line.risk > Risk::Read && !is_renamed()
+    }
+
+    /// The most that a line may do.
+    fn most(self, line: &Line, in_session: bool) -> Option<Effect> {
+        match self {
+            Self::DryRun => in_session.then_some(Effect::Link),
+            _ if line.is_stop => Some(Effect::Stop),
+            Self::ReadOnly => Some(Effect::Read),
+            Self::WithoutYes if line.risk > Risk::Destroy => Some(Effect::Read),
+            Self::WithoutYes => Some(Effect::Write),
+        }
+    }
+}
+
+/// A robot at a desk whose full backup `press` differs from what the controller has.
+pub struct Bench<'a> {
+    desk: Desk,
+    recorder: &'a mut dyn Recorder,
+    wrong: String,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(recorder: &'a mut dyn Recorder) -> Self {
+        let bench = Self { desk: Desk::new(""), recorder, wrong: String::new() };
+        bench.is_read_only(false);
+        bench.recorder.take();
+        bench
+    }
+
+    fn is_read_only(&self, is_so: bool) {
+        let url = self.recorder.url();
+        let entry = format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\nread_only = {is_so}\n");
+        std::fs::write(self.desk.folder.path().join("robots.toml"), entry).expect("the inventory is written");
+    }
+
+    fn run(&self, words: &[&str]) -> Came {
+        let mut command = self.desk.command("-r cell --timeout 500ms");
+        // What edits gets its file back as it was.
+        command.env("EDITOR", "true");
+        came(&command.args(words).output().expect("armctl starts"))
+    }
+
+    /// Does what must succeed before a test begins.
+    #[track_caller]
+    pub fn prepare(&mut self, line: &str) {
+        let came = self.run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(came.exit, Some(0), "{line}: {came:?}");
+        self.recorder.take();
+    }
+
+    /// A file that lines name.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.desk.folder.path().join(name), text).expect("the file is written");
+    }
+
+    /// All lines in one pass; `by` says how the robot is reached.
+    fn pass(&mut self, pass: Pass, by: &str, in_session: bool) {
+        self.is_read_only(pass == Pass::ReadOnly);
+        for line in lines(self.recorder.family()).iter().filter(|line| pass.has(line)) {
+            let words: Vec<&str> = line.words.iter().map(String::as_str).chain(pass.more().iter().copied()).collect();
+            let came = self.run(&words);
+            let wrong = self.judge(pass.most(line, in_session), &came);
+            if let Some(wrong) = wrong.or_else(|| refusal(pass, line, &came)) {
+                writeln!(self.wrong, "{by}, {pass:?}: {}: {wrong}", words.join(" ")).expect("text grows");
+            }
+        }
+        self.is_read_only(false);
+    }
+
+    /// What is wrong with what a line has sent.
+    fn judge(&mut self, most: Option<Effect>, came: &Came) -> Option<String> {
+        let sent = self.recorder.take();
+        let is_known = came.exit.is_some_and(|exit| (0..=9).contains(&exit));
+        match sent.iter().find(|(effect, _)| most.is_none_or(|most| *effect > most)) {
+            Some((effect, what)) => Some(format!("{effect:?} was sent: {what}; {came:?}")),
+            None => (!is_known).then(|| format!("{came:?}")),
+        }
+    }
+
+    /// `setup` and `teach`, which ask at a terminal.
+    fn panels(&mut self, by: &str) {
+        let url = self.recorder.url().to_owned();
+        for pass in [Pass::ReadOnly, Pass::WithoutYes, Pass::DryRun] {
+            self.is_read_only(pass == Pass::ReadOnly);
+            let words = [&["teach"], pass.more()].concat();
+            let came = self.run(&words);
+            let wrong = self.judge(Some(Effect::Read).filter(|_| pass != Pass::DryRun), &came);
+            // There is no terminal.
+            if let Some(wrong) = wrong.or_else(|| (came.exit != Some(2)).then(|| format!("{came:?}"))) {
+                writeln!(self.wrong, "{by}, {pass:?}: teach: {wrong}").expect("text grows");
+            }
+        }
+        for is_read_only in [true, false] {
+            self.is_read_only(is_read_only);
+            let mut teach = Terminal::start(self.desk.command("-r cell teach"), 100, 30).expect("a terminal");
+            let asks = teach.says_one_of(&["is read-only", "Continue?"]) == 1;
+            if asks {
+                teach.press("n\r");
+            }
+            if asks == is_read_only {
+                writeln!(self.wrong, "{by}: teach: read-only {is_read_only}, asks {asks}").expect("text grows");
+            }
+            assert_eq!(teach.end().code(), Some(7), "{by}: teach");
+        }
+
+        let mut command = self.desk.command("--config new.toml setup");
+        command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
+        let mut setup = Terminal::start(command, 100, 30).expect("a terminal");
+        setup.says("Where is the robot?");
+        setup.press("1\r");
+        setup.says("a URL:");
+        setup.press(&format!("{url}\r"));
+        // A layer that fails, as beside a session that has the port, is asked about.
+        for _ in 0..8 {
+            match setup.says_one_of(&["What now?", "Name [", "Which controller"]) {
+                0 => setup.press("3\r"),
+                1 => break,
+                _ => setup.press("1\r"),
+            }
+        }
+        setup.press("\r");
+        setup.says("Read-only");
+        setup.press("\r");
+        setup.says("Write this");
+        setup.press("n\r");
+        assert_eq!(setup.end().code(), Some(7), "{by}: setup");
+        let came = Came { exit: Some(7), stdout: String::new(), stderr: String::new() };
+        if let Some(wrong) = self.judge(Some(Effect::Read), &came) {
+            writeln!(self.wrong, "{by}: teach with a no, setup: {wrong}").expect("text grows");
+        }
+    }
+
+    /// All passes, directly and through a session.
+    pub fn hold_all(mut self) {
+        for by in ["directly", "in a session"] {
+            let in_session = by == "in a session";
+            if in_session {
+                self.prepare("session open --background --yes");
+                // By then its first image has arrived.
+                let read = if self.recorder.family() == "yrcx" { "yrcx io get" } else { "status" };
+                self.prepare(read);
+            }
+            for pass in [Pass::DryRun, Pass::ReadOnly, Pass::WithoutYes] {
+                self.pass(pass, by, in_session);
+            }
+            if in_session {
+                self.desk.run("session close --all");
+            }
+            self.recorder.take();
+            self.panels(by);
+        }
+        assert!(self.wrong.is_empty(), "{}", self.wrong);
+    }
+}
+
+/// What is wrong with how a line was refused: what changes a read-only robot, or moves one, ends with 7. A command of
+/// another fieldbus is a mistake, and so is a file that is not there.
+fn refusal(pass: Pass, line: &Line, came: &Came) -> Option<String> {
+    // What depends on the robot reads of a read-only one what reading alone can reach.
+    let depends = line.words.iter().any(|word| ["backup", "diff"].contains(&word.as_str()));
+    let must = match pass {
+        Pass::ReadOnly => line.risk > Risk::Read && !line.is_stop && !depends,
+        Pass::WithoutYes => line.risk == Risk::Motion,
+        Pass::DryRun => false,
+    };
+    let is_refused = matches!(came.exit, Some(7 | 2)) || came.stderr.contains("no such file");
+    (must && !is_refused).then(|| format!("not refused: {came:?}"))
+}

@@ -1,0 +1,30 @@
+//! PROFINET: the same between two network namespaces.
+
+use std::process::Command;
+
+use super::yrcx::{Controller, hold_all};
+use crate::support::namespaces::{SKIPPED, run};
+
+/// What the second network card runs.
+const THERE: &str = "THERE";
+
+#[test]
+fn profinet_brings_nothing_dangerous() {
+    let program = std::env::current_exe().expect("this test has a file");
+    let program = program.to_str().expect("its path is UTF-8");
+    let inside = "exec \"$PROGRAM\" --exact gate::recorder::network::between_two_cards --ignored --nocapture 2>&1";
+    match run(inside, &[("PROGRAM", program)]) {
+        None => println!("{SKIPPED}"),
+        Some(text) => assert!(text.contains("test result: ok. 1 passed"), "{text}"),
+    }
+}
+
+#[test]
+#[ignore = "the test above runs it in its namespaces"]
+fn between_two_cards() {
+    let there = std::env::var(THERE).expect("the other namespace");
+    let mut words = there.split(' ');
+    let mut armctl = Command::new(words.next().expect("a program"));
+    armctl.args(words).arg(env!("CARGO_BIN_EXE_armctl"));
+    hold_all(Controller::start(armctl, "profinet", &["--interface", "pd0"]).reached_over("@IFACE", "@pc0"));
+}
