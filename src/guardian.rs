@@ -19,6 +19,7 @@ use tokio::time::{MissedTickBehavior, interval};
 use crate::failure::{Failure, Kind};
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
+use crate::transport::this_program;
 
 /// Pause between two beats.
 const BEAT: Duration = Duration::from_millis(500);
@@ -41,7 +42,7 @@ const DONE: u8 = b'q';
 
 /// This program with the words of the command that stops a robot, of which `words` stand behind that of the family.
 fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Result<Command> {
-    let mut command = Command::new(std::env::current_exe()?);
+    let mut command = Command::new(this_program()?);
     command.args(first).args(["--quiet", "-t", robot.target.value.url(), robot.family.name()]);
     command.args(words).env_remove("ARMCTL_ROBOT").env_remove("ARMCTL_TARGET");
     command.stdout(Stdio::null());
@@ -153,7 +154,7 @@ pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
     if !outlives_motion() || !stops {
         return Some(Ok(()));
     }
-    let stopped = std::env::current_exe().map_err(|error| error.to_string());
+    let stopped = this_program().map_err(|error| error.to_string());
     let stopped = stopped.and_then(|program| confirm(Command::new(program).args(&args[2..])));
     Some(stopped.map_err(|why| {
         say(&unstopped(&why));

@@ -15,12 +15,13 @@ use tempfile::TempDir;
 /// A user with an inventory and a runtime folder of his own.
 struct Desk {
     folder: TempDir,
+    program: PathBuf,
 }
 
 impl Desk {
     /// With robots by name, family and target.
     fn new(robots: &[(&str, &str, &str)]) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        let desk = Self { folder: tempfile::tempdir().unwrap(), program: env!("CARGO_BIN_EXE_armctl").into() };
         let robots: Vec<String> = robots
             .iter()
             .map(|(name, family, target)| {
@@ -33,7 +34,7 @@ impl Desk {
     }
 
     fn command(&self, words: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        let mut command = Command::new(&self.program);
         command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path().join("run"));
         command.env("ARMCTL_CONFIG", self.folder.path().join("robots.toml")).stdin(Stdio::null());
         command.args(words.split(' '));
@@ -115,6 +116,7 @@ impl Running {
         while !line.contains(part) {
             line.clear();
             assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{part}'");
+            assert!(part.contains("may still move") || !line.contains("may still move"), "{line}");
         }
     }
 

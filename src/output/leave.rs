@@ -47,14 +47,13 @@ pub fn at_once(why: &str) -> ! {
 /// shell is there that could let it go on.
 #[cfg(unix)]
 pub fn suspend() {
-    use rustix::process::{Signal, getpgid, getppid, getsid, kill_current_process_group};
+    use nix::unistd::{getpgid, getpgrp, getppid, getsid};
+    use rustix::process::{Signal, kill_current_process_group};
 
-    let is_shell = |parent| {
-        let (its, own) = (getsid(parent).ok()?, getsid(None).ok()?);
-        let (its_group, own_group) = (getpgid(parent).ok()?, getpgid(None).ok()?);
-        Some(its == own && its_group != own_group)
-    };
-    if is_shell(getppid()) == Some(true) {
+    // In a container the leader of the session may be outside, and its number 0. rustix panics at that, nix does not.
+    let parent = getppid();
+    let is_beside = getsid(Some(parent)).is_ok_and(|its| getsid(None) == Ok(its));
+    if is_beside && getpgid(Some(parent)).is_ok_and(|its| its != getpgrp()) {
         // A process that hears SIGTSTP is not suspended by it.
         let _ = kill_current_process_group(Signal::STOP);
     }

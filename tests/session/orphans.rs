@@ -142,6 +142,28 @@ fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
 
+/// An update takes the file of the program away while it moves a robot.
+#[test]
+fn a_program_that_was_removed_stops_what_it_moves() {
+    for in_session in [false, true] {
+        let (_simulators, mut desk) = two(&MOVE);
+        let copy = desk.folder.path().join("armctl");
+        std::fs::copy(&desk.program, &copy).unwrap();
+        let installed = std::mem::replace(&mut desk.program, copy.clone());
+        let session = in_session.then(|| Running::session(&desk, "a"));
+        let moving = starts(&desk, &MOVE, "direct");
+        desk.program = installed;
+        std::fs::remove_file(copy).unwrap();
+        moving.signal("KILL");
+        let (code, said) = moving.end();
+        assert!(code.is_none() && !said.contains("may still move"), "{said}");
+        if let Some(mut session) = session {
+            session.says("the robot was stopped");
+        }
+        assert_eq!(desk.data("-r a yerc status")["held"], true, "in a session: {in_session}");
+    }
+}
+
 /// What ends in order is not stopped once more: HOLD stays off.
 #[test]
 fn a_motion_that_ends_in_order_is_not_stopped() {

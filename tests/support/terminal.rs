@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use serialport::{SerialPort as _, TTYPort};
@@ -13,6 +13,8 @@ use serialport::{SerialPort as _, TTYPort};
 /// How long a read waits before it looks whether the program is still there, and how often it does.
 const LOOK: Duration = Duration::from_secs(1);
 const LOOKS: usize = 60;
+/// A program that has not ended by then hangs, and the test fails instead of hanging with it.
+const END: Duration = Duration::from_secs(600);
 
 /// A program on a terminal of its own.
 pub struct Terminal {
@@ -23,6 +25,7 @@ pub struct Terminal {
     /// Keeps the terminal there.
     _port: TTYPort,
     before: Termios,
+    start: Instant,
     pub child: Child,
     pub picture: Picture,
     /// All that was written.
@@ -49,7 +52,17 @@ impl Terminal {
         command.stderr(Stdio::from(slave.try_clone()?)).process_group(0);
         let child = command.spawn()?;
         let picture = Picture::new(columns.into(), lines.into());
-        Ok(Self { master, slave, _port: port, before, child, picture, written: Vec::new(), heard: 0 })
+        Ok(Self {
+            master,
+            slave,
+            _port: port,
+            before,
+            start: Instant::now(),
+            child,
+            picture,
+            written: Vec::new(),
+            heard: 0,
+        })
     }
 
     /// Reads until the picture is as it shall be.
@@ -88,6 +101,7 @@ impl Terminal {
     /// Takes what was written; `false` if nothing comes any more.
     pub fn read(&mut self) -> bool {
         for _ in 0..LOOKS {
+            self.fails_when_it_hangs();
             if self.take() {
                 return true;
             }
@@ -96,6 +110,10 @@ impl Terminal {
             }
         }
         false
+    }
+
+    fn fails_when_it_hangs(&self) {
+        assert!(self.start.elapsed() < END, "it hangs:\n{}", self.picture.text());
     }
 
     /// Takes what has been written, or is in a moment; `false` if nothing is.
@@ -122,6 +140,18 @@ impl Terminal {
         assert!(Command::new("kill").args(["-s", signal, &pid]).status().expect("kill runs").success());
     }
 
+    /// Waits until the program is suspended.
+    #[cfg(target_os = "linux")]
+    pub fn is_suspended(&mut self) {
+        let stat = format!("/proc/{}/stat", self.child.id());
+        while !std::fs::read_to_string(&stat).expect("it is there").contains(") T ") {
+            let ended = self.child.try_wait().expect("it is our child");
+            assert_eq!(ended, None, "it ended instead:\n{}", plain(&self.written));
+            self.fails_when_it_hangs();
+            std::thread::yield_now();
+        }
+    }
+
     /// Whether the terminal is as it was before the program: its modes, the screen, the cursor.
     pub fn is_as_before(&self) -> bool {
         let now = tcgetattr(&self.slave).expect("a terminal has modes");
@@ -134,6 +164,7 @@ impl Terminal {
         // Read meanwhile: a terminal that is full holds up what writes to it.
         self.master.set_timeout(Duration::from_millis(20)).expect("a terminal takes a timeout");
         let status = loop {
+            self.fails_when_it_hangs();
             while self.take() {}
             if let Some(status) = self.child.try_wait().expect("it is our child") {
                 break status;

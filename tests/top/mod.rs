@@ -116,11 +116,7 @@ fn ctrl_z_suspends_it_and_it_goes_on() {
     let mut top = desk.top(&[]);
     top.shows("3 answer");
     top.press("\x1a");
-    let stat = format!("/proc/{}/stat", top.child.id());
-    let is_stopped = || std::fs::read_to_string(&stat).expect("it is there").contains(") T ");
-    while !is_stopped() {
-        std::thread::yield_now();
-    }
+    top.is_suspended();
     top.until("the usual screen", |picture| !picture.is_alternate);
     assert!(top.is_as_before());
     top.signal("CONT");
@@ -129,6 +125,22 @@ fn ctrl_z_suspends_it_and_it_goes_on() {
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
     assert!(top.is_as_before());
+}
+
+/// As in a container: the leader of the session is outside, and its number unknown.
+#[cfg(target_os = "linux")]
+#[test]
+fn ctrl_z_suspends_it_in_a_pid_namespace() {
+    let apart = |words: &[&str]| Command::new("unshare").args(["-Urpf", "--mount-proc"]).args(words).output();
+    if !apart(&["true"]).is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: no PID namespaces here");
+        return;
+    }
+    let own = std::env::current_exe().expect("a test has a path");
+    let own = own.to_str().expect("in UTF-8");
+    let test = apart(&[own, "--exact", "top::ctrl_z_suspends_it_and_it_goes_on"]).expect("unshare runs");
+    let said = String::from_utf8_lossy(&test.stdout);
+    assert!(test.status.success() && said.contains("1 passed"), "{said}");
 }
 
 #[test]

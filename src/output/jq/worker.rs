@@ -5,7 +5,6 @@
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::io::{self, BufRead as _, BufReader, BufWriter, ErrorKind, Read as _, Write as _};
-use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
@@ -15,6 +14,7 @@ use serde_json::Value;
 
 use super::program::{Program, Stop};
 use crate::failure::{Kind, end};
+use crate::transport::this_program;
 
 /// The only argument of such a process.
 const WORD: &str = "--filter-worker";
@@ -130,10 +130,7 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
 
 impl Worker {
     fn start() -> io::Result<Self> {
-        // This very program, also if a newer one has taken its place on the disk.
-        let own = Path::new("/proc/self/exe");
-        let program = if own.exists() { own.to_owned() } else { std::env::current_exe()? };
-        let mut command = Command::new(program);
+        let mut command = Command::new(this_program()?);
         command.arg(WORD).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         // The keys of the terminal are not for it.
         #[cfg(unix)]

@@ -126,7 +126,7 @@ pub struct Detached {
 /// Starts this program again with other arguments; what it says on stderr goes to the end of a file of this user's alone.
 pub fn detach(arguments: impl Iterator<Item = std::ffi::OsString>, log: &Path) -> io::Result<Detached> {
     let log = OpenOptions::new().append(true).create(true).mode(0o600).open(log)?;
-    let mut child = Command::new(std::env::current_exe()?)
+    let mut child = Command::new(crate::this_program()?)
         .args(arguments)
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
