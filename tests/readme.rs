@@ -1,11 +1,11 @@
 //! Runs the console blocks of the README and of `docs/` with the built binary and compares what they print.
 //!
-//! The blocks below one `##` heading are one shell session, in a folder of its own, with a home of its own and no
-//! `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text within a line. A command
-//! may only fail where the next one is `echo $?`, and its envelopes follow their schemas. Sections that speak of
-//! `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their own, on ports
-//! that the system chooses.
-//! TOML blocks that begin with `# NAME.toml` lie in the folders of that page's sessions as files of that name. Blocks
+//! The blocks below one `##` heading, and those before the first one, are one shell session, in a folder of its own, with
+//! a home of its own and no `ARMCTL_…` variables. `...` on a line of its own stands for any lines, `[..]` for any text
+//! within a line. A command may only fail where the next one is `echo $?`, and its envelopes follow their schemas.
+//! Sections that name `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator of their
+//! own, on ports that the system chooses.
+//! TOML blocks that begin with `# NAME.toml` are files of that name in the folders of that page's sessions. Blocks
 //! marked `sh` are not run: installation, real controllers.
 //!
 //! `ARMCTL_BLESS=1 cargo test --test terminal readme::` writes what was printed into the blocks that differ.
@@ -28,7 +28,7 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separates the commands of a block in the output of its shell.
 const MARK: &str = "\u{1}--next--";
 /// Pages with blocks.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 13] = [
     "README.md",
     "docs/tasks.md",
     "docs/yerc.md",
@@ -40,6 +40,7 @@ const PAGES: [&str; 12] = [
     "docs/watching.md",
     "docs/sessions.md",
     "docs/monitoring/README.md",
+    "docs/monitoring/mqtt.md",
     "docs/safety.md",
 ];
 
@@ -252,7 +253,7 @@ fn first_block(heading: &str) -> Vec<String> {
 fn two_commands_try_it_and_four_lead_to_a_robot() {
     assert_eq!(first_block("## Try it"), ["cargo run -- --sim yerc status", "cargo test"]);
     assert_eq!(
-        first_block("## From nothing to a robot"),
+        first_block("## Get started"),
         ["cargo install --locked --path .", "armctl setup", "armctl status", "armctl top"]
     );
 }
@@ -261,9 +262,10 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Where the sections are, each with its `##` heading.
+/// Where the sections are, each with its heading.
 fn sections(text: &str) -> Vec<Range<usize>> {
-    let starts: Vec<usize> = text.match_indices("\n## ").map(|(at, _)| at + 1).collect();
+    let headings = text.match_indices("\n## ").map(|(at, _)| at + 1);
+    let starts: Vec<usize> = std::iter::once(0).chain(headings).collect();
     let ends = starts.iter().skip(1).copied().chain([text.len()]);
     starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }

@@ -22,18 +22,18 @@ pub struct Help {
 
 /// Topics with a line about each and their text.
 const TOPICS: [(&str, &str, &str); 13] = [
-    ("targets", "how to say which robot", include_str!("topics/targets.txt")),
+    ("targets", "select a robot; URLs", include_str!("topics/targets.txt")),
     ("devicenet", "adapters, first contact, lamps", include_str!("topics/devicenet.txt")),
-    ("profibus", "a YRCX over PROFIBUS DP", include_str!("topics/profibus.txt")),
-    ("profinet", "a YRCX over PROFINET IO", include_str!("topics/profinet.txt")),
+    ("profibus", "wiring, URL, first contact", include_str!("topics/profibus.txt")),
+    ("profinet", "requirements, URL, first contact", include_str!("topics/profinet.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
     ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
-    ("safety", "what asks, what refuses, what Ctrl-C does", include_str!("topics/safety.txt")),
-    ("scripting", "watching, waiting, piping", include_str!("topics/scripting.txt")),
-    ("sessions", "links that outlive commands", include_str!("topics/sessions.txt")),
-    ("repl", "a prompt for one robot", include_str!("topics/repl.txt")),
-    ("batch", "files of commands", include_str!("topics/batch.txt")),
-    ("completion", "what Tab offers, in which shells", include_str!("topics/completion.txt")),
+    ("safety", "risks, confirmation, Ctrl-C", include_str!("topics/safety.txt")),
+    ("scripting", "JSON, exit codes, waiting", include_str!("topics/scripting.txt")),
+    ("sessions", "keep a connection open", include_str!("topics/sessions.txt")),
+    ("repl", "interactive prompt", include_str!("topics/repl.txt")),
+    ("batch", "command files", include_str!("topics/batch.txt")),
+    ("completion", "Tab in five shells", include_str!("topics/completion.txt")),
     (SIMULATOR, "servers, start state, console, faults", include_str!("topics/simulator.txt")),
 ];
 
@@ -59,9 +59,9 @@ impl Help {
 /// Every topic with a line about it.
 pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
     let made = [
-        (OPTIONS, "those of every command"),
-        (EXIT_CODES, "what the exit codes mean"),
-        (ENVIRONMENT, "variables that count"),
+        (OPTIONS, "options of every command"),
+        (EXIT_CODES, "meaning of the exit codes"),
+        (ENVIRONMENT, "environment variables"),
     ];
     let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
@@ -126,19 +126,25 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
 }
 
 fn start_states() -> String {
-    let last = FAMILIES.len() - 1;
-    let example = |(index, face): (usize, &&dyn Face)| {
-        let family = face.family();
-        let heading = match index {
-            0 => String::new(),
-            _ if index == last => format!("\nAnd this one those of {family}:\n\n"),
-            _ => format!("\nThis one those of {family}:\n\n"),
-        };
-        format!("{heading}{}", face.start_state())
-    };
-    FAMILIES.iter().enumerate().map(example).collect()
+    let example = |face: &&dyn Face| format!("\nKeys of {}:\n\n{}", face.family(), face.start_state());
+    FAMILIES.iter().map(example).collect()
 }
 
 fn exit_codes() -> String {
     Kind::TABLE.iter().map(|(_, exit, meaning)| format!("{exit:>4}  {meaning}\n")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn topics_fit_80_columns() {
+        let texts = TOPICS.iter().map(|(name, _, text)| ((*name).to_owned(), *text));
+        let texts = texts.chain(setups().into_iter().map(|(name, _, text)| (name, text)));
+        for (name, text) in texts {
+            let wide: Vec<&str> = text.lines().filter(|line| line.chars().count() > 80).collect();
+            assert_eq!(wide, [""; 0], "{name}");
+        }
+    }
 }
