@@ -133,6 +133,11 @@ pub trait Family: Sized + 'static {
     /// What a dry run would have sent, in the order of sending.
     fn planned(link: &mut Self::Link) -> Plan;
 
+    /// Makes sure, before a command reports, that the answers it took were those to what it sent.
+    async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// What a connection of this kind does to the controller by being opened, and closed at the end.
     fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
         Entry::Harmless

@@ -81,6 +81,11 @@ impl Family for Toyo {
         link.take_plan()
     }
 
+    async fn settle(link: &mut Link) -> Result<(), Failure> {
+        let settled = link.client.settle().await;
+        settled.map_err(|error| link.failure(error))
+    }
+
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
         link.tell_what_is_left().await;
         let Link { client, onlooker, label, mut write_log, .. } = link;
@@ -208,11 +213,6 @@ impl Link {
     pub async fn letters(&mut self) -> Result<Letters, Failure> {
         self.tell_what_is_left().await;
         self.client.letters().await.map_err(|error| self.failure(error))
-    }
-
-    /// Waits, where nobody looks at what an order does, until no contradiction to its yes can come any more.
-    pub async fn settle(&mut self) -> Result<(), Failure> {
-        self.client.settle().await.map_err(|error| self.failure(error))
     }
 
     /// Where the axes are by a record, for a report. What has happened is told in any case: where the letters cannot be

@@ -248,22 +248,27 @@ impl Program {
                     Err(_) => format!("It is the program of task {task}; the step was not told."),
                 })
             }
-            Self::Palletizing(Some(number)) => Ok(format!("It is palletizing program {number}.")),
-            Self::Easy(Some(number)) => Ok(format!("It is easy program {number}.")),
-            Self::Palletizing(None) => {
-                let at = link.ask(&Request::bare(table::Command::Rpld)).await?;
-                Ok(format!(
-                    "It is palletizing program {}, at step {}.",
-                    small(&at, "program"),
-                    at.number("step").unwrap_or(0)
-                ))
-            }
-            Self::Easy(None) => {
-                let at = link.ask(&Request::bare(table::Command::Resd)).await?;
-                Ok(format!("It is easy program {}, at step {}.", small(&at, "program"), at.number("step").unwrap_or(0)))
-            }
+            Self::Palletizing(wanted) => progress(link, table::Command::Rpld, ("palletizing", *wanted)).await,
+            Self::Easy(wanted) => progress(link, table::Command::Resd, ("easy", *wanted)).await,
         }
     }
+}
+
+/// Which program starts, and its step: the one that the controller is at, or `wanted`.
+async fn progress(
+    link: &mut Link,
+    question: table::Command,
+    (kind, wanted): (&str, Option<i32>),
+) -> Result<String, Failure> {
+    let Ok(at) = link.try_ask(&Request::bare(question)).await? else {
+        let number = wanted.map(|number| format!(" {number}")).unwrap_or_default();
+        return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
+    };
+    let (number, step) = (at.number("program").unwrap_or(0), at.number("step").unwrap_or(0));
+    Ok(match wanted.filter(|wanted| *wanted != number) {
+        None => format!("It is {kind} program {number}, at step {step}."),
+        Some(wanted) => format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}."),
+    })
 }
 
 /// Asks before a program runs, with its number and step, each axis, and the speed.
@@ -304,7 +309,6 @@ async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: 
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
         if no_wait {
-            link.settle().await?;
             return Ok(Ran { accepted: true, ..Ran::default() });
         }
         let ran = wait(link, screen, start.command(), letters).await;
