@@ -22,12 +22,14 @@ pub mod local;
 pub mod names;
 pub mod orders;
 pub mod plot;
+pub mod repeats;
 pub mod repl;
 pub mod report;
 pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod share;
 pub mod sheet;
 pub mod teach;
 #[cfg(test)]
