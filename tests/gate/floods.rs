@@ -115,7 +115,7 @@ fn who_sends_without_end_or_little_by_little_holds_up_no_command() {
         }
         check(
             &format!("slcan://127.0.0.1:{}?mac=5", tcp(b"t4058AABBCCDDEEFF0011\r", Manner::Trickles)),
-            &[("yrcx status", 1, "nothing answers as an SLCAN adapter does")],
+            &[("yrcx status", 5, "sends without end")],
         );
         let (_port, path) = pty(b"\x68\x05\x05", manner);
         check(&format!("profibus://{path}?station=5"), &[("yrcx status", 4, "within 3000 ms")]);

@@ -1,6 +1,7 @@
 //! No motion outlives its operator: the process that moves a robot is killed or frozen, in every family and on every bus, by
 //! every way to type the motion, directly and through a session, whose holder may end with it.
 
+use std::io::Write as _;
 use std::process::Command;
 
 use super::{Desk, Running, serving, stderr};
@@ -48,18 +49,18 @@ const MOVE: Motion = Motion {
     stands: |status| status["held"] == true,
 };
 
-/// A busy machine is late: nobody shall think that the other is gone. Outside a session the master has gone, which is an alarm.
+/// A busy machine is late: nobody shall think that the other is gone. What stands there is seen at the machine.
 const ETHERNET: Motion = Motion {
     family: "yrcx",
     serve: "yrcx --bind 127.0.0.1:0",
     with: "?rpi=5ms&multiplier=512",
     words: "yrcx move --to 900,0,0,0 --speed-of-max 0.1",
     moves: "<- WO 0100",
-    look: "yrcx status --yes",
-    stands: |status| status["alarm"] == true,
+    look: "",
+    stands: |_| false,
 };
 
-const DEVICENET: Motion = Motion { serve: "yrcx --bus devicenet --bind 127.0.0.1:0", with: "", ..ETHERNET };
+const DEVICENET: Motion = Motion { serve: "yrcx --bus devicenet", with: "", ..ETHERNET };
 
 const PROFIBUS: Motion = Motion { serve: "yrcx --bus profibus", with: "", ..ETHERNET };
 
@@ -91,6 +92,18 @@ fn two(motion: &Motion) -> (Vec<Running>, Desk) {
     let targets: Vec<_> = simulators.iter().map(|simulator| format!("{}{}", simulator.first, motion.with)).collect();
     let desk = Desk::new(&[("a", motion.family, &targets[0]), ("b", motion.family, &targets[1])]);
     (simulators, desk)
+}
+
+/// Waits until the machine itself says that a robot stands, and that its master has gone.
+fn stands_alone(simulator: &mut Running) {
+    loop {
+        writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
+        let now = simulator.line("now ");
+        if !simulator.line("robot 1 ").contains("moving") {
+            assert!(now.contains("alarm 12.5"), "{now}");
+            return;
+        }
+    }
 }
 
 /// The process that moves a robot.
@@ -142,27 +155,29 @@ impl Moving {
         }
     }
 
-    /// Waits until it was killed, by whomever, and until nobody is left who would stop the robot. What was said.
-    fn ends(self, desk: &Desk) -> String {
+    /// Waits until it was killed, by whomever, and until nobody is left who would stop the robot but for the guardian of a
+    /// session. What was said.
+    fn ends(self, desk: &Desk, session: Option<&Running>) -> String {
         let (code, said) = match self {
             // Its guardian has the same stderr: both have ended.
             Self::Process(process) => process.end(),
             Self::Prompt(mut prompt) => (prompt.end().code(), String::from_utf8_lossy(&prompt.written).into_owned()),
         };
         assert_eq!(code, None, "it was killed: {said}");
-        no_guardian(desk);
+        no_guardian(desk, session);
         said
     }
 }
 
-/// Waits until no guardian of this user is left.
-fn no_guardian(desk: &Desk) {
-    let config = format!("HOME={}", desk.folder.path().display());
+/// Waits until no guardian of this user is left but for that of a session.
+fn no_guardian(desk: &Desk, session: Option<&Running>) {
+    let home = format!("HOME={}", desk.folder.path().display());
+    let parent = session.map_or_else(|| "none".to_owned(), |session| format!("PPid:\t{}\n", session.process.id()));
     let is_guardian = |process: &std::path::Path| {
         let has = |file: &str, what: &str| {
             std::fs::read(process.join(file)).is_ok_and(|text| String::from_utf8_lossy(&text).contains(what))
         };
-        has("cmdline", "--guardian=") && has("environ", &config)
+        has("cmdline", "--guardian=") && has("environ", &home) && !has("status", &parent)
     };
     while std::fs::read_dir("/proc").unwrap().any(|process| is_guardian(&process.unwrap().path())) {}
 }
@@ -170,11 +185,11 @@ fn no_guardian(desk: &Desk) {
 fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
     for signal in signals {
         for &(way, in_session) in ways {
-            let (_simulators, desk) = two(motion);
+            let (mut simulators, desk) = two(motion);
             let session = in_session.then(|| Running::session(&desk, "a"));
             let moving = Moving::starts(&desk, motion, way);
             moving.signal(signal);
-            let said = moving.ends(&desk);
+            let said = moving.ends(&desk, session.as_ref());
             assert_eq!(*signal == "STOP", said.contains("did not respond for 2 s"), "{way:?}: {said}");
             if let Some(mut session) = session {
                 session.says("it was moving the robot");
@@ -186,7 +201,11 @@ fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
                 // With the session goes the link that it held.
             }
             let robots: &[_] = if way == Way::Several { &["a", "b"] } else { &["a"] };
-            for robot in robots {
+            for (robot, simulator) in robots.iter().zip(&mut simulators) {
+                if motion.family == "yrcx" {
+                    stands_alone(simulator);
+                    continue;
+                }
                 let state = desk.data(&format!("-r {robot} {}", motion.look));
                 assert!((motion.stands)(&state), "{signal} {way:?} {in_session}: {robot}: {state}");
             }
@@ -244,19 +263,26 @@ fn a_motion_is_stopped_when_the_holder_of_its_session_ends() {
             let (_simulators, desk) = two(motion);
             let session = Running::session(&desk, "a");
             let moving = Moving::starts(&desk, motion, Way::Direct);
-            let pids = [(session.process.id(), holder), (moving.pid(), client)];
-            for (pid, signal) in pids.iter().filter(|(_, signal)| !signal.is_empty()) {
-                let sent = Command::new("kill").args(["-s", signal, &pid.to_string()]).status();
-                assert!(sent.unwrap().success());
+            let (session_id, moving_id) = (session.process.id(), moving.pid());
+            // Both at the same time: who is left for a moment ends by itself.
+            let kill = |signal: &str, pids: &[u32]| {
+                let pids = pids.iter().map(u32::to_string);
+                assert!(Command::new("kill").args(["-s", signal]).args(pids).status().unwrap().success());
+            };
+            if holder == client {
+                kill(holder, &[moving_id, session_id]);
+            } else {
+                kill(holder, &[session_id]);
+                if !client.is_empty() {
+                    kill(client, &[moving_id]);
+                }
             }
             let (code, said) = session.end();
             assert_eq!(code, (holder == "TERM").then_some(0), "{said}");
-            if client == "KILL" {
-                moving.ends(&desk);
-            } else if let Moving::Process(process) = moving {
-                assert!(process.end().0.is_some_and(|code| code > 0));
-                no_guardian(&desk);
-            }
+            let Moving::Process(process) = moving else { unreachable!() };
+            let (code, said) = process.end();
+            assert_ne!(code, Some(0), "{holder} {client}: {said}");
+            no_guardian(&desk, None);
             let state = desk.data(&format!("-r a --no-session {}", motion.look));
             assert!((motion.stands)(&state), "{holder} {client}: {}: {state}", motion.words);
         }
@@ -269,7 +295,6 @@ fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
     desk.data("-r a session open --background");
     let moving = Moving::starts(&desk, &MOVE, Way::Direct);
     moving.signal("KILL");
-    moving.ends(&desk);
     let log = desk.files("log").remove(0);
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
@@ -287,7 +312,7 @@ fn a_program_that_was_removed_stops_what_it_moves() {
         desk.program = installed;
         std::fs::remove_file(copy).unwrap();
         moving.signal("KILL");
-        let said = moving.ends(&desk);
+        let said = moving.ends(&desk, session.as_ref());
         assert!(!said.contains("may still move"), "{said}");
         if let Some(mut session) = session {
             session.says("the robot was stopped");

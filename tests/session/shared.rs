@@ -118,7 +118,7 @@ fn what_looks_at_a_robot_shares_a_link_that_takes_one_client() {
             let output = desk.run("-r cell toyo position --json");
             assert!(output.status.success(), "{}", stderr(&output));
         }
-        top.shows("· 1 answer");
+        top.shows("cell  toyo  answer");
         for line in &*watch.lines.lock().unwrap() {
             assert_eq!(serde_json::from_str::<Value>(line).unwrap()["ok"], true, "{line}");
         }
