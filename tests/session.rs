@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod orphans;
+mod shared;
 
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::os::unix::fs::PermissionsExt as _;
@@ -120,6 +121,16 @@ impl Running {
         }
     }
 
+    /// The next line that begins like this.
+    fn line(&mut self, beginning: &str) -> String {
+        let mut line = String::new();
+        while !line.starts_with(beginning) {
+            line.clear();
+            assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{beginning}'");
+        }
+        line
+    }
+
     fn signal(&self, signal: &str) {
         let pid = self.process.id().to_string();
         assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
@@ -148,7 +159,9 @@ fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
 
 /// A simulator that is started like this.
 fn serving(desk: &Desk, words: &str) -> Running {
-    let mut simulator = Running::start(desk.command(&format!("sim {words} --jq .data.target")), true);
+    let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
+    command.stdin(Stdio::piped());
+    let mut simulator = Running::start(command, true);
     if !simulator.first.contains("://") {
         let mut said = String::new();
         simulator.stderr.read_to_string(&mut said).unwrap();

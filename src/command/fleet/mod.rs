@@ -7,7 +7,6 @@ pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
 #[cfg(feature = "plant")]
-mod repeats;
 pub mod robots;
 #[cfg(feature = "plant")]
 pub mod serve;

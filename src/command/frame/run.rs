@@ -2,6 +2,7 @@
 
 mod print;
 mod rounds;
+mod silences;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -15,6 +16,7 @@ pub use self::print::as_value;
 use self::print::{ReportPosition, enveloped_all, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
+use self::silences::Silences;
 use super::attach::{identify, is_held_by_another};
 use super::authority::{self, Authority};
 use super::background;
@@ -24,6 +26,7 @@ use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{UnderWay, catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
+use super::share::shared;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
@@ -248,6 +251,7 @@ impl Run {
         link: &mut dyn Connection,
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::at(robot, command, failure);
+        let mut silences = Silences::new(self, robot);
         let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
             let grant = Grant::of(Risk::Read);
@@ -259,6 +263,7 @@ impl Run {
             let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
             let silence = match outcome {
                 Ok(report) => {
+                    silences.end();
                     let place = self.round(rounds.is_first(), command.is_endless());
                     if !self.repeat.is_quiet {
                         self.print(robot, command.id(), &*report, place)?;
@@ -277,8 +282,7 @@ impl Run {
                     if self.repeat.is_quiet {
                         // It is told at the end, if it is silent then.
                     } else if self.is_for_people() {
-                        self.screen.failure(&failure);
-                        self.redraw.forget();
+                        silences.say(&failure);
                     } else {
                         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
@@ -393,6 +397,11 @@ impl Run {
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
             None => access,
+        };
+        let goes_on = self.repeat.is_wanted() || command.is_endless();
+        let robot = &match command.driver().filter(|_| goes_on) {
+            Some(driver) => shared(driver, robot).await?,
+            None => robot.clone(),
         };
         let link = interruptible(command.connect(robot, access, &self.screen)).await??;
         Ok((link, grant))

@@ -77,6 +77,11 @@ impl Family for Toyo {
         link.moving() == Some(Moving::Jog)
     }
 
+    /// A serial port has one line, and so has a device server.
+    fn takes_one_client(robot: &Robot) -> bool {
+        matches!(robot.target.value.place, target::Place::Serial(_) | target::Place::Tcp(_))
+    }
+
     fn planned(link: &mut Link) -> Plan {
         link.take_plan()
     }

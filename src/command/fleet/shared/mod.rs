@@ -97,6 +97,10 @@ impl Driver for PerRobot {
         families::of(robot.family).driver().entry(robot, mode)
     }
 
+    fn takes_one_client(&self, robot: &Robot) -> bool {
+        families::of(robot.family).driver().takes_one_client(robot)
+    }
+
     fn addresses(&self, robot: &Robot) -> Result<Vec<Address>, Failure> {
         families::of(robot.family).driver().addresses(robot)
     }
