@@ -2,7 +2,6 @@
 
 use super::prepared::Task;
 use crate::cli::Globals;
-use crate::command::Command as _;
 use crate::command::common::Common;
 use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
@@ -37,9 +36,10 @@ impl Uses {
     fn of_common(common: &Common) -> Self {
         match common {
             Common::Backup(backup) if !backup.takes_robot() => NONE,
-            Common::Diff(diff) if !diff.takes_robot() => NONE,
+            Common::Diff(diff) if !diff.may_ask_robots() => NONE,
             Common::Status(_)
             | Common::Alarm(_)
+            | Common::Io(_)
             | Common::Position
             | Common::Stop
             | Common::Wait(_)
@@ -53,7 +53,7 @@ impl Uses {
             #[cfg(feature = "plant")]
             Common::Publish(_) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
-            Common::Robots(Robots::List) => Self { robots: true, ..NONE },
+            Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
             // What settings would be in force; what a check needs.

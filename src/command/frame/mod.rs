@@ -15,6 +15,7 @@ pub mod connection;
 pub mod cycle;
 pub mod dry_run;
 pub mod edited;
+pub mod ending;
 pub mod interrupt;
 pub mod items;
 pub mod kind;

@@ -4,7 +4,7 @@ use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
 /// Bits of ports of station 0, and counters.
-pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "CN", "PN", "F"] };
+pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "PN", "F"] };
 
 /// The last port of a kind that may be there (DOUT takes 1 to 99), and the last counter.
 const LAST: u8 = 99;

@@ -196,8 +196,14 @@ fn switch(text: &str) -> Result<bool, Failure> {
 
 impl Set {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
-        let entry = known(&run.sources.inventory, &self.name)?;
-        let settings = self.settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
+        set(run, "robots.set", self.name, &self.settings)
+    }
+}
+
+/// Writes settings of a robot into the file.
+pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> Result<(), RunError> {
+        let entry = known(&run.sources.inventory, &robot)?;
+        let settings = settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
         // What an address without a scheme means depends on the family that comes with it.
         let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
         let family = family.unwrap_or(entry.family);
@@ -213,13 +219,12 @@ impl Set {
         let file = change(run, |document| {
             for (key, new) in values {
                 let told = new.as_ref().map(json);
-                let old = document.set(&self.name, key, new)?;
+                let old = document.set(&robot, key, new)?;
                 changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: told });
             }
             Ok(())
         })?;
-        told(run.local("robots.set", &WasSet { name: self.name, changes, file }))
-    }
+        told(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
 /// What a name stands for: a number where it is one, as people write it into the file.

@@ -24,6 +24,8 @@ pub enum ReportPosition<'a> {
     Next,
     /// One of a watch whose reports are lines.
     Line,
+    /// The same of a robot among others.
+    LineOf(&'a Robot),
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
@@ -92,12 +94,8 @@ impl Run {
             self.screen.note(&summary);
         }
         for (robot, failure) in reasons {
-            // Failures of the link name the robot already.
-            let label = robot.label();
             self.redraw.forget();
-            let is_named = failure.message.starts_with(&label);
-            let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
-            self.screen.failure(&Failure { message, ..failure });
+            self.screen.failure(&named(robot, failure));
         }
         Ok(envelopes)
     }
@@ -131,7 +129,12 @@ impl Run {
         place: ReportPosition<'_>,
     ) -> Result<(), Failure> {
         if self.is_for_people() {
-            return self.show_one(report, place);
+            return match place {
+                ReportPosition::LineOf(robot) if self.screen.format.is_rows() => {
+                    self.show_csv(&[(Some(robot), report)], place)
+                }
+                place => self.show_one(report, place),
+            };
         }
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, ReportPosition::Alone);
@@ -203,7 +206,7 @@ impl Run {
         let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
         before.extend(reports.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
         let header = sheet.header(&before);
-        let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
+        let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line | ReportPosition::LineOf(_));
         let mut text = if is_later && *self.redraw.header.borrow() == header { String::new() } else { header.clone() };
         self.redraw.header.replace(header);
         if !is_csv {
@@ -223,6 +226,9 @@ impl Run {
         let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
             ReportPosition::Alone | ReportPosition::First | ReportPosition::Line => text,
+            ReportPosition::LineOf(robot) => {
+                text.lines().map(|line| format!("{}  {line}\n", escape::line(&robot.name))).collect()
+            }
             ReportPosition::Next if self.redraw.is_on() => text,
             ReportPosition::Next => format!("\n{text}"),
             ReportPosition::Among { robot, first } => {
@@ -231,6 +237,14 @@ impl Run {
         };
         screen.data(&self.redraw.over(text))
     }
+}
+
+/// A failure with the name of its robot; those of the link have it already.
+pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
+    let label = robot.label();
+    let is_named = failure.message.starts_with(&label);
+    let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
+    Failure { message, ..failure }
 }
 
 /// What several robots reported, or why not.
