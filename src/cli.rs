@@ -231,6 +231,9 @@ pub struct Globals {
     /// Repeat a read until this holds: idle, NAME=VALUE, or a jq filter over its JSON
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
     pub until: Option<String>,
+    /// Read once, and end with exit code 8 unless this holds: idle, NAME=VALUE, or a jq filter over the JSON
+    #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", conflicts_with_all = ["watch", "count", "until"], help_heading = "Repeat")]
+    pub check: Option<String>,
     /// How long --until waits before it gives up with exit code 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
     pub within: Option<Duration>,
@@ -275,6 +278,7 @@ impl Globals {
             watch: self.watch,
             count: self.count,
             until: self.until,
+            check: self.check,
             within: self.within,
         }
     }

@@ -83,9 +83,9 @@ type Given = (Option<&'static str>, fn(Uses) -> bool);
 
 /// Each flag, if it was given, with whether it means something. `--for` is not among them: it comes with `--until`, or is
 /// the command's own.
-fn given(globals: &Globals) -> [Given; 16] {
+fn given(globals: &Globals) -> [Given; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
-    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, .. } = globals;
+    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;
     [
         (sim.then_some("--sim"), |uses| uses.robots),
         (target.as_ref().map(|_| "--target"), |uses| uses.robots),
@@ -100,6 +100,7 @@ fn given(globals: &Globals) -> [Given; 16] {
         (watch.map(|_| "--watch"), |uses| uses.repeat),
         (count.map(|_| "--count"), |uses| uses.repeat),
         (until.as_ref().map(|_| "--until"), |uses| uses.repeat),
+        (check.as_ref().map(|_| "--check"), |uses| uses.repeat),
         (yes.then_some("--yes"), |uses| uses.gate),
         (dry_run.then_some("--dry-run"), |uses| uses.gate),
         ((*on_interrupt != OnInterrupt::Stop).then_some("--on-interrupt"), |uses| uses.gate),

@@ -22,6 +22,7 @@ pub mod view;
 mod wrap;
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
 use serde::Serialize;
@@ -199,6 +200,15 @@ impl Screen {
     pub fn note(&self, text: &str) {
         if !self.quiet {
             Self::prose(&format!("{}\n", escape::lines(text)));
+        }
+    }
+
+    /// Says on a terminal, once in a process, that what follows is of the simulator.
+    pub fn note_simulator(&self) {
+        static IS_TOLD: AtomicBool = AtomicBool::new(false);
+
+        if self.format == Format::Table && io::stderr().is_terminal() && !IS_TOLD.swap(true, Ordering::Relaxed) {
+            self.note("this is the built-in simulator, not a controller");
         }
     }
 

@@ -5,7 +5,7 @@ use clap::CommandFactory as _;
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: &[&str] = [
+const YERC: &[&str] = &[
     "status",
     "backup",
     "restore",

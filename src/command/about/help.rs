@@ -142,3 +142,20 @@ fn start_states() -> String {
 fn exit_codes() -> String {
     Kind::TABLE.iter().map(|(_, exit, meaning)| format!("{exit:>4}  {meaning}\n")).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::Cli;
+
+    #[test]
+    fn topics_fit_80_columns() {
+        for (name, _) in topics().filter(|(name, _)| name != OPTIONS) {
+            let text = text(std::slice::from_ref(&name), false, Cli::command).unwrap();
+            let long: Vec<&str> = text.lines().filter(|line| line.chars().count() > 80).collect();
+            assert!(long.is_empty(), "{name}: {long:#?}");
+        }
+    }
+}

@@ -30,13 +30,13 @@ pub struct Backup {
     making: words::Backup<Fleet>,
     /// Talk to nobody: compare the files in the folder with their hashes
     #[arg(long, conflicts_with_all = ["resume", "force", "only"])]
-    check: bool,
+    verify: bool,
 }
 
 impl Backup {
     /// Whether it takes a robot.
     pub fn takes_robot(&self) -> bool {
-        !self.check
+        !self.verify
     }
 
     /// What makes a backup.
@@ -46,7 +46,7 @@ impl Backup {
 
     /// Does it.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
-        if self.check {
+        if self.verify {
             return run.local("backup.check", &Checked::of(self.making.folder())?);
         }
         run.robots(&self.making).await

@@ -9,6 +9,7 @@ use std::time::Duration;
 use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
+use serde::Serialize;
 use tokio::time::timeout_at;
 
 pub use self::print::as_value;
@@ -104,6 +105,9 @@ impl Run {
             return self.local(command.id(), &*outcome?);
         }
         let robots = self.ready(command).await?;
+        if robots.iter().any(|robot| robot.target.value.is_simulated()) && self.line.is_none() {
+            self.screen.note_simulator();
+        }
         match &robots[..] {
             [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
             robots => self.many(command, robots).await,
@@ -145,8 +149,8 @@ impl Run {
 
     /// The robots that a command is for, if it can be for these.
     fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
-        if command.intent(None).risk > Risk::Read && self.repeat.is_wanted() {
-            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
+        if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
+            return Err(Failure::usage("--watch, --count, --until and --check are for commands that only read")
                 .hint("run this command once, and watch `status` or `position`"));
         }
         if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
@@ -232,8 +236,26 @@ impl Run {
                 let told = printed.is_ok() && self.screen.is_json();
                 Err(RunError { failure, envelope: None, told })
             }
-            None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
+            None => {
+                printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+                let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
+                checked.map_err(|failure| RunError::at(robot, command, failure))
+            }
         }
+    }
+
+    /// Whether what `--check` asks for holds.
+    fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
+        let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
+        let envelopes = as_value(envelopes)?;
+        if check.holds(&envelopes)? {
+            return Ok(());
+        }
+        let failure = Failure::new(Kind::ConditionNotMet, format!("the condition '{check}' is not met"));
+        Err(match check.never(&envelopes) {
+            Some(why) => failure.hint(why),
+            None => failure,
+        })
     }
 
     /// A failure to report what was done: nobody should do it again for that.
@@ -353,8 +375,9 @@ impl Run {
         if self.gate.dry_run || !self.repeat.is_wanted() {
             let outcomes = self.gather(command, robots).await;
             let printed = self.print_many(command, robots, &outcomes, ReportPosition::First);
-            printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
-            return self.verdict(&outcomes);
+            let printed = printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+            self.verdict(&outcomes)?;
+            return Ok(self.check(&printed)?);
         }
         let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
         let verdict = self.many_over(command, robots, &mut links).await;

@@ -1,5 +1,7 @@
 //! What a run writes on stdout: views for people, envelopes for programs.
 
+use std::collections::HashMap;
+
 use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
@@ -93,9 +95,9 @@ impl Run {
         if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
             self.screen.note(&summary);
         }
-        for (robot, failure) in reasons {
+        for failure in alike(&reasons) {
             self.redraw.forget();
-            self.screen.failure(&named(robot, failure));
+            self.screen.failure(&failure);
         }
         Ok(envelopes)
     }
@@ -237,6 +239,57 @@ impl Run {
         };
         screen.data(&self.redraw.over(text))
     }
+}
+
+/// The failures of robots, those that many have in common as one.
+fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
+    /// So many robots are told one by one.
+    const FEW: usize = 5;
+    /// So many are named in what stands for all.
+    const NAMED: usize = 3;
+
+    let why = |(robot, failure): &(&Robot, Failure)| {
+        let message = failure.message.strip_prefix(&robot.label()).unwrap_or(&failure.message);
+        let message = message.trim_start_matches(": ").replace(robot.target.value.url(), "…");
+        let hint = failure.hint.as_ref().map(|hint| without(hint, &robot.name));
+        (failure.kind, without(&message, &robot.name), hint)
+    };
+    let mut groups: Vec<(_, Vec<&(&Robot, Failure)>)> = Vec::new();
+    let mut places = HashMap::new();
+    for reason in reasons {
+        let why = why(reason);
+        let at = *places.entry((why.0.exit(), why.1.clone(), why.2.clone())).or_insert_with(|| {
+            groups.push((why, Vec::new()));
+            groups.len() - 1
+        });
+        groups[at].1.push(reason);
+    }
+    let told = groups.into_iter().flat_map(|((kind, message, hint), all)| {
+        if all.len() <= FEW {
+            return all.into_iter().map(|(robot, failure)| named(robot, failure.clone())).collect();
+        }
+        let names: Vec<&str> = all.iter().take(NAMED).map(|(robot, _)| robot.name.as_str()).collect();
+        let message = format!("{} and {} more robots: {message}", names.join(", "), all.len() - NAMED);
+        vec![Failure { hint, ..Failure::new(kind, message) }]
+    });
+    told.collect()
+}
+
+/// A text with dots in place of a word.
+fn without(text: &str, word: &str) -> String {
+    let is_part = |one: Option<char>| one.is_some_and(|one| one.is_alphanumeric() || one == '_' || one == '-');
+    let mut out = String::with_capacity(text.len());
+    let mut done = 0;
+    for (at, found) in text.match_indices(word) {
+        let (before, after) = (text[..at].chars().next_back(), text[at + found.len()..].chars().next());
+        if !is_part(before) && !is_part(after) {
+            out.push_str(&text[done..at]);
+            out.push('…');
+            done = at + found.len();
+        }
+    }
+    out.push_str(&text[done..]);
+    out
 }
 
 /// A failure with the name of its robot; those of the link have it already.
