@@ -165,6 +165,9 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub jq: Option<String>,
+    /// Ask nothing: what would be asked is refused
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Safety")]
+    pub no_input: bool,
     /// Only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
     pub quiet: bool,
@@ -268,6 +271,7 @@ impl Globals {
             color: if self.color == ColorChoice::Auto { all.color } else { self.color },
             no_pager: self.no_pager || all.no_pager,
             trace: self.trace.or_else(|| all.trace.clone()),
+            no_input: self.no_input || all.no_input,
             yes: self.yes || all.yes,
             dry_run: self.dry_run || all.dry_run,
             on_interrupt: if self.on_interrupt == OnInterrupt::Stop { all.on_interrupt } else { self.on_interrupt },

@@ -25,7 +25,8 @@ use crate::settings::inventory::Inventory;
 use crate::settings::target::Family;
 use crate::settings::{Selection, Sources};
 
-const STOPS: [&str; 7] = ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+const STOPS: [&str; 7] =
+    ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
 /// Two robots of each family that are not there; the second ones are read-only.
 const ROBOTS: &str = r#"

@@ -187,8 +187,14 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let until = globals.until.as_deref().map(Condition::new).transpose()?;
     let check = globals.check.as_deref().map(Condition::new).transpose()?;
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
-    let repeat =
-        Repeat { every: globals.watch, count: globals.count, until, check, within: globals.within, ..Repeat::default() };
+    let repeat = Repeat {
+        every: globals.watch,
+        count: globals.count,
+        until,
+        check,
+        within: globals.within,
+        ..Repeat::default()
+    };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })

@@ -148,10 +148,14 @@ mod tests {
             assert!(!why.contains("armctl") || why.contains('`'), "{words}: {why}");
             for line in instead.split('`').skip(1).step_by(2) {
                 let words = line.trim_start_matches("armctl ").split(' ');
-                let words: Vec<&str> = words.take_while(|word| word.bytes().all(|byte| byte.is_ascii_lowercase())).collect();
-                let leads = words.iter().try_fold(&Cli::command(), |command, word| {
-                    command.find_subcommand(word).or_else(|| (!command.has_subcommands()).then_some(command))
-                }).is_some();
+                let words: Vec<&str> =
+                    words.take_while(|word| word.bytes().all(|byte| byte.is_ascii_lowercase())).collect();
+                let leads = words
+                    .iter()
+                    .try_fold(&Cli::command(), |command, word| {
+                        command.find_subcommand(word).or_else(|| (!command.has_subcommands()).then_some(command))
+                    })
+                    .is_some();
                 assert!(leads, "{line}");
             }
         }

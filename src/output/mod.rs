@@ -74,18 +74,25 @@ pub struct Screen {
     color: ColorChoice,
     pager: bool,
     plain_errors: bool,
+    questions: bool,
 }
 
 impl Screen {
     /// Everything as flags and environment want it.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
-        Self { format, quiet, verbosity, color, pager: false, plain_errors: false }
+        Self { format, quiet, verbosity, color, pager: false, plain_errors: false, questions: true }
     }
 
     /// With errors in words, although data is JSON: `--jq` alone.
     #[must_use]
     pub fn with_plain_errors(self, plain_errors: bool) -> Self {
         Self { plain_errors, ..self }
+    }
+
+    /// With questions to a person, or without.
+    #[must_use]
+    pub fn with_questions(self, questions: bool) -> Self {
+        Self { questions, ..self }
     }
 
     /// With a pager for long texts to read, or without.
@@ -104,6 +111,7 @@ impl Screen {
             color: ColorChoice::Never,
             pager: false,
             plain_errors: false,
+            questions: true,
         }
     }
 
@@ -130,7 +138,7 @@ impl Screen {
 
     /// Whether a person can be asked: stdin and stderr are terminals.
     pub fn can_ask(&self) -> bool {
-        io::stdin().is_terminal() && io::stderr().is_terminal()
+        self.questions && io::stdin().is_terminal() && io::stderr().is_terminal()
     }
 
     /// Whether progress can redraw itself on stderr.

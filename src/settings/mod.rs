@@ -293,7 +293,9 @@ impl Sources {
     /// A flag names robots, too.
     pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
         if self.selection.has_flags() {
-            return Err(Failure::usage(format!("{} and a flag name robots", names.join(" and "))).hint("name them once"));
+            return Err(
+                Failure::usage(format!("{} and a flag name robots", names.join(" and "))).hint("name them once")
+            );
         }
         (self.selection.robots, self.selection.from_environment) = (names.to_vec(), false);
         Ok(())

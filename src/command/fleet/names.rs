@@ -3,9 +3,9 @@
 use clap::{Args, Subcommand};
 
 use super::robots::entry::{self, known};
+use crate::command::SchemaEntry;
 use crate::command::frame::names::{Listing, list};
 use crate::command::frame::run::{Run, RunError};
-use crate::command::SchemaEntry;
 use crate::failure::Failure;
 use crate::settings::Robot;
 

@@ -4,6 +4,7 @@
 //! [`CommandSet`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
 //! completion and schema follow from it.
 
+pub mod asking;
 pub mod attach;
 pub mod authority;
 pub mod background;

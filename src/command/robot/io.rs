@@ -247,15 +247,20 @@ mod tests {
     #[test]
     fn every_key_is_in_every_row() {
         let read = serde_json::to_value(IoRow::state(item(None), Ok(true))).unwrap();
-        let expected =
-            json!({"name": "IN1.3", "label": null, "kind": "input", "address": "PN01.3", "meaning": null, "ok": true, "value": true});
+        let expected = json!({"name": "IN1.3", "label": null, "kind": "input", "address": "PN01.3", "meaning": null, "ok": true, "value": true});
         assert_eq!(read, expected);
         let refused = IoRow::state(item(None), Err(Failure::new(Kind::Refused, "no")));
         let refused = serde_json::to_value(refused).unwrap();
-        assert_eq!((&refused["ok"], &refused["value"], &refused["error"]["asked"]), (&json!(false), &json!(null), &json!("IN1.3")));
+        assert_eq!(
+            (&refused["ok"], &refused["value"], &refused["error"]["asked"]),
+            (&json!(false), &json!(null), &json!("IN1.3"))
+        );
         let set = WrittenSignal::new(item(None), Some(IoValue::State(false)), IoValue::State(true));
         let set = serde_json::to_value(set).unwrap();
-        assert_eq!((&set["value"], &set["old"], &set["new"], &set["written"]), (&json!(true), &json!(false), &json!(true), &json!(true)));
+        assert_eq!(
+            (&set["value"], &set["old"], &set["new"], &set["written"]),
+            (&json!(true), &json!(false), &json!(true), &json!(true))
+        );
     }
 
     #[test]

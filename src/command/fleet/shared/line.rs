@@ -103,7 +103,8 @@ fn parse(family: Family, words: &[String]) -> Parsed {
         Err(error) => {
             let told = error.render().to_string();
             let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
-            let message = told.split_once("': ").filter(|_| told.starts_with("invalid value")).map_or(told, |(_, why)| why);
+            let message =
+                told.split_once("': ").filter(|_| told.starts_with("invalid value")).map_or(told, |(_, why)| why);
             Err(Failure::usage(message).hint(format!("see `armctl {family} {} -h`", words[..2].join(" "))))
         }
     }

@@ -82,7 +82,10 @@ mod tests {
 
     #[test]
     fn only_the_screens_of_the_signals_are_asked_for() {
-        assert_eq!(all_blocks(&["io", "get", "OUT16.1", "IN1.3,IN2"]).unwrap(), ["@MINP SNO=0 GN=1", "@MOUT SNO=0 GN=5"]);
+        assert_eq!(
+            all_blocks(&["io", "get", "OUT16.1", "IN1.3,IN2"]).unwrap(),
+            ["@MINP SNO=0 GN=1", "@MOUT SNO=0 GN=5"]
+        );
         assert_eq!(all_blocks(&["io", "get", "INT4.1"]).unwrap(), ["@MNIN SNO=0 GN=1"]);
         assert_eq!(all_blocks(&["io", "get", "IN3.1", "--station", "4"]).unwrap(), ["@MINP SNO=4 GN=1"]);
     }

@@ -43,7 +43,8 @@ async fn rows(
     Station { station }: Station,
     context: Context<'_, Toyo>,
 ) -> Result<Vec<IoRow>, Failure> {
-    let ports = banks.into_iter().flat_map(|bank| (bank.first(station)..=bank.last(station)).map(move |port| (bank, port)));
+    let ports =
+        banks.into_iter().flat_map(|bank| (bank.first(station)..=bank.last(station)).map(move |port| (bank, port)));
     let spots: Vec<Spot> = ports.flat_map(|(bank, port)| (1..=8).map(move |bit| Spot { bank, port, bit })).collect();
     let names = names::of(context.robot, context.screen);
     let mut bytes = read(context.link, station, &spots).await?;

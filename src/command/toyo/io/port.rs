@@ -214,9 +214,11 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
         };
         let bit = match bit {
             None => None,
-            Some(bit) => Some(typed::unsigned::<u8>(bit).filter(|bit| (1..=8).contains(bit)).ok_or_else(|| {
-                format!("'{bit}' is not a valid bit; a port has the bits 1 to 8")
-            })?),
+            Some(bit) => Some(
+                typed::unsigned::<u8>(bit)
+                    .filter(|bit| (1..=8).contains(bit))
+                    .ok_or_else(|| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8"))?,
+            ),
         };
         Ok::<_, String>((port_of(port).ok_or_else(wrong)?, bit))
     };
@@ -263,7 +265,10 @@ mod tests {
         assert_eq!(names("IN1.3"), ["IN1.3"]);
         assert_eq!(names("out2.7..OUT3.1"), ["OUT2.7", "OUT2.8", "OUT3.1"]);
         assert_eq!(names("INT1.7..8"), ["INT1.7", "INT1.8"]);
-        assert_eq!((names("IN0").len(), names("IN1..3").len(), names("IN1..IN3").first().cloned()), (8, 24, Some("IN1.1".to_owned())));
+        assert_eq!(
+            (names("IN0").len(), names("IN1..3").len(), names("IN1..IN3").first().cloned()),
+            (8, 24, Some("IN1.1".to_owned()))
+        );
         for wrong in ["", "1.3", "IN", "IN1.9", "IN1.0", "IN100", "CN1", "IN2..IN1", "IN1.3..OUT1.4"] {
             assert!(addresses(wrong).is_err(), "{wrong}");
         }

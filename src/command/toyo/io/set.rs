@@ -323,7 +323,10 @@ mod tests {
         assert_eq!((&item["ok"], &item["value"], &item["new"]), (&false.into(), &false.into(), &true.into()), "{set}");
         let failure = failure.unwrap();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "OUT1.3: the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
+        assert_eq!(
+            failure.message,
+            "OUT1.3: the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000"
+        );
         let (set, failure) = Bench::with_faults("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
         assert_eq!((&set["items"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
         let silent =
