@@ -136,6 +136,11 @@ impl Screen {
         io::stdin().is_terminal()
     }
 
+    /// Whether a person can choose what was not named: where a person can be asked, and no program reads.
+    pub fn can_choose(&self) -> bool {
+        self.can_ask() && !self.is_json() && std::env::var_os("CI").is_none_or(|value| value.is_empty())
+    }
+
     /// Whether a person can be asked: stdin and stderr are terminals.
     pub fn can_ask(&self) -> bool {
         self.questions && io::stdin().is_terminal() && io::stderr().is_terminal()

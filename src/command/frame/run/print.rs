@@ -250,9 +250,8 @@ fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
 
     let why = |(robot, failure): &(&Robot, Failure)| {
         let message = failure.message.strip_prefix(&robot.label()).unwrap_or(&failure.message);
-        let message = message.trim_start_matches(": ").replace(robot.target.value.url(), "…");
-        let hint = failure.hint.as_ref().map(|hint| without(hint, &robot.name));
-        (failure.kind, without(&message, &robot.name), hint)
+        let hint = failure.hint.as_ref().map(|hint| general(hint, robot));
+        (failure.kind, general(message.trim_start_matches(": "), robot), hint)
     };
     let mut groups: Vec<(_, Vec<&(&Robot, Failure)>)> = Vec::new();
     let mut places = HashMap::new();
@@ -273,6 +272,14 @@ fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
         vec![Failure { hint, ..Failure::new(kind, message) }]
     });
     told.collect()
+}
+
+/// A text with dots in place of what is this robot's alone: its name, host and port.
+fn general(text: &str, robot: &Robot) -> String {
+    let url = robot.target.value.url();
+    let parts = url.split(|one: char| !one.is_alphanumeric() && !"._-".contains(one));
+    let parts = parts.filter(|part| part.len() > 1 && part.contains(|one: char| one.is_ascii_digit()));
+    std::iter::once(robot.name.as_str()).chain(parts).fold(text.replace(url, "…"), |text, part| without(&text, part))
 }
 
 /// A text with dots in place of a word.
@@ -323,4 +330,42 @@ pub fn timed(envelope: Envelope) -> Envelope {
 /// What is written, as a value.
 pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failure::Kind;
+    use crate::settings::Sources;
+    use crate::settings::inventory::Inventory;
+
+    #[test]
+    fn failures_that_many_have_in_common_are_one() {
+        let robots = |count: u16| -> Vec<Robot> {
+            let one = |at: u16| {
+                format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
+            };
+            let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
+            let mut sources = Sources { inventory, ..Sources::default() };
+            sources.selection.all = true;
+            sources.robots(None).unwrap()
+        };
+        let failures = |robots: &[Robot]| -> Vec<String> {
+            let failure = |robot: &Robot| {
+                let message = format!("{}: nothing listens on UDP port {}", robot.label(), 2000 + robots.len());
+                let port = robot.target.value.url().rsplit(':').next().unwrap();
+                Failure::new(Kind::NoAnswer, message.replace(&(2000 + robots.len()).to_string(), port))
+                    .hint(format!("`armctl robots check {}`", robot.name))
+            };
+            let reasons: Vec<(&Robot, Failure)> = robots.iter().map(|robot| (robot, failure(robot))).collect();
+            alike(&reasons)
+                .into_iter()
+                .map(|failure| format!("{} | {}", failure.message, failure.hint.unwrap()))
+                .collect()
+        };
+        let few = failures(&robots(2));
+        assert_eq!(few[1], "r1 (udp://127.0.0.1:2001): nothing listens on UDP port 2001 | `armctl robots check r1`");
+        let many = failures(&robots(2500));
+        assert_eq!(many, ["r0, r1, r2 and 2497 more robots: nothing listens on UDP port … | `armctl robots check …`"]);
+    }
 }
