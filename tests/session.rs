@@ -414,7 +414,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
         let desk = Desk::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
         let session = Running::session(&desk, "cell");
         desk.data("-r cell yrcx io set 20=on");
-        assert_eq!(desk.data("-r cell yrcx io get SI20")["signals"][0]["on"], true, "{target}");
+        assert_eq!(desk.data("-r cell yrcx io get SI20")["items"][0]["value"], true, "{target}");
         assert!(desk.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(), "{target}");
         desk.data("session close cell");
         assert_eq!(session.end().0, Some(0), "{target}");
@@ -528,7 +528,7 @@ fn a_simulator_in_a_session_keeps_its_state() {
     }
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 3);
     desk.data("-r x yrcx io set 20=on");
-    assert_eq!(desk.data("-r x yrcx io get SI20")["signals"][0]["on"], true);
+    assert_eq!(desk.data("-r x yrcx io get SI20")["items"][0]["value"], true);
     desk.data("-r y yerc var set B0=42");
     assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
     desk.data("-r t toyo counter set 7 42");

@@ -452,7 +452,7 @@ mod tests {
             let tip = tip(line).unwrap_or_default();
             assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
         }
-        let absent = tip("armctl yerc home").unwrap();
+        let absent = tip("armctl yerc origin").unwrap();
         assert!(
             absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
             "{absent}"
@@ -501,7 +501,7 @@ mod tests {
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
             ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
             ("armctl yerc job start --name WELD", "NAME stands alone, without --name"),
-            ("armctl toyo io get 1", "the command is `armctl toyo io in` or `armctl toyo io out`"),
+            ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 12.600", "say whose code it is: `armctl explain yrcx 12.600`"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");

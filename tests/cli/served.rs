@@ -27,7 +27,7 @@ const LEFT_OUT: [&str; 35] = [
     "toyo robot-type 1 0",
     "toyo run sequential",
     "toyo run sequential 1 --repeat 20 --stats",
-    "toyo run sequential 10",
+    "toyo run sequential 10 --wait",
     "yerc file cmos CMOSBK.BIN",
     "yerc file cmos CMOSBK.BIN --download-only",
     "yerc move joint --x 400 --y 0 --z 300 --rx 180 --ry 0 --rz 0 --speed 10%",

@@ -60,17 +60,16 @@ pub const LINES: &[(&str, &[&str])] = &[
 /// What a family has not, though others have: the words before it, the words for it, and what there is instead.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
-    ("yerc", &["home", "homing", "origin"],
+    ("yerc", &["homing", "origin"],
         "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
          origin is set at the pendant"),
-    ("yrcx", &["hold"], "a YRCX has no hold; `armctl yrcx stop` stops the robot program"),
-    ("toyo", &["hold"], "the protocol has no hold; `armctl toyo stop` stops what moves"),
-    ("yrcx", &["job", "jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
-    ("toyo", &["job", "jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
-    ("yrcx program", &["list", "get", "put", "ls"],
-        "the fieldbus carries no names or texts of programs; `armctl yrcx program show` tells which one each task runs"),
+    ("yrcx", &["jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
+    ("toyo", &["jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
     ("yrcx run", &["point"], "a YRCX moves to a point with `armctl yrcx move`: see its -h"),
-    ("toyo io", &["get", "list", "read"], "the command is `armctl toyo io in` or `armctl toyo io out`"),
+    ("toyo io", &["in", "out", "internal"], "the command is `armctl toyo io list`"),
+    ("robots", &["names"], "the command is `armctl names list -r ROBOT`"),
+    ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
+    ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
         "a point has its speed, see `armctl toyo point get`, and all speeds are scaled by `armctl toyo override`"),
 ];

@@ -3,6 +3,7 @@
 pub mod backup;
 #[cfg(feature = "plant")]
 pub mod metrics;
+pub mod names;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;

@@ -10,6 +10,8 @@ use crate::settings::target::Family;
 
 /// A bit of an output port by its name, with the state to set.
 pub const OUTPUT_STATE: ValueKind = named(&[Kind::Output], &["=on", "=off"]);
+/// A signal by its name.
+pub const SIGNAL: ValueKind = named(&[Kind::Input, Kind::Output], &[""]);
 /// A counter by its name.
 pub const COUNTER: ValueKind = named(&[Kind::Counter], &[""]);
 

@@ -41,7 +41,7 @@ const LINES: &[(&str, Risk)] = &[
     ("easy select 1", Write), ("easy progress", Read),
     ("backup FOLDER/new", Write), ("restore FOLDER/backup --only easy,palletizing-1 --force", Destroy),
     ("restore FOLDER/backup --only points-1 --force", Destroy), ("diff FOLDER/backup", Write),
-    ("io in", Read), ("io out", Read), ("io internal", Read), ("io watch", Read), ("io set 1.1=on", Write), ("io direct 1", Write),
+    ("io get IN1.1", Read), ("io list", Read), ("io watch", Read), ("io set OUT1.1=on", Write), ("io direct 1", Write),
     ("counter get 1", Read), ("counter watch 1", Read), ("counter set 1 5", Write), ("timer get 1", Read),
     ("override get", Read), ("override set 50", Write), ("task get", Read), ("task set 1", Write),
     ("offset", Read), ("coordinate set 0 0 0 0", Motion), ("bus", Read), ("card read", Destroy), ("card write", Destroy),

@@ -158,7 +158,7 @@ pub fn verification_hint(command: Command) -> &'static str {
         }
         Command::Wplt | Command::Cppl => "`toyo palletizing get` tells what is stored",
         Command::Wesy | Command::Cesy => "`toyo easy get` tells what is stored",
-        Command::Dout => "`toyo io out` tells",
+        Command::Dout => "`toyo io list --out` reads them",
         Command::Wovr => "`toyo override get` tells",
         Command::Mcst => "`toyo counter get` tells",
         Command::Ctsk => "`toyo task get` tells",

@@ -16,7 +16,7 @@ use crate::failure::Kind;
 use crate::gate::Gate;
 
 /// What sends nothing.
-const AT_HOME: [&str; 2] = ["names list", "names forget"];
+const AT_HOME: [&str; 1] = ["names forget"];
 
 /// A line for each command, with files in `DIR`; its risk, and the most that a frame of it may be.
 const LINES: &[(&str, Risk, Risk)] = &[
@@ -67,7 +67,6 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
     ("names get", Read, Read),
-    ("names list", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
     ("servo off", Motion, Motion),

@@ -43,7 +43,6 @@ const READS: &[&str] = &[
     "info version",
     "info system",
     "info servo",
-    "info position",
     "info tasks",
     "info line",
     "info alarm",

@@ -12,7 +12,12 @@ use crate::failure::{Failure, Kind};
 /// Words that the manual does not allow to be sent are a mistake of the command line.
 impl From<WordError> for Failure {
     fn from(error: WordError) -> Self {
-        let failure = Self::usage(error.to_string());
+        // The field is what was typed; its word is for whoever sends words.
+        let message = match (error.place.key, error.place.word) {
+            (Some(key), Some(word)) => format!("{key} ({}{word}): {}", error.place.side, error.problem),
+            _ => error.to_string(),
+        };
+        let failure = Self::usage(message);
         match error.alarm {
             Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
             None => failure.hint("`--help` tells what may be given"),

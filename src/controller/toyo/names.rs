@@ -3,8 +3,8 @@
 use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
-/// Bits of ports of station 0, counters, timers and points.
-pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "CN", "TN", "PT", "PN", "F"] };
+/// Bits of ports of station 0 and of the inside, counters, timers and points.
+pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };
 
 /// The last port of a kind that may be there (DOUT takes 1 to 99), and the last counter.
 const LAST: u8 = 99;

@@ -189,8 +189,8 @@ fn a_watch_begins_with_the_state() {
     let mut bench = Bench::new(Scripted::new([]));
     let first = bench.run(&["io", "watch", "servo-on", "20"]).unwrap();
     let told = first["changes"].as_array().unwrap().iter().map(|change| (&change["name"], &change["old"]));
-    assert_eq!(told.collect::<Vec<_>>(), [(&json!("SO(02)"), &json!(null)), (&json!("SO(20)"), &json!(null))]);
-    assert_eq!(first["signals"][1]["signal"], "SO(20)");
+    assert_eq!(told.collect::<Vec<_>>(), [(&json!("servo-on"), &json!(null)), (&json!("SO(20)"), &json!(null))]);
+    assert_eq!(first["items"][1]["name"], "SO(20)");
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn without_words_for_commands_signals_work_and_nothing_else_leaves() {
     assert_eq!(at_rest, (vec![], vec![0x0041]), "SI(00) and SI(06) on, from the first image on");
     bench.run(&["run"]).unwrap();
     bench.run(&["stop"]).unwrap();
-    assert_eq!(bench.run(&["io", "get", "SO1"]).unwrap()["signals"][0]["on"], true);
+    assert_eq!(bench.run(&["io", "get", "SO1"]).unwrap()["items"][0]["value"], true);
     let peer = bench.into_peer();
     assert!(peer.taken.is_empty() && peer.bits.len() > 3, "{:?}", peer.bits);
 }
