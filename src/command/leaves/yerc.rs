@@ -105,6 +105,8 @@ pub const LEAVES: &[Leaf] = &[
     ("yerc register get 0..20", Read),
     ("yerc register set 5=1000", Write),
     ("yerc register set 5=0x03E8 6=0", Write),
+    ("yerc register watch 0", Read),
+    ("yerc register watch 0..20 --for 1m", Read),
     ("yerc say HELLO", Write),
     ("yerc say 'BACK AT NOON'", Write),
     ("yerc say ''  # clears it", Write),

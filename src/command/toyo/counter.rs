@@ -233,7 +233,7 @@ mod tests {
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
         );
         assert_eq!(all_blocks(&["counter", "get"]).unwrap().len(), 99);
-        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001", "@MCNT CN=01"]);
+        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCNT CN=01", "@MCST CN01=0001", "@MCNT CN=01"]);
     }
 
     #[test]
@@ -244,7 +244,7 @@ mod tests {
             |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
+        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but it stands at 8");
         let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn ranges_are_checked() {
         assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
-        assert!(objection(&["counter", "set", "1", "10000"]).contains("0 to 9999"));
+        assert!(blocks(&["counter", "set", "1", "10000"]).unwrap_err().message.contains("0 to 9999"));
         assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
     }
 

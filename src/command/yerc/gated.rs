@@ -66,6 +66,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("io set 27010=on", Write, Write),
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
+    ("register watch 1", Read, Read),
     ("names get", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
