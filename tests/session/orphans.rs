@@ -5,6 +5,8 @@ use std::io::Write as _;
 use std::process::Command;
 
 use super::{Desk, Running, serving, stderr};
+#[cfg(target_os = "linux")]
+use crate::support::namespaces;
 use crate::support::terminal::Terminal;
 
 /// How the process ends.
@@ -396,5 +398,62 @@ fn a_stop_goes_around_a_session_that_does_not_respond() {
             assert!(stderr(&stopped).contains(&format!("`kill -KILL {pid}`")), "{}", stderr(&stopped));
         }
         session.signal("CONT");
+    }
+}
+
+/// A motion over PROFINET, which takes a network of its own: the machine says that the robot stands, and what is the matter.
+#[cfg(target_os = "linux")]
+const PROFINET: &str = r#"
+export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
+cd "$FOLDER"
+URL='profinet://yrcx-sim@pc0?layout=0:1,0.0x8000:1/0x8000,0.0x8001:1/0x8001,1:0x101:i48,2:0x102:o48&watchdog=1900ms'
+stands() {
+  while :; do
+    SAID=$(grep -c '^robot 1 ' machine)
+    echo robot >&9
+    while [ "$(grep -c '^robot 1 ' machine)" = "$SAID" ]; do :; done
+    grep '^robot 1 ' machine | tail -n 1 | grep -q moving || break
+  done
+  grep '^now ' machine | tail -n 1
+}
+for SIGNAL in KILL STOP; do for WAY in direct session; do
+  rm -f console; mkfifo console
+  $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 --console < console > sim 2> machine & D=$!
+  exec 9> console
+  until grep -q 'profinet://' sim; do kill -0 $D || exit 1; done
+  if [ $WAY = session ]; then
+    "$ARMCTL" -t "$URL" session open > opened 2> session & H=$!
+    until grep -q 'held by' opened; do kill -0 $H || exit 1; done
+  fi
+  "$ARMCTL" -t "$URL" --yes -vv yrcx move --to 900,0,0,0 --speed-of-max 0.1 > /dev/null 2> moves & P=$!
+  until grep -q -e '<- WO 0100' moves; do kill -0 $P || exit 1; done
+  kill -s $SIGNAL $P
+  wait $P
+  if [ $WAY = session ]; then until grep -q 'the robot was stopped' session; do kill -0 $H || exit 1; done; fi
+  echo "$WAY $SIGNAL: $(stands)"
+  if [ $WAY = session ]; then kill $H; wait $H; fi
+  exec 9>&-
+  kill $D; wait $D
+done; done
+"#;
+
+#[cfg(target_os = "linux")]
+#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
+#[test]
+fn a_yrcx_on_profinet_whose_master_or_client_is_killed_or_frozen_stops() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().to_str().unwrap();
+    let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];
+    let Some(said) = namespaces::run(PROFINET, &variables) else {
+        println!("{}", namespaces::SKIPPED);
+        return;
+    };
+    for signal in SIGNALS {
+        assert!(
+            said.lines()
+                .any(|line| line.starts_with(&format!("direct {signal}: now ")) && line.contains("alarm 12.57")),
+            "{said}"
+        );
+        assert!(said.lines().any(|line| line.starts_with(&format!("session {signal}: now "))), "{said}");
     }
 }

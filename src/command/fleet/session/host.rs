@@ -92,7 +92,7 @@ impl SessionHost {
     /// Serves until a client has it end, or none has come for long. The future may be dropped: [`SessionHost::end`] goes on
     /// from there.
     pub async fn serve(&mut self) -> Why {
-        self.guardian.guard(self.host.serve()).await
+        self.guardian.guard(Box::pin(self.host.serve())).await
     }
 
     /// Whether the controller shows that something is under way.

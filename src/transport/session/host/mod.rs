@@ -423,8 +423,9 @@ impl Host {
     fn keep_guard(&mut self) {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
-        let moves = mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion && is_foreign(mover));
-        let must_guard = (moves || self.stop_first.is_some()) && self.held.images().is_none();
+        let is_left = |mover: &Client| mover.purpose == Purpose::LeavesMotion;
+        let is_foreign_motion = mover.is_some_and(|mover| is_foreign(mover) && !is_left(mover));
+        let must_guard = (is_foreign_motion || self.stop_first.is_some()) && self.held.images().is_none();
         if must_guard != self.is_guarding
             && let Some(guard) = &mut self.guard
         {
