@@ -59,7 +59,7 @@ const YERC: [&str; 51] = [
     "raw",
 ];
 
-const TOYO: [&str; 80] = [
+const TOYO: [&str; 81] = [
     "status",
     "home",
     "position",
@@ -105,6 +105,7 @@ const TOYO: [&str; 80] = [
     "program list",
     "program get",
     "program put",
+    "program diff",
     "program edit",
     "program insert",
     "program delete",

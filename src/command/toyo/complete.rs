@@ -13,6 +13,11 @@ pub const OUTPUT_STATE: ValueKind = named(&[Kind::Output], &["=on", "=off"]);
 /// A counter by its name.
 pub const COUNTER: ValueKind = named(&[Kind::Counter], &[""]);
 
+/// A timer by its name.
+pub const TIMER: ValueKind = named(&[Kind::Timer], &[""]);
+/// A point by its name.
+pub const POINT: ValueKind = named(&[Kind::Point], &[""]);
+
 const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
     ValueKind::Named(Family::Toyo, Named { kinds, endings, listed: Vec::new })
 }

@@ -31,7 +31,7 @@ const LINES: &[(&str, Risk)] = &[
     ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy),
     ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy),
     ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy),
-    ("program list", Read), ("program get", Read), ("program show", Read), ("program search 5", Write),
+    ("program list", Read), ("program get", Read), ("program diff FOLDER/program.txt", Read), ("program show", Read), ("program search 5", Write),
     ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
     ("program insert 1 HOME --task 2", Destroy), ("program delete 1", Destroy), ("program delete 1 --to 2", Destroy),
     ("program copy 1 2 --at 3", Destroy), ("program copy 1 2 --at 3 --from-task 1 --to-task 2", Destroy),

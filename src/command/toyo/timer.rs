@@ -4,12 +4,16 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::items::{self, Item, read_each};
 use super::link::Toyo;
-use super::numbers::{Numbers, small};
+use super::numbers::{Numbers, named, small};
+use crate::command::frame::names;
 use crate::command::{Command, Context, Report, commands};
+use crate::controller::names::Kind;
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
@@ -26,9 +30,13 @@ commands! {
 /// Reads timers; without a number, all nine.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Such as 5 or 1-3
-    #[arg(value_name = "N", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(field(), text))]
+    /// Such as 5, TN5 or 1-3, or a name
+    #[arg(value_name = "N", value_delimiter = ',', value_parser = numbers, add = complete::TIMER)]
     timers: Vec<Numbers>,
+}
+
+fn numbers(text: &str) -> Result<Numbers, String> {
+    named(Kind::Timer, text, |text| Numbers::parse(field(), text))
 }
 
 /// Number of a timer, as in MTMR TN=1.
@@ -46,9 +54,11 @@ impl Command for Get {
         let requests = numbers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
         let answers = read_each(context.link, context.screen, "reading timers", &requests).await?;
-        let time = |answer: &Record| Time {
-            timer: small(answer, "timer"),
-            time_s: f64::from(answer.number("time").unwrap_or(0)) / 10.0,
+        let names = names::of(context.robot, context.screen);
+        let time = |answer: &Record| {
+            let timer = small(answer, "timer");
+            let label = names::label(names, Kind::Timer, &names_of::timer(timer));
+            Time { timer, label, time_s: f64::from(answer.number("time").unwrap_or(0)) / 10.0 }
         };
         let timers = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("timer", *number, answer, time));
         Ok(Timers { timers: timers.collect() })
@@ -65,17 +75,20 @@ pub struct Timers {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Time {
     timer: u8,
+    /// What people call it; null where it has no name.
+    label: Option<String>,
     time_s: f64,
 }
 
 impl Report for Timers {
     fn view(&self) -> View {
-        let mut table = Table::new(&["timer", "time (s)"], "no timers");
+        let mut table = Table::new(&["timer", "time (s)", "label"], "no timers");
         for timer in &self.timers {
-            timer
-                .show(&mut table, |Time { timer, time_s }| vec![(*timer).into(), Cell::number(format!("{time_s:.1}"))]);
+            timer.show(&mut table, |Time { timer, label, time_s }| {
+                vec![(*timer).into(), Cell::number(format!("{time_s:.1}")), Cell::maybe(label.as_deref())]
+            });
         }
-        View::table(table)
+        View::table(table.without_blank("label"))
     }
 
     fn failure(&self) -> Option<Failure> {

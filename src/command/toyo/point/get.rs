@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{OTHER_TASK, Row, field, parse_points, read_all};
+use crate::command::toyo::complete;
 use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
@@ -17,8 +18,8 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(after_help = OTHER_TASK)]
 pub struct Get {
-    /// Rows of the coordinate table, 1 to 999: 1-10,20
-    #[arg(required = true, value_name = "POINT", value_delimiter = ',', value_parser = parse_points)]
+    /// Rows of the coordinate table, 1 to 999: 1-10,20; or names
+    #[arg(required = true, value_name = "POINT", value_delimiter = ',', value_parser = parse_points, add = complete::POINT)]
     points: Vec<Numbers>,
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]

@@ -13,11 +13,12 @@ use serde::Serialize;
 
 use super::items::{Answers, Item, read_each};
 use super::link::{self, Link};
-use super::numbers::Numbers;
+use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
 use super::tasks;
 use crate::client::toyo::Letters;
 use crate::command::commands;
+use crate::controller::names::Kind;
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
 use crate::controller::toyo::layout::Record;
@@ -86,7 +87,12 @@ fn field() -> Field {
 
 /// Points on a command line.
 fn parse_points(text: &str) -> Result<Numbers, String> {
-    Numbers::parse(&field(), text)
+    named(Kind::Point, text, |text| Numbers::parse(&field(), text))
+}
+
+/// A point on a command line: its number, or its name.
+pub fn parse_point(text: &str) -> Result<i32, String> {
+    named(Kind::Point, text, |text| number(&field(), text))
 }
 
 /// Reads points of a task, or of the current one, one after the other; says which task that is. A dry run notes them
