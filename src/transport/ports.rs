@@ -97,7 +97,8 @@ fn usage(process: &Path, port: &Path) -> Option<Usage> {
             let found = if info().contains("\nlock:") { Usage::Locked } else { Usage::Opened };
             usage = usage.max(Some(found));
         } else if target.ends_with("ptmx") {
-            let index = info().lines().find_map(|line| line.strip_prefix("tty-index:").map(|index| index.trim().to_owned()));
+            let index =
+                info().lines().find_map(|line| line.strip_prefix("tty-index:").map(|index| index.trim().to_owned()));
             has_other_end |= index.is_some_and(|index| Path::new(PSEUDO_TERMINALS).join(index) == port);
         }
     }

@@ -58,7 +58,7 @@ const YERC: &[&str] = &[
     "raw",
 ];
 
-const TOYO: [&str; 80] = [
+const TOYO: [&str; 81] = [
     "status",
     "home",
     "position",
@@ -104,6 +104,7 @@ const TOYO: [&str; 80] = [
     "program list",
     "program get",
     "program put",
+    "program diff",
     "program edit",
     "program insert",
     "program delete",

@@ -15,7 +15,7 @@ use crate::failure::{Failure, Kind};
 #[derive(Debug, Args)]
 pub struct Help {
     /// A topic (options, exit-codes, environment, targets, inventory, output, safety, scripting, sessions, repl, batch,
-    /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
+    /// completion, simulator, toyo-setup, toyo-instructions, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
 }
@@ -65,7 +65,13 @@ pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
     ];
     let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
-    made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
+    let more = more().into_iter().map(|(name, about, _)| (name.to_owned(), about));
+    made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about))).chain(more)
+}
+
+/// Further topics of the families.
+fn more() -> Vec<(&'static str, &'static str, String)> {
+    FAMILIES.iter().flat_map(|face| face.topics()).collect()
 }
 
 /// The topics of the families.
@@ -93,6 +99,9 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
         }
         if let Some((.., text)) = setups().iter().find(|(name, ..)| name == word) {
             return Ok((*text).to_owned());
+        }
+        if let Some((.., text)) = more().into_iter().find(|(name, ..)| name == word) {
+            return Ok(text);
         }
     }
     let mut root = root();

@@ -145,6 +145,8 @@ pub const LEAVES: &[Leaf] = &[
     ("toyo program list --used", Write),
     ("toyo program get", Read),
     ("toyo program get pick.toyo --explain", Read),
+    ("toyo program diff pick.toyo", Read),
+    ("toyo program diff pick.toyo 2", Write),
     ("toyo program put pick.toyo", Destroy),
     ("toyo program put pick.toyo --task 2 --dry-run", Destroy),
     ("toyo program edit", Destroy),

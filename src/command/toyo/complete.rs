@@ -15,6 +15,11 @@ pub const SIGNAL: ValueKind = named(&[Kind::Input, Kind::Output], &[""]);
 /// A counter by its name.
 pub const COUNTER: ValueKind = named(&[Kind::Counter], &[""]);
 
+/// A timer by its name.
+pub const TIMER: ValueKind = named(&[Kind::Timer], &[""]);
+/// A point by its name.
+pub const POINT: ValueKind = named(&[Kind::Point], &[""]);
+
 const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
     ValueKind::Named(Family::Toyo, Named { kinds, endings, listed: Vec::new })
 }

@@ -48,9 +48,10 @@ fn fields() -> &'static [field::Field] {
     table::Command::Mcst.row().requests[0].fields
 }
 
-/// The number of `CN05`.
-fn bare(text: &str) -> &str {
-    text.strip_prefix("CN").or_else(|| text.strip_prefix("cn")).unwrap_or(text)
+/// The number of `CN05`, with or without its letters.
+fn bare<'t>(letters: &str, text: &'t str) -> &'t str {
+    let has_letters = text.get(..letters.len()).is_some_and(|front| front.eq_ignore_ascii_case(letters));
+    if has_letters { &text[letters.len()..] } else { text }
 }
 
 impl Store for Counters {
@@ -72,7 +73,7 @@ impl Store for Counters {
     const COMPLETE: ValueKind = complete::COUNTER;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[Numbers::parse(&fields()[0], bare(text))?], &fields()[0]))
+        Ok(Numbers::of(&[Numbers::parse(&fields()[0], bare("CN", text))?], &fields()[0]))
     }
 
     fn all() -> Vec<i32> {
@@ -176,14 +177,16 @@ impl Store for Timers {
     const WORDS: Words = Words {
         nouns: ["timer", "timers"],
         placeholder: "N",
-        range: "Timers, 1 to 9: 5, 1-3",
+        range: "Timers, 1 to 9: 5, TN5 or 1-3, or a name",
         reading: Some("Values are in seconds."),
         writing: None,
     };
     const IDS: Ids = ids!("toyo.timer");
+    const LABELS: Option<Kind> = Some(Kind::Timer);
+    const COMPLETE: ValueKind = complete::TIMER;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[Numbers::parse(timer(), text)?], timer()))
+        Ok(Numbers::of(&[Numbers::parse(timer(), bare("TN", text))?], timer()))
     }
 
     fn all() -> Vec<i32> {
@@ -191,7 +194,7 @@ impl Store for Timers {
     }
 
     fn name(number: i32) -> String {
-        number.to_string()
+        names_of::timer(u8::try_from(number).unwrap_or(u8::MAX))
     }
 
     fn fields() -> Vec<Field> {

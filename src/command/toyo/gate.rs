@@ -34,7 +34,7 @@ const LINES: &[(&str, Risk)] = &[
     ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy), ("torque-table list", Read), ("torque-table dump FOLDER/torque.csv", Read),
     ("torque-table copy 1 2", Destroy), ("torque-table restore FOLDER/limits.csv", Destroy),
     ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy),
-    ("program list", Read), ("program get", Read), ("program show", Read), ("program search 5", Write),
+    ("program list", Read), ("program get", Read), ("program diff FOLDER/program.txt", Read), ("program show", Read), ("program search 5", Write),
     ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
     ("program insert 1 HOME --task 2", Destroy), ("program delete 1", Destroy), ("program delete 1 --to 2", Destroy),
     ("program copy 1 2 --at 3", Destroy), ("program copy 1 2 --at 3 --from-task 1 --to-task 2", Destroy),

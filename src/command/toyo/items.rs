@@ -208,7 +208,7 @@ mod tests {
     fn one_refusal_hides_nothing_and_names_its_block() {
         for (words, name, block) in [
             (["counter", "get", "1-3"], "CN02", "MCNT CN=02"),
-            (["timer", "get", "1-3"], "timer 2", "MTMR TN=2"),
+            (["timer", "get", "1-3"], "TN2", "MTMR TN=2"),
             (["speed-table", "get", "1-3"], "speed-table row 2", "RPAR T2 V02"),
             (["accel-table", "get", "1-3"], "accel-table row 2", "RPAR T3 A02"),
             (["torque-table", "get", "1-3"], "torque-table row 2", "RPAR T5 LIM02"),

@@ -6,8 +6,10 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
+use super::point::parse_point;
 use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
 use super::tasks;
@@ -157,8 +159,8 @@ impl Command for Easy {
 #[derive(Debug, Args)]
 #[command(after_help = "Parameter M10 chooses external point mode: `toyo param set M10 P`.")]
 pub struct Point {
-    /// Row of the coordinate table
-    #[arg(value_name = "N", value_parser = clap::value_parser!(i32).range(1..=999))]
+    /// Row of the coordinate table, 1 to 999, or a name
+    #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]
     point: i32,
     #[command(flatten)]
     end: MotionEnd,
@@ -267,7 +269,9 @@ async fn progress(
     let (number, step) = (at.number("program").unwrap_or(0), at.number("step").unwrap_or(0));
     Ok(match wanted.filter(|wanted| *wanted != number) {
         None => format!("It is {kind} program {number}, at step {step}."),
-        Some(wanted) => format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}."),
+        Some(wanted) => {
+            format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}.")
+        }
     })
 }
 
@@ -481,7 +485,7 @@ mod tests {
         assert_eq!(blocks(&["run", "point", "7", "--no-wait"]).unwrap(), ["@EXTP PT=007"]);
         assert_eq!(intent(&["run", "easy", "--program", "8"]), "run easy program 8");
         assert!(objection(&["run", "sequential", "5001"]).contains("1..=5000"));
-        assert!(objection(&["run", "point", "0"]).contains("1..=999"));
+        assert!(objection(&["run", "point", "0"]).contains("1 to 999"));
     }
 
     #[test]

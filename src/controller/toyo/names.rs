@@ -96,10 +96,19 @@ mod tests {
     #[test]
     fn addresses_are_written_one_way() {
         let written = |text| (GRAMMAR.address)(text).map(|(_, address)| address);
-        for (text, address) in [("in2.1", "IN2.1"), ("OUT01.3", "OUT1.3"), ("cn5", "CN05"), ("CN05", "CN05"), ("tn1", "TN1"), ("pt12", "PT012")] {
+        for (text, address) in [
+            ("in2.1", "IN2.1"),
+            ("OUT01.3", "OUT1.3"),
+            ("cn5", "CN05"),
+            ("CN05", "CN05"),
+            ("tn1", "TN1"),
+            ("pt12", "PT012"),
+        ] {
             assert_eq!(written(text).as_deref(), Some(address), "{text}");
         }
-        for text in ["", "1.3", "OUT1", "OUT1.9", "OUT0.1", "CN0", "CN100", "PN01.1", "TN0", "TN10", "PT0", "PT1000", "clamp"] {
+        for text in
+            ["", "1.3", "OUT1", "OUT1.9", "OUT0.1", "CN0", "CN100", "PN01.1", "TN0", "TN10", "PT0", "PT1000", "clamp"]
+        {
             assert_eq!(written(text), None, "{text}");
         }
     }

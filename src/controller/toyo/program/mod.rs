@@ -33,9 +33,9 @@ pub use paths::Known;
 
 use super::layout::Record;
 use super::table::Instruction;
-use crate::names::Names;
 pub use crate::findings::{Finding, Severity};
 use crate::findings::{Findings, SourceLocation};
+use crate::names::Names;
 
 /// Most steps that the tasks have together (TO 2-4, E22).
 pub const MOST_STEPS: usize = 5000;

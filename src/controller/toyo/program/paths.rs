@@ -67,7 +67,11 @@ impl Finder<'_> {
             if counter == 0 && point == 0 {
                 self.warn(index, "point 0 without a counter is no row of the coordinate table", STOPS_AT_TABLE);
             } else if counter == 0 && known.points.as_ref().is_some_and(|points| !points.contains(&point)) {
-                self.warn(index, format!("point {point} is not among the points that are given"), "teach it, or write it with `toyo point set`");
+                self.warn(
+                    index,
+                    format!("point {point} is not among the points that are given"),
+                    "teach it, or write it with `toyo point set`",
+                );
             }
         }
     }
@@ -77,7 +81,11 @@ impl Finder<'_> {
         for index in 0..self.steps.len() {
             let port = self.steps[index].record.number("port").filter(|port| *port > INTERNAL_PORTS);
             if let (Some(Op::Iout | Op::Insp), Some(port)) = (self.op(index), port) {
-                self.warn(index, format!("there may be no internal port {port}: controllers show 1 to 4"), "a controller stops with error B5");
+                self.warn(
+                    index,
+                    format!("there may be no internal port {port}: controllers show 1 to 4"),
+                    "a controller stops with error B5",
+                );
             }
         }
     }
@@ -107,7 +115,9 @@ impl Finder<'_> {
         let group = |step: &Step, op: Op| (step.instruction.op == op).then(|| step.record.number("group")).flatten();
         let begun: BTreeSet<i32> = self.steps.iter().filter_map(|step| group(step, Op::Mini)).collect();
         for index in 0..self.steps.len() {
-            let Some(number) = group(&self.steps[index], Op::Mvm).filter(|number| !begun.contains(number)) else { continue };
+            let Some(number) = group(&self.steps[index], Op::Mvm).filter(|number| !begun.contains(number)) else {
+                continue;
+            };
             self.warn(
                 index,
                 format!("nothing begins group {number}: without MINI GRP={number} its counters may be at no place"),
@@ -122,7 +132,11 @@ impl Finder<'_> {
         let tags: BTreeMap<i32, usize> = listing::tags(&records, 0);
         let main = self.reach(0, &tags);
         for index in main.steps.iter().copied().filter(|index| self.op(*index) == Some(Op::Ret)).collect::<Vec<_>>() {
-            self.warn(index, "the program can come here without a call", "a controller stops with error A4 at a RET without a call");
+            self.warn(
+                index,
+                "the program can come here without a call",
+                "a controller stops with error A4 at a RET without a call",
+            );
         }
         let mut bodies: BTreeMap<usize, Reach> = BTreeMap::new();
         let mut open: Vec<usize> = main.calls.values().copied().collect();

@@ -27,13 +27,7 @@ pub(super) struct Defined {
 }
 
 /// Reads the lines, for a task or a part of it that has room for so many steps.
-pub(super) fn read(
-    text: &[u8],
-    room: usize,
-    part: Option<&Part>,
-    names: &Names,
-    findings: &mut Findings,
-) -> Read {
+pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names, findings: &mut Findings) -> Read {
     let room = room.min(MOST_STEPS);
     let lines = source::lines(text, findings);
     let start = part.map_or(1, |part| part.first);
