@@ -229,7 +229,8 @@ mod tests {
             assert_eq!((&error["asked"], &items[1]["value"]), (&name.into(), &serde_json::Value::Null));
             let failure = failure.unwrap();
             assert_eq!(failure.kind, Kind::Mixed);
-            let expected = format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
+            let expected =
+                format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
             assert_eq!(failure.message, expected);
         }
     }

@@ -281,7 +281,8 @@ impl TableOf for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
-    const WORDS: Words = words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
+    const WORDS: Words =
+        words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[number("speed_mm_s", "speed (mm/s)")];
 
     fn value(record: &Record) -> f64 {
@@ -293,7 +294,8 @@ impl TableOf for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
-    const WORDS: Words = words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
+    const WORDS: Words =
+        words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[number("time_s", "time (s)")];
 
     fn value(record: &Record) -> f64 {
@@ -305,7 +307,8 @@ impl TableOf for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");
-    const WORDS: Words = words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
+    const WORDS: Words =
+        words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
     const FIELDS: &'static [Field] = &[number("limit", "limit"), number("load", "load")];
 
     fn value(record: &Record) -> TorqueRow {

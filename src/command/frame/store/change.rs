@@ -107,7 +107,10 @@ fn overwritten<S: Writable>(rows: &[Compared<S>]) -> Change {
     let [one, many] = S::WORDS.nouns;
     let change = match lost.len() {
         0 => return Change::nothing(),
-        1 => Change::new(format!("overwrite {} {one}", if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })),
+        1 => Change::new(format!(
+            "overwrite {} {one}",
+            if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+        )),
         count => Change::new(format!("overwrite {count} {many}")),
     };
     lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))

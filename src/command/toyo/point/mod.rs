@@ -71,13 +71,7 @@ fn item(task: u8, point: i32, answer: Result<&Record, Failure>, letters: Letters
 }
 
 /// What was answered for these points.
-fn items(
-    task: u8,
-    points: &[i32],
-    answers: &Answers,
-    letters: Letters,
-    names: &Names,
-) -> Items<Position, OfTask> {
+fn items(task: u8, points: &[i32], answers: &Answers, letters: Letters, names: &Names) -> Items<Position, OfTask> {
     let items = points.iter().zip(answers).map(|(point, answer)| {
         let address = names_of::address_of(Kind::Point, *point).unwrap_or_default();
         let label = names::label(names, Kind::Point, &address);
