@@ -32,23 +32,23 @@ pub enum Robots {
     Show(Show),
     /// List the names of a robot's signals, variables and registers
     Names(Names),
-    /// Add a robot; `armctl setup` asks for all of it
+    /// Add a robot; `armctl setup` does it step by step
     Add(entry::Add),
     /// Change settings of a robot
     Set(entry::Set),
-    /// Give a robot another name
+    /// Rename a robot
     Rename(entry::Rename),
-    /// Choose the robot that is taken when none is named
+    /// Set the default robot
     Default(entry::Default),
     /// Remove a robot
     Remove(entry::Remove),
-    /// Open the inventory in an editor, and check it before it counts
+    /// Edit the inventory, and check it before it is used
     Edit,
-    /// Print where the inventory is
+    /// Print the path of the inventory
     Path,
     /// Diagnose a connection step by step
     Check(check::Check),
-    /// Which controllers answer on the network, and which serial ports are there
+    /// Find controllers on the network and list serial ports
     Discover(discover::Discover),
 }
 
@@ -58,7 +58,7 @@ pub struct Show {
     /// Its name
     #[arg(add = ValueKind::Robot)]
     name: String,
-    /// Say where each value came from
+    /// Show the origin of each value
     #[arg(long)]
     origin: bool,
 }
@@ -66,14 +66,14 @@ pub struct Show {
 /// Arguments of `robots names`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "They stand below [robot.names] of its entry: `armctl robots set cell3 names.clamp=27010` writes one. Those \
-    that a yerc controller keeps are read by `yerc names get`."
+    after_help = "The names are in [robot.names] of the robot: `armctl robots set cell3 names.clamp=27010` writes one. `yerc \
+    names get` reads the names of a yerc controller."
 )]
 pub struct Names {
     /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
-    /// Only those with this in name, kind, address or origin
+    /// Only names with this text in name, kind, address or origin
     filter: Option<String>,
 }
 
@@ -188,7 +188,9 @@ impl List {
     fn of(run: &Run) -> Result<Self, Failure> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {
-            return Err(Failure::usage("the list has the robots of the inventory").hint("choose some with -r or --tag"));
+            return Err(
+                Failure::usage("--sim and -t select no robots of the inventory").hint("select robots with -r or --tag")
+            );
         }
         let is_chosen = |robot: &&Entry| {
             let is_named = selection.from_environment

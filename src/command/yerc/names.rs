@@ -41,7 +41,7 @@ pub struct Get {}
 /// Lists the names of signals, variables and registers.
 #[derive(Debug, Args)]
 pub struct List {
-    /// Only those with this in name, kind, address or origin
+    /// Only names with this text in name, kind, address or origin
     filter: Option<String>,
 }
 
