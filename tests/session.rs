@@ -462,7 +462,7 @@ fn datagrams_go_through_a_session() {
     let through = desk.run("-r cell yerc status -v");
     assert!(stderr(&through).contains("through the session of process"), "{}", stderr(&through));
     for old in [0, 7] {
-        let written = &desk.data("-r cell yerc var set B0=7")["written"][0];
+        let written = &desk.data("-r cell yerc var set B0=7")["items"][0];
         assert_eq!((&written["old"], &written["new"]), (&old.into(), &7.into()), "{written}");
     }
     // Files come in many datagrams, over the other port.
@@ -517,11 +517,11 @@ fn a_simulator_in_a_session_keeps_its_state() {
     desk.data("-r x yrcx io set 20=on");
     assert_eq!(desk.data("-r x yrcx io get SI20")["signals"][0]["on"], true);
     desk.data("-r y yerc var set B0=42");
-    assert_eq!(desk.data("-r y yerc var get B0")["variables"][0]["value"], 42);
+    assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
     desk.data("-r t toyo counter set 7 42");
-    assert_eq!(desk.data("-r t toyo counter get 7")["counters"][0]["count"], 42);
+    assert_eq!(desk.data("-r t toyo counter get 7")["items"][0]["value"], 42);
     // By itself a simulator is as it always is.
-    assert_eq!(desk.data("--no-session -r t toyo counter get 7")["counters"][0]["count"], 0);
+    assert_eq!(desk.data("--no-session -r t toyo counter get 7")["items"][0]["value"], 0);
     assert_eq!(desk.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
 }
 

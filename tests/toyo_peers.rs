@@ -94,7 +94,7 @@ fn works(target: &str) {
     let status = data(target, &["status"]);
     assert_eq!((&status["homed"], &status["host_on"]), (&true.into(), &false.into()), "{status}");
     data(target, &["point", "set", "1", "100", "20", "0", "0"]);
-    let point = &data(target, &["point", "get", "1"])["points"][0];
+    let point = &data(target, &["point", "get", "1"])["items"][0]["value"];
     assert_eq!((&point["x_mm"], &point["y_mm"]), (&100.0.into(), &20.0.into()), "{point}");
     data(target, &["param", "set", "M10", "P"]);
     data(target, &["run", "point", "1"]);

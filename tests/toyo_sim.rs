@@ -80,7 +80,7 @@ fn a_pseudo_terminal_has_its_link_as_long_as_it_is_served() {
         let served = Served::start(folder.path(), "--pty --link port");
         assert_eq!(served.target, format!("serial://{}", link.canonicalize().map(|_| link.display()).unwrap()));
         served.data(folder.path(), "counter set 7 42");
-        assert_eq!(served.data(folder.path(), "counter get 7")["counters"][0]["count"], 42, "it keeps its state");
+        assert_eq!(served.data(folder.path(), "counter get 7")["items"][0]["value"], 42, "it keeps its state");
         let second = armctl(folder.path(), "sim toyo --pty --link port").output().unwrap();
         assert_eq!(second.status.code(), Some(1), "{}", stderr(&second));
         assert_eq!(served.end(signal), Some(0));

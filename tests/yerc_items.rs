@@ -168,9 +168,9 @@ fn variables_are_named_as_they_were_typed() {
     assert_eq!((exit, &two["error"]["exit"]), (9, &json!(9)));
     let message = two["error"]["message"].as_str().unwrap();
     assert!(message.starts_with("1 of 2 failed: B300: the controller refused 0x7A (instance 300)"), "{message}");
-    assert_eq!((&two["data"]["variables"][0]["ok"], &two["data"]["variables"][1]["ok"]), (&json!(true), &json!(false)));
+    assert_eq!((&two["data"]["items"][0]["ok"], &two["data"]["items"][1]["ok"]), (&json!(true), &json!(false)));
     let (exit, three, _) = at(&target, "var get B0 B99 B100");
-    assert_eq!((exit, &three["data"]["variables"][2]["error"]["asked"]), (9, &json!("B100")));
+    assert_eq!((exit, &three["data"]["items"][2]["error"]["asked"]), (9, &json!("B100")));
     let (exit, nothing, error) = at(&target, "var get B300");
     assert_eq!((exit, nothing), (3, Value::Null));
     assert!(error["error"]["message"].as_str().unwrap().starts_with("B300: "), "{error}");
@@ -188,9 +188,9 @@ fn registers_and_signals_are_read_one_by_one_where_there_is_no_other_way() {
         }
     });
     let (exit, registers, _) = at(&target, "register get 10..11");
-    assert_eq!((exit, &registers["data"]["registers"][0]["value"]), (0, &json!(4660)), "{registers}");
+    assert_eq!((exit, &registers["data"]["items"][0]["value"]), (0, &json!(4660)), "{registers}");
     let (exit, some, _) = at(&target, "register get 0xA..0xC");
-    assert_eq!((exit, &some["data"]["registers"][2]["error"]["asked"]), (9, &json!("register 12")), "{some}");
+    assert_eq!((exit, &some["data"]["items"][2]["error"]["asked"]), (9, &json!("M12")), "{some}");
     assert!(some["error"]["message"].as_str().unwrap().contains("0x79 (instance 12)"), "{some}");
     let (exit, signals, _) = at(&target, "io get 10010..10027");
     assert_eq!((exit, &signals["data"]["signals"][0]["on"]), (0, &json!(true)), "{signals}");
@@ -247,14 +247,14 @@ fn a_word_of_a_position_is_read_changed_and_written_whole() {
     let tool = json!({"name": "P1", "part": "tool", "attribute": 3, "old": 0, "new": 2, "value": 2});
     assert_eq!(set["data"]["parts"][0], tool, "{set}");
     let (_, get, _) = at(&target, "var get P1");
-    let position = &get["data"]["variables"][0]["value"];
+    let position = &get["data"]["items"][0]["value"];
     let text = position["text"].as_str().unwrap();
     assert!(text.starts_with("pulse:s=5,l=-2000,") && text.contains("tool=2"), "{text}");
     let (exit, _, error) = at(&target, "var set B0=1 P100.tool=2");
     assert_eq!(exit, 3, "{error}");
     assert!(error["error"]["message"].as_str().unwrap().contains("nothing was written"), "{error}");
     let (_, get, _) = at(&target, "var get B0");
-    assert_eq!(get["data"]["variables"][0]["value"], 0);
+    assert_eq!(get["data"]["items"][0]["value"], 0);
 }
 
 #[test]

@@ -36,8 +36,8 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
         desk.fails(&format!("-r cell toyo {line}"), 7, part);
         desk.fails(&format!("-r cell toyo {line}"), 7, "this would");
     }
-    assert_eq!(desk.data("-r cell toyo point get 7")["points"][0]["z_mm"], 3.0);
-    assert_eq!(desk.data("-r cell toyo easy get 1")["programs"][0]["loops"], 6);
+    assert_eq!(desk.data("-r cell toyo point get 7")["items"][0]["value"]["z_mm"], 3.0);
+    assert_eq!(desk.data("-r cell toyo easy get 1")["items"][0]["value"]["loops"], 6);
     assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
     // As it is already: nothing to ask.
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));

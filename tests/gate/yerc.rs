@@ -112,7 +112,7 @@ fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
     let sets = "-r cell yerc var set";
     let setup = desk.run(&format!("{sets} P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6 BP6=pulse:1=1 EX3=pulse:1=9"));
     assert_eq!(setup.exit, Some(0), "nobody taught what is there: {setup:?}");
-    let held = || desk.data("-r cell yerc var get P9 BP6 EX3")["variables"].to_string();
+    let held = || desk.data("-r cell yerc var get P9 BP6 EX3")["items"].to_string();
     let before = held();
     let seven = "07000000";
     for (line, old_and_new) in [
@@ -136,7 +136,7 @@ fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
         desk.fails(&format!("-r cell yerc {line}"), 7, old_and_new);
     }
     assert_eq!(held(), before);
-    assert_eq!(desk.data("-r cell yerc var get B1")["variables"][0]["value"], 0, "nothing of the line was written");
+    assert_eq!(desk.data("-r cell yerc var get B1")["items"][0]["value"], 0, "nothing of the line was written");
     // What is there already, and what is new, wants no yes.
     for line in ["P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "P9.tool=0 BP6.axis1=1", "EX4=pulse:1=9"] {
         assert_eq!(desk.run(&format!("{sets} {line}")).exit, Some(0), "{line}");
@@ -150,7 +150,7 @@ fn a_taught_position_is_overwritten_after_a_yes_by_whatever_verb() {
         .exit,
         Some(0)
     );
-    assert_eq!(desk.data("-r cell yerc var get P9")["variables"][0]["value"]["s_pulses"], 7);
+    assert_eq!(desk.data("-r cell yerc var get P9")["items"][0]["value"]["s_pulses"], 7);
 }
 
 #[test]

@@ -52,7 +52,7 @@ fn a_motion_through_a_session_is_asked_about_in_numbers() {
 fn taught_points_are_not_overwritten_unasked() {
     let controller = Simulator::start("yrcx");
     let desk = held(&controller);
-    let point = || desk.data("-r cell yrcx point get 1")["points"][0]["text"].to_string();
+    let point = || desk.data("-r cell yrcx point get 1")["items"][0]["value"]["text"].to_string();
     let before = point();
     for (order, old_and_new) in [
         ("point set 1 --mm 1,2,3,4", "point 1: 100.000, 100.000, 0.000, 0.000 mm -> 1.000, 2.000, 3.000, 4.000 mm"),
@@ -74,6 +74,7 @@ fn taught_points_are_not_overwritten_unasked() {
     assert_eq!(point(), before);
     let stored = desk.data("-r cell yrcx point set 1 --mm 1,2,3,4 --yes");
     let old = "--mm 100.000,100.000,0.000,0.000".into();
+    let stored = &stored["items"][0];
     assert_eq!((&stored["written"], &stored["old"]["text"]), (&true.into(), &old));
     // What is there already, and what is new, wants no yes.
     let again = desk.run("-r cell yrcx point set 1 --mm 1,2,3,4");

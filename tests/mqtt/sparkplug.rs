@@ -64,7 +64,7 @@ fn births_data_and_deaths_are_read_by_others() {
     assert_eq!((&x["type"], &x["properties"]["engUnit"]["value"]), (&json!("Double"), &json!("mm")));
     assert_eq!(metric(birth, "status/mode")["type"], "String");
     assert_eq!(metric(birth, "status/servo_on")["type"], "Boolean");
-    let part = metric(birth, "parts/variables/B0/value");
+    let part = metric(birth, "parts/items/B0/value");
     assert!(part["type"] == "Int64" && part["value"].is_number(), "{birth}");
     let by_alias = data["metrics"].as_array().unwrap();
     assert!(by_alias.iter().all(|metric| metric["name"].is_null() && metric["alias"].is_number()), "{data}");

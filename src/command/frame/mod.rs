@@ -29,6 +29,7 @@ pub mod script_line;
 pub mod session_manager;
 pub mod setting;
 pub mod sheet;
+pub mod store;
 pub mod teach;
 #[cfg(test)]
 pub(crate) mod testing;

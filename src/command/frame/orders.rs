@@ -34,6 +34,11 @@ impl Old {
         Self(value.map_or(Value::Null, Into::into))
     }
 
+    /// The value, where it is known.
+    pub fn value(&self) -> Option<Value> {
+        Some(self.0.clone()).filter(|value| !value.is_null())
+    }
+
     /// As a person reads it; nothing where it is not known.
     pub fn in_words(&self) -> Option<String> {
         (!self.0.is_null()).then(|| shown(&self.0))
@@ -127,12 +132,14 @@ pub struct Written<T> {
     old: Old,
     /// Its value now.
     new: Value,
+    /// True: it was written.
+    written: bool,
 }
 
 impl<T> Written<T> {
     /// With its value before and now.
     pub fn new(item: T, old: Old, new: impl Into<Value>) -> Self {
-        Self { item, old, new: new.into() }
+        Self { item, old, new: new.into(), written: true }
     }
 }
 

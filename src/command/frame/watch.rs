@@ -46,6 +46,12 @@ pub struct Watched {
     pub empty: &'static str,
 }
 
+impl Watched {
+    /// Items, as every family reports them.
+    pub const ITEMS: Self =
+        Self { list: "items", name: "name", prefix: "", label: "", value: Some("value"), empty: "nothing to watch" };
+}
+
 /// A read whose changes can be watched.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Watchable: Command {

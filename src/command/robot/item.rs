@@ -12,39 +12,9 @@ use crate::failure::Failure;
 use crate::output::csv::RowsOf;
 use crate::output::view::{Cell, Table, View};
 
-/// What an item holds, or what a family adds to one.
-pub trait Content: Serialize + JsonSchema {
-    /// Its cells in a table.
-    fn cells(&self) -> Vec<Cell>;
-}
-
 /// Nothing beside what every item has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Plain {}
-
-impl Content for Plain {
-    fn cells(&self) -> Vec<Cell> {
-        Vec::new()
-    }
-}
-
-macro_rules! scalars {
-    ($($type:ty),*) => {
-        $(impl Content for $type {
-            fn cells(&self) -> Vec<Cell> {
-                vec![Cell::from(self.clone())]
-            }
-        })*
-    };
-}
-
-scalars!(i32, u16, String);
-
-impl Content for bool {
-    fn cells(&self) -> Vec<Cell> {
-        vec![if *self { "on" } else { "off" }.into()]
-    }
-}
 
 /// One thing that was read: what it is and what it holds.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -66,6 +36,9 @@ pub struct Item<V, M = Plain> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     pub error: Option<ItemError>,
+    /// What a table shows of it.
+    #[serde(skip)]
+    pub cells: Vec<Cell>,
 }
 
 impl<V> Item<V> {
@@ -83,7 +56,14 @@ impl<V, M> Item<V, M> {
             Ok(value) => (true, value, None),
             Err(failure) => (false, None, Some(ItemError::new(asked(kind, &name), failure))),
         };
-        Self { name, label: None, kind, more, ok, value, error }
+        Self { name, label: None, kind, more, ok, value, error, cells: Vec::new() }
+    }
+
+    /// With what a table shows of its value.
+    #[must_use]
+    pub fn shown(mut self, cells: impl Fn(&V) -> Vec<Cell>) -> Self {
+        self.cells.extend(self.value.iter().flat_map(cells));
+        self
     }
 
     /// With the name that people gave it.
@@ -103,7 +83,7 @@ pub fn asked(kind: &str, name: &str) -> String {
 pub struct Columns {
     /// Heading of the names: `counter`.
     pub name: &'static str,
-    /// Headings of what the family adds, and of what is held.
+    /// Headings of the cells.
     pub values: Vec<&'static str>,
     /// Shown where there are none.
     pub empty: &'static str,
@@ -148,7 +128,7 @@ impl<V, M> Items<V, M> {
 }
 
 /// A table of items: name, label, cells, and an error where one failed.
-fn table<'i, V: Content + 'i, M: Content + 'i>(
+fn table<'i, V: 'i, M: 'i>(
     Columns { name, values, empty }: &Columns,
     items: impl Iterator<Item = &'i Item<V, M>> + Clone,
 ) -> Table {
@@ -157,8 +137,7 @@ fn table<'i, V: Content + 'i, M: Content + 'i>(
     let columns: Vec<_> = columns.chain(has_errors.then_some("error")).collect();
     let row = |item: &Item<V, M>| {
         let mut row = vec![numeric(&item.name), Cell::maybe(item.label.as_deref())];
-        row.extend(item.more.cells());
-        row.extend(item.value.iter().flat_map(Content::cells));
+        row.extend(item.cells.iter().cloned());
         row.resize_with(2 + values.len(), || "-".into());
         row.extend(has_errors.then(|| item.error.as_ref().map_or_else(|| "-".into(), ItemError::cell)));
         row
@@ -171,7 +150,7 @@ fn numeric(name: &str) -> Cell {
     if name.bytes().all(|byte| byte.is_ascii_digit()) { Cell::number(name) } else { name.into() }
 }
 
-impl<V: Content, M: Content> Report for Items<V, M> {
+impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for Items<V, M> {
     fn view(&self) -> View {
         View::table(table(&self.columns, self.items.iter().take(self.asked)))
     }
@@ -214,7 +193,7 @@ pub struct WrittenItems<V, M = Plain> {
     columns: Columns,
 }
 
-impl<V: Clone, M> WrittenItems<V, M> {
+impl<V, M> WrittenItems<V, M> {
     /// What was written, with the headings of a table.
     pub fn new(columns: Columns, items: Vec<Written<V, M>>) -> Self {
         Self { items, words: None, columns }
@@ -226,6 +205,16 @@ impl<V: Clone, M> WrittenItems<V, M> {
     }
 }
 
+impl<V, M> WrittenItems<V, M> {
+    /// Fails where there is a single item and it was not written: there is no report then.
+    pub fn or_only_failure(self) -> Result<Self, Failure> {
+        match &self.items[..] {
+            [Written { item: Item { error: Some(error), .. }, .. }] => Err(error.failure()),
+            _ => Ok(self),
+        }
+    }
+}
+
 impl<V: Clone, M> Written<V, M> {
     /// An item that now holds `new`.
     pub fn new(item: Item<V, M>, old: Option<V>, written: bool) -> Self {
@@ -234,7 +223,7 @@ impl<V: Clone, M> Written<V, M> {
     }
 }
 
-impl<V: Content, M: Content> Report for WrittenItems<V, M> {
+impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for WrittenItems<V, M> {
     fn view(&self) -> View {
         match &self.words {
             Some(words) => View::text(words.clone()),

@@ -4,7 +4,6 @@ use super::link::Toyo;
 use super::{
     alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
     overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
-    timer,
 };
 use crate::command::backup::words::Diff;
 use crate::command::{Offline, Subcommands, commands};
@@ -93,7 +92,7 @@ commands! {
         /// Counters
         Counter(Subcommands<counter::Counter>),
         /// Timers
-        Timer(Subcommands<timer::Timer>),
+        Timer(Subcommands<counter::Timer>),
         "Link":
         /// List the serial ports of this machine
         Ports(Offline<ports::Ports>),

@@ -1,67 +1,51 @@
-//! `toyo counter`.
+//! `toyo counter` and `toyo timer`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use super::complete;
-use super::items::{self, Item, read_each};
-use super::link::Toyo;
-use super::numbers::{Numbers, not_held, number, read_back, small};
-use crate::command::frame::names;
-use crate::command::frame::orders::{Done, New, Old};
-use crate::command::frame::watch::{Watch, Watchable, Watched};
-use crate::command::{Command, Context, Report, commands};
+use super::items::read_each;
+use super::link::{Link, Toyo};
+use super::numbers::{Numbers, not_held, number, read_back};
+use super::rows::Listed;
+use crate::command::ValueKind;
+use crate::command::commands;
+use crate::command::frame::store::{Answers, Field, Get, Ids, List, Store, Words, Writable, ids, table_commands};
+use crate::command::frame::watch::Watch;
+use crate::command::toyo::complete;
 use crate::controller::Risk;
 use crate::controller::names::Kind;
-use crate::controller::toyo::field::{Field, Value};
+use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
+use crate::output::Screen;
 
-commands! {
+table_commands! {
     /// What can be done with counters.
-    pub enum Counter {
-        /// Read counters 1 to 99
-        Get(Get),
-        /// Set a counter
-        Set(Set),
+    Counter of Counters {
         /// Print each change of counters
-        Watch(Watch<Get>),
+        Watch(Watch<Get<Counters>>),
     }
 }
 
-/// Reads counters; without a number, all 99.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Such as 5, CN05 or 1-10, or a name
-    #[arg(value_name = "N", value_delimiter = ',', value_parser = numbers, add = complete::COUNTER)]
-    counters: Vec<Numbers>,
+commands! {
+    /// What can be done with timers: the protocol only reads them.
+    pub enum Timer {
+        /// Read timers 1 to 9
+        Get(Get<Timers>),
+        /// List timers that are not at 0
+        List(List<Timers>),
+        /// Print each change of timers
+        Watch(Watch<Get<Timers>>),
+    }
 }
 
-/// Sets a counter, also while a program runs.
-#[derive(Debug, Args)]
-pub struct Set {
-    /// 1 to 99, or a name
-    #[arg(value_name = "N", value_parser = one, add = complete::COUNTER)]
-    counter: i32,
-    /// 0 to 9999
-    #[arg(value_name = "VALUE", value_parser = |text: &str| number(&fields()[1], text))]
-    value: i32,
-}
+/// The counters of the controller.
+#[derive(Debug)]
+pub struct Counters;
 
-/// Stands for a name that is not known yet.
-const ANY: &str = "CN01";
-
-fn numbers(text: &str) -> Result<Numbers, String> {
-    names::read(&[Kind::Counter], ANY, text, |text| Numbers::parse(&fields()[0], bare(text)))
-}
-
-fn one(text: &str) -> Result<i32, String> {
-    names::read(&[Kind::Counter], ANY, text, |text| number(&fields()[0], bare(text)))
+/// Number and count, as in MCST CN01=0000.
+fn fields() -> &'static [field::Field] {
+    table::Command::Mcst.row().requests[0].fields
 }
 
 /// The number of `CN05`.
@@ -69,95 +53,171 @@ fn bare(text: &str) -> &str {
     text.strip_prefix("CN").or_else(|| text.strip_prefix("cn")).unwrap_or(text)
 }
 
-/// Number and count, as in MCST CN01=0000.
-fn fields() -> &'static [Field] {
-    table::Command::Mcst.row().requests[0].fields
-}
-
-impl Command for Get {
+impl Store for Counters {
     type Family = Toyo;
-    type Report = Counters;
-    const ID: &'static str = "toyo.counter.get";
+    type Key = i32;
+    type Wire = Record;
+    type Value = i32;
+    type More = Listed;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Counters, Failure> {
-        let numbers = Numbers::of(&self.counters, &fields()[0]);
-        let requests = numbers.iter().map(|number| Request::of(table::Command::Mcnt, [Value::Number(*number)]));
-        let requests: Vec<Request> = requests.collect();
-        let answers = read_each(context.link, context.screen, "reading counters", &requests).await?;
-        let names = names::of(context.robot, context.screen);
-        let count = |answer: &Record| {
-            let counter = small(answer, "counter");
-            let label = names::label(names, Kind::Counter, &names_of::counter(counter));
-            Count { counter, label, count: answer.number("count").unwrap_or(0) }
-        };
-        let counters = numbers.iter().zip(&answers).map(|(number, answer)| Item::of("counter", *number, answer, count));
-        Ok(Counters { counters: counters.collect() })
+    const WORDS: Words = Words {
+        nouns: ["counter", "counters"],
+        placeholder: "N",
+        range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
+        reading: None,
+        writing: Some("A counter takes 0 to 9999, also while a program runs."),
+    };
+    const IDS: Ids = ids!("toyo.counter");
+    const LABELS: Option<Kind> = Some(Kind::Counter);
+    const COMPLETE: ValueKind = complete::COUNTER;
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[Numbers::parse(&fields()[0], bare(text))?], &fields()[0]))
+    }
+
+    fn all() -> Vec<i32> {
+        Numbers::of(&[], &fields()[0])
+    }
+
+    fn name(counter: i32) -> String {
+        names_of::counter(u8::try_from(counter).unwrap_or(u8::MAX))
+    }
+
+    fn fields() -> Vec<Field> {
+        vec![Field { name: "count", heading: "count", is_number: true }]
+    }
+
+    fn texts(record: &Record) -> Vec<String> {
+        vec![count(record).map_or_else(|| record.written(), |count| count.to_string())]
+    }
+
+    fn value(record: &Record) -> Option<i32> {
+        count(record)
+    }
+
+    fn more(_counter: i32, record: Option<&Record>) -> Listed {
+        Listed::of(record)
+    }
+
+    fn is_blank(record: &Record) -> bool {
+        count(record) == Some(0)
+    }
+
+    async fn read(link: &mut Link, screen: &Screen, counters: &[i32]) -> Result<Answers<Record>, Failure> {
+        let requests: Vec<Request> = counters.iter().copied().map(read).collect();
+        Ok(Answers::of(read_each(link, screen, "reading counters", &requests).await?))
     }
 }
 
-impl Watchable for Get {
-    const WATCH: &'static str = "toyo.counter.watch";
-    const WATCHED: Watched = Watched {
-        list: "counters",
-        name: "counter",
-        prefix: "counter ",
-        label: "",
-        value: Some("count"),
-        empty: "no counters",
-    };
+fn read(counter: i32) -> Request {
+    Request::of(table::Command::Mcnt, [Value::Number(counter)])
 }
 
-impl Command for Set {
-    type Family = Toyo;
-    type Report = Done;
-    const ID: &'static str = "toyo.counter.set";
+fn count(record: &Record) -> Option<i32> {
+    record.is_listed().then(|| record.number("count")).flatten()
+}
+
+/// What sets a counter.
+fn order(counter: i32, count: i32) -> Request {
+    Request::of(table::Command::Mcst, [Value::Number(counter), Value::Number(count)])
+}
+
+impl Writable for Counters {
+    type Draft = Option<i32>;
+
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        let Self { counter, value } = *self;
-        let values = [Value::Number(counter), Value::Number(value)];
-        let (link, order) = (context.link, Request::of(table::Command::Mcst, values));
-        let read = Request::of(table::Command::Mcnt, [Value::Number(counter)]);
-        let old = Old::read(link.before(&read).await?.and_then(|record| record.number("count")));
+    fn draft(_counter: i32, texts: &[Option<&str>]) -> Result<Option<i32>, String> {
+        texts.first().copied().flatten().map(|text| number(&fields()[1], text)).transpose()
+    }
+
+    fn whole(counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
+        let count = draft.ok_or_else(|| Failure::usage(format!("{}: a count is needed", Self::name(counter))))?;
+        Ok(read(counter).row().answers[0]
+            .record(vec![Value::Number(counter), Value::Number(count)])
+            .map_err(|error| super::link::wrong(&error))?)
+    }
+
+    async fn plan(link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {
+        let order = order(counter, draft.unwrap_or_default());
         link.ask(&order).await?;
-        let found = read_back(link, &order, &read).await?.number("count");
-        if found.is_some_and(|found| found != value) {
-            return Err(not_held(&order, &format!("it stands at {}", found.unwrap_or_default()))
-                .hint("a program that runs may count on it meanwhile"));
+        link.plan(&read(counter), "what it holds now");
+        Ok(())
+    }
+
+    async fn write(link: &mut Link, _screen: &Screen, counter: i32, new: &Record) -> Result<(), Failure> {
+        let wanted = count(new).unwrap_or_default();
+        let order = order(counter, wanted);
+        link.ask(&order).await?;
+        match count(&read_back(link, &order, &read(counter)).await?) {
+            Some(found) if found != wanted => Err(not_held(&order, &format!("it stands at {found}"))
+                .hint("a program that runs may count on it meanwhile")),
+            _ => Ok(()),
         }
-        let new = New::of("count", value, format!("counter {counter} set to {value}"));
-        Ok(new.with("counter", counter).with("count", value).replaces(old))
     }
 }
 
-/// Counters in the order they were asked for.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Counters {
-    counters: Vec<Item<Count>>,
+/// The timers of the controller.
+#[derive(Debug)]
+pub struct Timers;
+
+/// Number of a timer, as in MTMR TN=1.
+fn timer() -> &'static field::Field {
+    &table::Command::Mtmr.row().requests[0].fields[0]
 }
 
-/// A counter and what it stands at.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Count {
-    counter: u8,
-    /// What people call it; null where it has no name.
-    label: Option<String>,
-    count: i32,
-}
+impl Store for Timers {
+    type Family = Toyo;
+    type Key = i32;
+    type Wire = Record;
+    type Value = f64;
+    type More = Listed;
 
-impl Report for Counters {
-    fn view(&self) -> View {
-        let mut table = Table::new(&["counter", "count", "label"], "no counters");
-        for counter in &self.counters {
-            counter.show(&mut table, |Count { counter, label, count }| {
-                vec![(*counter).into(), (*count).into(), Cell::maybe(label.as_deref())]
-            });
-        }
-        View::table(table.without_blank("label"))
+    const WORDS: Words = Words {
+        nouns: ["timer", "timers"],
+        placeholder: "N",
+        range: "Timers, 1 to 9: 5, 1-3",
+        reading: Some("Values are in seconds."),
+        writing: None,
+    };
+    const IDS: Ids = ids!("toyo.timer");
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[Numbers::parse(timer(), text)?], timer()))
     }
 
-    fn failure(&self) -> Option<Failure> {
-        items::failure_of(&self.counters)
+    fn all() -> Vec<i32> {
+        Numbers::of(&[], timer())
+    }
+
+    fn name(number: i32) -> String {
+        number.to_string()
+    }
+
+    fn fields() -> Vec<Field> {
+        vec![Field { name: "time_s", heading: "time (s)", is_number: true }]
+    }
+
+    fn texts(record: &Record) -> Vec<String> {
+        vec![Self::value(record).map_or_else(|| record.written(), |seconds| format!("{seconds:.1}"))]
+    }
+
+    fn value(record: &Record) -> Option<f64> {
+        record.is_listed().then(|| f64::from(record.number("time").unwrap_or(0)) / 10.0)
+    }
+
+    fn more(_timer: i32, record: Option<&Record>) -> Listed {
+        Listed::of(record)
+    }
+
+    fn is_blank(record: &Record) -> bool {
+        record.number("time") == Some(0)
+    }
+
+    async fn read(link: &mut Link, screen: &Screen, timers: &[i32]) -> Result<Answers<Record>, Failure> {
+        let requests = timers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
+        let requests: Vec<Request> = requests.collect();
+        Ok(Answers::of(read_each(link, screen, "reading timers", &requests).await?))
     }
 }
 
@@ -179,7 +239,7 @@ mod tests {
     #[test]
     fn a_counter_that_was_set_is_read_back() {
         let mut bench = Bench::new("sim:");
-        assert_eq!(bench.data(&["counter", "set", "5", "7"])["count"], 7);
+        assert_eq!(bench.data(&["counter", "set", "5", "7"])["items"][0]["value"], 7);
         let other =
             |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
@@ -194,14 +254,14 @@ mod tests {
     fn what_is_replaced_is_told() {
         let mut bench = Bench::new("sim:");
         bench.data(&["counter", "set", "5", "7"]);
-        let set = bench.data(&["counter", "set", "5", "8"]);
+        let set = bench.data(&["counter", "set", "5", "8"])["items"][0].clone();
         assert_eq!((&set["old"], &set["new"]), (&7.into(), &8.into()), "{set}");
         // A controller that does not tell it takes it nevertheless; one that is not there is not written to.
         let refuses = |block: &str, count| {
             if block == "@MCNT CN=05" && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         };
         assert_eq!(
-            Bench::with_faults("", refuses).0.data(&["counter", "set", "5", "7"])["old"],
+            Bench::with_faults("", refuses).0.data(&["counter", "set", "5", "7"])["items"][0]["old"],
             serde_json::Value::Null
         );
         let silent = |block: &str, _| if block.starts_with("@MC") { Fault::Lost } else { Fault::None };
@@ -231,5 +291,13 @@ mod tests {
         assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
         assert!(objection(&["counter", "set", "1", "10000"]).contains("0 to 9999"));
         assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
+    }
+
+    #[test]
+    fn timers_have_their_blocks() {
+        assert_eq!(all_blocks(&["timer", "get", "9"]).unwrap(), ["@MTMR TN=9"]);
+        let all: Vec<String> = (1..=9).map(|timer| format!("@MTMR TN={timer}")).collect();
+        assert_eq!(all_blocks(&["timer", "get"]).unwrap(), all);
+        assert!(objection(&["timer", "get", "10"]).contains("1 to 9"));
     }
 }

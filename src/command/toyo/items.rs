@@ -8,13 +8,11 @@ use serde::Serialize;
 use super::eeprom::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
-use super::values::NOT_IN_MANUAL;
 use crate::command::frame::dry_run::unknown;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::output::view::{Cell, Table, Tone};
 
 /// Result of one question of several.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -26,18 +24,6 @@ pub enum Item<T> {
         value: T,
         /// True.
         ok: bool,
-    },
-    /// The answer holds something that the manual does not list.
-    Unlisted {
-        /// Which it is: `counter`, `row`, `point`.
-        #[serde(flatten)]
-        key: Key,
-        /// True.
-        ok: bool,
-        /// False.
-        in_manual: bool,
-        /// As the controller holds it.
-        raw: String,
     },
     /// It was not answered.
     Failed {
@@ -58,16 +44,6 @@ pub type Key = BTreeMap<&'static str, i32>;
 pub type Answers = Vec<Result<Record, Failure>>;
 
 impl<T> Item<T> {
-    /// From an answer.
-    pub fn of(name: &'static str, number: i32, answer: &Result<Record, Failure>, make: impl Fn(&Record) -> T) -> Self {
-        let key = Key::from([(name, number)]);
-        match answer {
-            Ok(record) if record.is_listed() => Self::Answered { ok: true, value: make(record) },
-            Ok(record) => Self::Unlisted { ok: true, key, in_manual: false, raw: record.written() },
-            Err(failure) => Self::Failed { ok: false, key, error: failure.clone() },
-        }
-    }
-
     /// From an answer whose value says itself whether the manual lists it.
     pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
         match answer {
@@ -76,27 +52,9 @@ impl<T> Item<T> {
         }
     }
 
-    /// The value, if there is one.
-    pub fn value(&self) -> Option<&T> {
-        if let Self::Answered { value, .. } = self { Some(value) } else { None }
-    }
-
     /// Why there is none.
     pub fn error(&self) -> Option<&Failure> {
         if let Self::Failed { error, .. } = self { Some(error) } else { None }
-    }
-
-    /// Puts it into a table: its cells, or what is there in place of them.
-    pub fn show(&self, table: &mut Table, cells: impl Fn(&T) -> Vec<Cell>) {
-        let (key, text, tone) = match self {
-            Self::Answered { value, .. } => return table.rows.push(cells(value)),
-            Self::Unlisted { key, raw, .. } => (key, format!("{raw} ({NOT_IN_MANUAL})"), Tone::Warning),
-            Self::Failed { key, error, .. } => (key, in_a_word(error.kind).to_owned(), Tone::Bad),
-        };
-        let mut row: Vec<Cell> = key.values().map(|number| Cell::from(*number)).collect();
-        row.push(Cell::from(text).tone(tone));
-        row.resize_with(table.columns.len(), Cell::default);
-        table.rows.push(row);
     }
 }
 
@@ -118,11 +76,6 @@ pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>
     }
     let message = format!("{} of {all} failed: {}", failed.len(), first.message);
     Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
-}
-
-/// The same of items.
-pub fn failure_of<T>(items: &[Item<T>]) -> Option<Failure> {
-    failure(items.len(), items.iter().map(Item::error))
 }
 
 /// Asks for what is stored, one after the other; each answer counts for itself. When the line falls silent, the rest is not
@@ -253,30 +206,30 @@ mod tests {
 
     #[test]
     fn one_refusal_hides_nothing_and_names_its_block() {
-        for (words, list, key, block) in [
-            (["counter", "get", "1-3"], "counters", "counter", "MCNT CN=02"),
-            (["timer", "get", "1-3"], "timers", "timer", "MTMR TN=2"),
-            (["speed-table", "get", "1-3"], "rows", "row", "RPAR T2 V02"),
-            (["accel-table", "get", "1-3"], "rows", "row", "RPAR T3 A02"),
-            (["torque-table", "get", "1-3"], "rows", "row", "RPAR T5 LIM02"),
-            (["easy", "get", "1-3"], "programs", "program", "RESY PNO=02 ST=000"),
-            (["mvm", "get", "1-3"], "groups", "group", "RPAR T4 S3 GRP=02"),
-            (["point", "get", "1-3"], "points", "point", "RPAR T1 PT=002"),
+        for (words, name, block) in [
+            (["counter", "get", "1-3"], "CN02", "MCNT CN=02"),
+            (["timer", "get", "1-3"], "timer 2", "MTMR TN=2"),
+            (["speed-table", "get", "1-3"], "row 2", "RPAR T2 V02"),
+            (["accel-table", "get", "1-3"], "row 2", "RPAR T3 A02"),
+            (["torque-table", "get", "1-3"], "row 2", "RPAR T5 LIM02"),
+            (["easy", "get", "1-3"], "easy program 2", "RESY PNO=02 ST=000"),
+            (["mvm", "get", "1-3"], "group 2", "RPAR T4 S3 GRP=02"),
+            (["point", "get", "1-3"], "point 2", "RPAR T1 PT=002"),
         ] {
             let asked = Box::leak(format!("@{block}").into_boxed_str());
             let (data, failure) = with_faults(asked, Fault::Answered("@NG")).run(&words).unwrap();
-            let items = data[list].as_array().unwrap();
+            let items = data["items"].as_array().unwrap();
             assert_eq!(items.len(), 3, "{data}");
             assert_eq!(
                 (&items[0]["ok"], &items[1]["ok"], &items[2]["ok"]),
                 (&true.into(), &false.into(), &true.into())
             );
-            assert_eq!((&items[1][key], &items[2][key]), (&2.into(), &3.into()), "{data}");
             let error = &items[1]["error"];
             assert_eq!((&error["kind"], &error["code"]), (&"refused".into(), &"NG".into()));
+            assert_eq!((&error["asked"], &items[1]["value"]), (&name.into(), &serde_json::Value::Null));
             let failure = failure.unwrap();
             assert_eq!(failure.kind, Kind::Mixed);
-            let expected = format!("1 of 3 failed: the controller refused {block} (@NG): the status does not tell why");
+            let expected = format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
             assert_eq!(failure.message, expected);
         }
     }
@@ -285,9 +238,9 @@ mod tests {
     fn what_falls_silent_is_not_asked_for_ever() {
         let (data, failure) = with_faults("@MCNT CN=02", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap();
         let kinds: Vec<_> =
-            data["counters"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
+            data["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
         assert!(kinds[0].is_null() && kinds[1..].iter().all(|kind| kind == "no_answer"), "{data}");
-        assert!(data["counters"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
+        assert!(data["items"][2]["error"]["message"].as_str().unwrap().starts_with("@MCNT CN=03 was not asked"));
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
         assert_eq!(failure.kind, Kind::NoAnswer);
@@ -306,12 +259,12 @@ mod tests {
             let mut bench = with_faults(block, Fault::Answered(answer));
             let data = bench.data(&["param", "list"]);
             let id = &block[6..];
-            let entry = data["parameters"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
+            let entry = data["items"].as_array().unwrap().iter().find(|entry| entry["id"] == id).unwrap();
             assert_eq!((&entry["ok"], &entry["in_manual"]), (&true.into(), &false.into()), "{entry}");
             let odd: Vec<_> =
-                entry["values"].as_array().unwrap().iter().filter(|one| one["in_manual"] == false).collect();
+                entry["value"].as_array().unwrap().iter().filter(|one| one["in_manual"] == false).collect();
             assert_eq!(odd[0]["raw"], raw, "{entry}");
-            let others = data["parameters"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
+            let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 70);
             // Nothing of it is written back by leaving it as it is.
             if id == "P06" {
@@ -324,10 +277,9 @@ mod tests {
         }
         let mut bench = with_faults("@RPAR T2 V02", Fault::Answered("@RPAR T2 V02=250"));
         let rows = bench.data(&["speed-table", "get", "1-2"]);
-        assert_eq!(
-            rows["rows"][1],
-            serde_json::json!({ "ok": true, "row": 2, "in_manual": false, "raw": "T2 V02=250" })
-        );
+        let row = &rows["items"][1];
+        let unlisted = (&false.into(), &"T2 V02=250".into(), &serde_json::Value::Null);
+        assert_eq!((&row["in_manual"], &row["raw"], &row["value"]), unlisted);
         let mut bench = Bench::with_faults("steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }", |block, _| {
             if block == "@RSTX 0002" { Fault::Answered("@RSTX 0002 FOO X=1") } else { Fault::None }
         })

@@ -60,7 +60,6 @@ mod task;
 mod tasks;
 #[cfg(test)]
 mod testing;
-mod timer;
 pub mod top;
 mod trace;
 mod values;

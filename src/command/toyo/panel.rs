@@ -31,5 +31,5 @@ pub const PANEL: Panel = Panel {
 };
 
 fn small_step(parameter: &Value, axis: usize) -> Option<f64> {
-    parameter["parameters"][0]["values"].get(axis)?["value"].as_f64()
+    parameter["items"][0]["value"].get(axis)?["value"].as_f64()
 }

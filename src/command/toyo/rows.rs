@@ -1,72 +1,256 @@
-//! `toyo speed-table`, `accel-table`, `torque-table`: tables with a value or two in a row.
+//! Tables in the controller's EEPROM: speeds, acceleration times, torque limits, easy programs. Each is a declaration
+//! ([`Kind`]); how rows are read and written stands here, once.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::eeprom::Cells;
-use super::items::{self, Item, read_each};
-use super::link;
-use super::link::Toyo;
-use super::numbers::{Numbers, number};
-use super::stores::{self, Store, StoreTask, parameter_cell, parameter_sketch};
-use super::values::{Changes, in_a_line, shown};
-use crate::command::{Command, Context, Report, commands};
+use super::eeprom::{Cell, Cells};
+use super::items::read_each;
+use super::link::{Link, Toyo, wrong};
+use super::numbers::Numbers;
+use super::stores::{parameter_cell, parameter_sketch};
+use super::values::{Changes, NOT_IN_MANUAL, word};
+use crate::command::frame::dry_run::unknown;
+use crate::command::frame::store::{Answers, Field, Ids, Store, Words, Writable, ids, table_commands};
+use crate::command::robot::item::asked;
 use crate::controller::Risk;
-use crate::controller::toyo::field::{Field, Form, Value};
-use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::field::{self, Form, Value};
+use crate::controller::toyo::layout::{Layout, Record, UNLISTED};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
-use crate::gate::Confirmation;
-use crate::output::view::{Cell, Table, View};
+use crate::output::Screen;
 
-commands! {
+table_commands! {
     /// Speeds that programs name by their row.
-    pub enum SpeedTable {
-        /// Read rows: 1-5,20; without any, all 20
-        Get(Get<Speed>),
-        /// Write a row: 5 250
-        Set(Set<Speed>),
-    }
+    SpeedTable of Rows<Speed> {}
 }
 
-commands! {
+table_commands! {
     /// Acceleration times that programs name by their row.
-    pub enum AccelTable {
-        /// Read rows: 1-5,20; without any, all 20
-        Get(Get<Accel>),
-        /// Write a row: 5 0.25
-        Set(Set<Accel>),
-    }
+    AccelTable of Rows<Accel> {}
 }
 
-commands! {
+table_commands! {
     /// Torque limits that programs name by their row.
-    pub enum TorqueTable {
-        /// Read rows: 1-3; without any, all 8
-        Get(Get<Torque>),
-        /// Write a row: 3 2.5 2.0
-        Set(Set<Torque>),
-    }
+    TorqueTable of Rows<Torque> {}
 }
 
-/// A table, and how a row of it is reported.
+/// What a table is, and what of it is reported.
 pub trait Kind: Debug + Send + Sync + 'static {
-    /// Its id.
-    const TABLE: &'static str;
-    /// `toyo.speed-table.get`, `toyo.speed-table.set`.
-    const IDS: [&'static str; 2];
-    /// What one row of it holds, beside its number.
-    type Content: Debug + Serialize + JsonSchema;
-    /// Columns of its values.
-    const COLUMNS: &'static [&'static str];
+    /// What one row holds, for reports.
+    type Value: Debug + Clone + Serialize + JsonSchema;
+    /// Its words.
+    const WORDS: Words;
+    /// Names of its reports.
+    const IDS: Ids;
+    /// What a row holds, by name, in the order of the protocol.
+    const FIELDS: &'static [Field];
+
+    /// The number of a row.
+    fn key() -> &'static field::Field;
+
+    /// The fields of a row, behind its number.
+    fn body() -> Layout;
+
+    /// What reads a row.
+    fn read(row: i32) -> Result<Request, Failure>;
+
+    /// A row with its values.
+    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
+
+    /// The block that writes a row; `?` stands for values that are kept.
+    fn sketch(row: i32, values: &[Option<Value>]) -> String;
 
     /// The values of a row.
-    fn content(record: &Record) -> Self::Content;
+    fn value(record: &Record) -> Self::Value;
+
+    /// Whether zeros mean that nobody wrote the row.
+    const ZERO_IS_BLANK: bool = false;
+}
+
+/// Help of commands that write to the EEPROM.
+pub const WRITING: &str =
+    "What the controller holds already is not written: its EEPROM takes about a million rewrites.";
+
+const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> Words {
+    Words { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
+}
+
+/// A table of `kind` as a store.
+#[derive(Debug)]
+pub struct Rows<K>(PhantomData<K>);
+
+/// What a toyo item has besides.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Listed {
+    /// Whether the manual lists what the controller holds; null where that was not read.
+    pub in_manual: Option<bool>,
+    /// As the controller holds it, where the manual does not list that: it is not written back.
+    pub raw: Option<String>,
+}
+
+impl Listed {
+    /// Of what was read.
+    pub fn of(record: Option<&Record>) -> Self {
+        let is_listed = record.map(Record::is_listed);
+        Self { in_manual: is_listed, raw: record.filter(|record| !record.is_listed()).map(Record::written) }
+    }
+}
+
+impl<K: Kind> Store for Rows<K> {
+    type Family = Toyo;
+    type Key = i32;
+    type Wire = Record;
+    type Value = K::Value;
+    type More = Listed;
+
+    const WORDS: Words = K::WORDS;
+    const IDS: Ids = K::IDS;
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[Numbers::parse(K::key(), text)?], K::key()))
+    }
+
+    fn all() -> Vec<i32> {
+        Numbers::of(&[], K::key())
+    }
+
+    fn name(row: i32) -> String {
+        row.to_string()
+    }
+
+    fn fields() -> Vec<Field> {
+        K::FIELDS.to_vec()
+    }
+
+    fn texts(record: &Record) -> Vec<String> {
+        if record.layout() == UNLISTED {
+            return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
+        }
+        body::<K>(record).map(|(field, value)| plain(field, value)).collect()
+    }
+
+    fn value(record: &Record) -> Option<K::Value> {
+        record.is_listed().then(|| K::value(record))
+    }
+
+    fn more(_row: i32, record: Option<&Record>) -> Listed {
+        Listed::of(record)
+    }
+
+    fn is_blank(record: &Record) -> bool {
+        K::ZERO_IS_BLANK && record.is_listed() && body::<K>(record).all(|(_, value)| *value == Value::Number(0))
+    }
+
+    async fn read(link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
+        let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>, Failure>>()?;
+        let what = format!("reading {}", K::WORDS.nouns[1]);
+        Ok(Answers::of(read_each(link, screen, &what, &requests).await?))
+    }
+}
+
+impl<K: Kind> Writable for Rows<K> {
+    type Draft = Changes;
+
+    const RISK: Risk = Risk::Destroy;
+
+    fn draft(_row: i32, texts: &[Option<&str>]) -> Result<Changes, String> {
+        let fields = K::body().fields;
+        let values = fields.iter().zip(texts).map(|(field, text)| text.map(|text| word(field, text)).transpose());
+        values.collect::<Result<_, _>>().map(Changes::of)
+    }
+
+    fn typed(row: i32, words: &[String]) -> Result<Changes, Failure> {
+        Changes::read(&asked(K::WORDS.nouns[0], &row.to_string()), &K::body(), words)
+    }
+
+    fn whole(row: i32, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
+        let values = match (changes.whole(), old) {
+            (Some(values), _) => values,
+            (None, Some(old)) => changes.over(old)?,
+            (None, None) => return Err(unknown()),
+        };
+        Ok(K::cell(row, values)?.wanted)
+    }
+
+    async fn plan(link: &mut Link, row: i32, changes: &Changes) -> Result<(), Failure> {
+        link.plan_overwriting(&K::read(row)?, &K::sketch(row, changes.values())).await
+    }
+
+    async fn write(link: &mut Link, screen: &Screen, row: i32, new: &Record) -> Result<(), Failure> {
+        let values = body::<K>(new).map(|(_, value)| value.clone()).collect();
+        link.overwrite(screen, &K::cell(row, values)?, &mut Cells::default()).await
+    }
+}
+
+/// The values of a row behind its number.
+fn body<K: Kind>(record: &Record) -> impl Iterator<Item = (&'static field::Field, &Value)> {
+    record.pairs().skip(record.values().len().saturating_sub(K::body().fields.len()))
+}
+
+/// A value as it is typed.
+fn plain(field: &field::Field, value: &Value) -> String {
+    match (field.form, value) {
+        (Form::Number(number), Value::Number(units)) => number.plain(*units),
+        _ => field.written(value).trim_end().to_owned(),
+    }
+}
+
+/// A table of parameters: T2, T3, T5.
+pub trait TableOf: Debug + Send + Sync + 'static {
+    /// See [`Kind::Value`].
+    type Value: Debug + Clone + Serialize + JsonSchema;
+    /// Its id.
+    const TABLE: &'static str;
+    /// See [`Kind::WORDS`].
+    const WORDS: Words;
+    /// See [`Kind::IDS`].
+    const IDS: Ids;
+    /// See [`Kind::FIELDS`].
+    const FIELDS: &'static [Field];
+
+    /// See [`Kind::value`].
+    fn value(record: &Record) -> Self::Value;
+}
+
+fn table<T: TableOf>() -> &'static Parameter {
+    Parameter::named(T::TABLE).expect("every table is in the table of parameters")
+}
+
+impl<T: TableOf> Kind for T {
+    type Value = T::Value;
+    const WORDS: Words = T::WORDS;
+    const IDS: Ids = T::IDS;
+    const FIELDS: &'static [Field] = T::FIELDS;
+
+    fn key() -> &'static field::Field {
+        &table::<T>().key.fields[0]
+    }
+
+    fn body() -> Layout {
+        table::<T>().body()
+    }
+
+    fn read(row: i32) -> Result<Request, Failure> {
+        Request::read_parameter(table::<T>(), Some(row)).map_err(|error| wrong(&error))
+    }
+
+    fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        let values = std::iter::once(Value::Number(row)).chain(values).collect();
+        parameter_cell(table::<T>(), values).map_err(|error| wrong(&error))
+    }
+
+    fn sketch(row: i32, values: &[Option<Value>]) -> String {
+        parameter_sketch(table::<T>(), Some(row), values)
+    }
+
+    fn value(record: &Record) -> T::Value {
+        T::value(record)
+    }
 }
 
 /// Table T2.
@@ -81,222 +265,70 @@ pub struct Accel;
 #[derive(Debug)]
 pub struct Torque;
 
-/// A row of the speed table. The unit is that of the manual.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct SpeedRow {
-    speed_mm_s: f64,
-}
-
-/// A row of the acceleration table.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct AccelRow {
-    /// From standstill to full speed, and back.
-    time_s: f64,
-}
-
 /// A row of the torque limit table; the manual gives no unit.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct TorqueRow {
     limit: f64,
     /// Torque from which on the load output is on.
     load: f64,
 }
 
-impl Kind for Speed {
+const fn number(name: &'static str, heading: &'static str) -> Field {
+    Field { name, heading, is_number: true }
+}
+
+impl TableOf for Speed {
+    type Value = f64;
     const TABLE: &'static str = "T2";
-    const IDS: [&'static str; 2] = ["toyo.speed-table.get", "toyo.speed-table.set"];
-    type Content = SpeedRow;
-    const COLUMNS: &'static [&'static str] = &["row", "speed (mm/s)"];
+    const IDS: Ids = ids!("toyo.speed-table");
+    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
+    const FIELDS: &'static [Field] = &[number("speed_mm_s", "speed (mm/s)")];
 
-    fn content(record: &Record) -> SpeedRow {
-        SpeedRow { speed_mm_s: decimal(record, "speed") }
+    fn value(record: &Record) -> f64 {
+        decimal(record, "speed")
     }
 }
 
-impl Kind for Accel {
+impl TableOf for Accel {
+    type Value = f64;
     const TABLE: &'static str = "T3";
-    const IDS: [&'static str; 2] = ["toyo.accel-table.get", "toyo.accel-table.set"];
-    type Content = AccelRow;
-    const COLUMNS: &'static [&'static str] = &["row", "time (s)"];
+    const IDS: Ids = ids!("toyo.accel-table");
+    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
+    const FIELDS: &'static [Field] = &[number("time_s", "time (s)")];
 
-    fn content(record: &Record) -> AccelRow {
-        AccelRow { time_s: decimal(record, "time") }
+    fn value(record: &Record) -> f64 {
+        decimal(record, "time")
     }
 }
 
-impl Kind for Torque {
+impl TableOf for Torque {
+    type Value = TorqueRow;
     const TABLE: &'static str = "T5";
-    const IDS: [&'static str; 2] = ["toyo.torque-table.get", "toyo.torque-table.set"];
-    type Content = TorqueRow;
-    const COLUMNS: &'static [&'static str] = &["row", "limit", "load"];
+    const IDS: Ids = ids!("toyo.torque-table");
+    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
+    const FIELDS: &'static [Field] = &[number("limit", "limit"), number("load", "load")];
 
-    fn content(record: &Record) -> TorqueRow {
+    fn value(record: &Record) -> TorqueRow {
         TorqueRow { limit: decimal(record, "limit"), load: decimal(record, "load") }
-    }
-}
-
-/// Which rows.
-#[derive(Debug, Args)]
-pub struct Get<K: Kind> {
-    /// Rows and ranges of them, from 1; without any, all
-    #[arg(value_name = "ROW", value_delimiter = ',', value_parser = |text: &str| Numbers::parse(row_field(table::<K>()), text))]
-    rows: Vec<Numbers>,
-    #[arg(skip)]
-    of: PhantomData<K>,
-}
-
-/// A row, and what it shall hold.
-#[derive(Debug, Args)]
-#[command(after_help = "What the controller holds already is not written: its EEPROM takes about a million rewrites.")]
-pub struct Set<K: Kind> {
-    /// Row, from 1
-    #[arg(value_name = "ROW", value_parser = |text: &str| number(row_field(table::<K>()), text))]
-    row: i32,
-    /// What it shall hold; where a row has two values, one of them by name keeps the other
-    #[arg(required = true, value_name = "VALUE")]
-    values: Vec<String>,
-    #[arg(skip)]
-    of: PhantomData<K>,
-}
-
-fn table<K: Kind>() -> &'static Parameter {
-    Parameter::named(K::TABLE).expect("every kind of table is in the table of parameters")
-}
-
-const WORK: StoreTask = StoreTask { doing: "storing rows", noun: "row", things: ["a row", "rows"], resumes: false };
-
-/// The number of a row.
-pub fn row_field(table: &'static Parameter) -> &'static Field {
-    &table.key.fields[0]
-}
-
-impl<K: Kind> Command for Get<K> {
-    type Family = Toyo;
-    type Report = Rows<K>;
-    const ID: &'static str = K::IDS[0];
-
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Rows<K>, Failure> {
-        let table = table::<K>();
-        let rows = Numbers::of(&self.rows, row_field(table));
-        let requests: Result<Vec<Request>, _> =
-            rows.iter().map(|row| Request::read_parameter(table, Some(*row))).collect();
-        let requests = requests.map_err(|error| link::wrong(&error))?;
-        let answers = read_each(context.link, context.screen, "reading rows", &requests).await?;
-        let items = rows.iter().zip(&answers).map(|(row, answer)| Item::of("row", *row, answer, Row::of));
-        Ok(Rows { rows: items.collect() })
-    }
-}
-
-impl<K: Kind> Command for Set<K> {
-    type Family = Toyo;
-    type Report = Stored<K>;
-    const ID: &'static str = K::IDS[1];
-    const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite a row of a table";
-    const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
-
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored<K>, Failure> {
-        let Context { link, screen, authority, .. } = context;
-        let table = table::<K>();
-        let changes = Changes::read(&format!("row {}", self.row), &table.body(), &self.values)?;
-        let read = Request::read_parameter(table, Some(self.row)).map_err(|error| link::wrong(&error))?;
-        let sketch = |values: &[Option<Value>]| parameter_sketch(table, Some(self.row), values);
-        let (values, found) = changes.completed(link, &read, sketch).await?;
-        let body = table.body().record(values.clone()).map_err(|error| link::wrong(&error))?;
-        let values = std::iter::once(Value::Number(self.row)).chain(values).collect();
-        let cell = parameter_cell(table, values).map_err(|error| link::wrong(&error))?;
-        let row = Row::of(&cell.wanted);
-        let stores = [Store::new(self.row.to_string(), cell).over(found)];
-        authority.confirm(&stores::replacing(WORK, &stores, &format!(" of the {}", table.name))).await?;
-        let cells = stores::sum(&stores::store_all(link, screen, WORK, &stores, 0).await?);
-        Ok(Stored { row, items: stores::written(&stores), cells, text: in_a_line(&shown(&body)) })
-    }
-}
-
-/// Rows of a table.
-#[derive(Debug, Serialize, JsonSchema)]
-#[serde(bound = "")]
-#[schemars(bound = "")]
-pub struct Rows<K: Kind> {
-    rows: Vec<Item<Row<K>>>,
-}
-
-/// A row of a table.
-#[derive(Debug, Serialize, JsonSchema)]
-#[serde(bound = "")]
-#[schemars(bound = "")]
-pub struct Row<K: Kind> {
-    /// Its number, from 1.
-    row: i32,
-    #[serde(flatten)]
-    content: K::Content,
-    #[serde(skip)]
-    cells: Vec<Cell>,
-}
-
-/// What a row holds now.
-#[derive(Debug, Serialize, JsonSchema)]
-#[serde(bound = "")]
-#[schemars(bound = "")]
-pub struct Stored<K: Kind> {
-    #[serde(flatten)]
-    row: Row<K>,
-    /// What it held and holds.
-    items: stores::WrittenCells,
-    #[serde(flatten)]
-    cells: Cells,
-    /// The values as typed.
-    #[serde(skip)]
-    text: String,
-}
-
-impl<K: Kind> Row<K> {
-    fn of(record: &Record) -> Self {
-        let cell = |(field, value): (&Field, &Value)| match (field.form, value) {
-            (Form::Number(form), Value::Number(units)) => Cell::number(form.plain(*units)),
-            _ => Cell::from(field.written(value)),
-        };
-        let row = record.number("row").unwrap_or_default();
-        Self { row, content: K::content(record), cells: record.pairs().map(cell).collect() }
-    }
-}
-
-impl<K: Kind> Report for Rows<K> {
-    fn view(&self) -> View {
-        let mut table = Table::new(K::COLUMNS, "no rows");
-        for row in &self.rows {
-            row.show(&mut table, |row| row.cells.clone());
-        }
-        View::table(table)
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::failure_of(&self.rows)
-    }
-}
-
-impl<K: Kind> Report for Stored<K> {
-    fn view(&self) -> View {
-        let table = table::<K>().name;
-        View::text(format!("{table} {}: {}\n{}", self.row.row, self.text, self.cells.in_words()))
     }
 }
 
 /// A number in its unit; 0 if the record does not have it.
 fn decimal(record: &Record, name: &str) -> f64 {
-    record
-        .pairs()
-        .find_map(|(field, value)| match (field.form, value) {
-            (Form::Number(form), Value::Number(units)) if field.name == name => {
-                Some(f64::from(*units) / f64::from(form.scale()))
-            }
-            _ => None,
-        })
-        .unwrap_or_default()
+    let mut pairs = record.pairs();
+    let found = pairs.find_map(|(field, value)| match (field.form, value) {
+        (Form::Number(form), Value::Number(units)) if field.name == name => {
+            Some(f64::from(*units) / f64::from(form.scale()))
+        }
+        _ => None,
+    });
+    found.unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use crate::command::toyo::testing::{Bench, blocks, objection};
 
     #[test]
@@ -318,6 +350,7 @@ mod tests {
         );
         assert_eq!(blocks(&["accel-table", "set", "5", "time=0.25"]).unwrap()[1], "@WPAR T3 A05=0.25");
         assert_eq!(blocks(&["torque-table", "set", "3", "2.5", "2"]).unwrap()[1], "@WPAR T5 LIM03 T=2.50 L=2.00");
+        assert_eq!(blocks(&["torque-table", "set", "3", "load=2"]).unwrap()[1], "@WPAR T5 LIM03 T=? L=2.00");
         assert_eq!(
             blocks(&["speed-table", "set", "5", "0.5"]).unwrap_err().message,
             "row 5: speed: 0.5 is out of range (a number, 1.0 to 9999.9 mm/s)"
@@ -329,11 +362,37 @@ mod tests {
         let mut bench = Bench::new("sim:");
         bench.data(&["torque-table", "set", "2", "1.5", "1.25"]);
         let stored = bench.data(&["torque-table", "set", "2", "load=1"]);
-        assert_eq!(
-            (&stored["limit"], &stored["load"], &stored["cells_written"]),
-            (&1.5.into(), &1.0.into(), &1.into())
-        );
+        let item = &stored["items"][0];
+        assert_eq!((&item["old"], &item["written"]), (&json!({"limit": 1.5, "load": 1.25}), &true.into()), "{stored}");
+        assert_eq!(bench.data(&["torque-table", "set", "2", "load=1"])["items"][0]["written"], false);
         let read = bench.data(&["torque-table", "get", "2"]);
-        assert_eq!(read, serde_json::json!({ "rows": [{ "ok": true, "row": 2, "limit": 1.5, "load": 1.0 }] }));
+        let item = json!({
+            "name": "2", "label": null, "kind": "row", "in_manual": true, "raw": null, "ok": true,
+            "value": { "limit": 1.5, "load": 1.0 },
+        });
+        assert_eq!(read, json!({ "items": [item] }));
+    }
+
+    #[test]
+    fn rows_are_copied_saved_and_written_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("torque.csv");
+        let file = file.to_str().unwrap();
+        let mut bench = Bench::new("sim:");
+        bench.data(&["torque-table", "set", "2", "1.5", "1.25"]);
+        let copied = bench.data(&["torque-table", "copy", "2", "3-4"]);
+        assert_eq!((&copied["items"][1]["name"], &copied["items"][1]["value"]["load"]), (&"4".into(), &1.25.into()));
+        bench.data(&["torque-table", "dump", file, "2-4"]);
+        let text = std::fs::read_to_string(file).unwrap();
+        assert_eq!(text, "name,limit,load\n2,1.50,1.25\n3,1.50,1.25\n4,1.50,1.25\n");
+        std::fs::write(file, "name,load\n3,2\n4,1.25\n").unwrap();
+        let restored = bench.data(&["torque-table", "restore", file]);
+        let written: Vec<_> = restored["items"].as_array().unwrap().iter().map(|item| &item["written"]).collect();
+        assert_eq!(written, [true, false]);
+        assert_eq!(bench.data(&["torque-table", "get", "3"])["items"][0]["value"], json!({"limit": 1.5, "load": 2.0}));
+        std::fs::write(file, "name,load\n3,200\n9,1\n").unwrap();
+        let failure = bench.run(&["torque-table", "restore", file]).unwrap_err();
+        assert!(failure.message.contains("2:") && failure.message.contains("9 is out of range"), "{failure}");
+        assert_eq!(bench.run(&["torque-table", "copy", "2", "2"]).unwrap_err().kind.exit(), 2);
     }
 }

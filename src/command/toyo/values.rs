@@ -229,6 +229,11 @@ impl Changes {
         Self(values)
     }
 
+    /// What shall become of each field.
+    pub fn values(&self) -> &[Option<Value>] {
+        &self.0
+    }
+
     /// All values, if none is left as it is.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()

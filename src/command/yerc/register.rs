@@ -13,17 +13,16 @@ use super::orders::usage;
 use super::parts::{Parts, read_in_parts};
 use super::writes::{WriteOrder, before, write_all};
 use crate::command::frame::items;
-use crate::command::frame::items::{ItemError, ItemOutcome};
 use crate::command::frame::names;
-use crate::command::frame::orders::{Old, Written};
-use crate::command::{Command, Context, Report, commands};
+use crate::command::frame::watch::{Watch, Watchable, Watched};
+use crate::command::robot::item::{Columns, Item, Items, Written, WrittenItems};
+use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
 use crate::controller::names::{Kind, Names};
 use crate::controller::typed;
 use crate::controller::yerc::names::{register, register_address};
 use crate::controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
 use crate::failure::Failure;
-use crate::output::view::{Cell, Table, View};
 
 commands! {
     /// What can be done with registers.
@@ -32,6 +31,8 @@ commands! {
         Get(Get),
         /// Write registers: 0 to 559
         Set(Set),
+        /// Print each change of registers
+        Watch(Watch<Get>),
     }
 }
 
@@ -93,10 +94,10 @@ impl FromStr for Assignment {
 
 impl Command for Get {
     type Family = Yerc;
-    type Report = Registers;
+    type Report = Items<u16, Word>;
     const ID: &'static str = "yerc.register.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Registers, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Items<u16, Word>, Failure> {
         let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
         let Context { link, robot, screen, .. } = context;
         let names = names::of(robot, screen);
@@ -105,21 +106,26 @@ impl Command for Get {
         let mut outcomes = read_in_parts(link, plan, &numbers, |_| Parts::Halves, |_, _| {}).await?;
         let words = numbers.into_iter().filter_map(|number| {
             let outcome = outcomes.remove(&number)?;
-            Some(Word::new(number, names, outcome.map_err(Failure::from)))
+            Some(item(number, names, outcome.map_err(Failure::from)))
         });
-        let report = Registers { registers: words.collect() };
-        items::nothing(report.registers.len(), report.errors())?;
+        let report = Items::new(columns(), words.collect());
+        items::nothing(report.items.len(), report.errors())?;
         Ok(report)
     }
 }
 
+impl Watchable for Get {
+    const WATCH: &'static str = "yerc.register.watch";
+    const WATCHED: Watched = Watched::ITEMS;
+}
+
 impl Command for Set {
     type Family = Yerc;
-    type Report = WrittenRegisters;
+    type Report = WrittenItems<u16, Word>;
     const ID: &'static str = "yerc.register.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenRegisters, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenItems<u16, Word>, Failure> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of(robot, screen);
         let mut seen = HashSet::new();
@@ -132,10 +138,10 @@ impl Command for Set {
         let reads = link.by_model(|model| plan_register_reads(model, &numbers)).await?;
         let old = before(link, &reads).await?;
         write_all(link, screen, &steps).await?;
-        let written = values.into_iter().map(|(number, value)| {
-            Written::new(Word::new(number, names, Ok(value)), Old::read(old.get(&number).copied()), value)
-        });
-        Ok(WrittenRegisters { written: written.collect() })
+        let written = values
+            .into_iter()
+            .map(|(number, value)| Written::new(item(number, names, Ok(value)), old.get(&number).copied(), true));
+        Ok(WrittenItems::new(columns(), written.collect()))
     }
 }
 
@@ -151,75 +157,26 @@ impl WriteOrder for WriteRegisterStep {
     }
 }
 
-/// A register.
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
-struct Word {
+/// What a register has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Word {
     number: u16,
-    /// What people call it; null where it has no name.
-    label: Option<String>,
-    #[serde(flatten)]
-    outcome: ItemOutcome<WordValue>,
+    /// `0x03e8`; null where it was not read.
+    value_hex: Option<String>,
 }
 
-#[derive(Debug, PartialEq, Serialize, JsonSchema)]
-struct WordValue {
-    value: u16,
-    /// `0x03e8`.
-    value_hex: String,
+fn item(number: u16, names: &Names, value: Result<u16, Failure>) -> Item<u16, Word> {
+    let hex = |value: u16| format!("{value:#06x}");
+    let name = register_address(number);
+    let (label, more) =
+        (names::label(names, Kind::Register, &name), Word { number, value_hex: value.as_ref().ok().copied().map(hex) });
+    Item::with("register", name, more, value.map(Some))
+        .labelled(label)
+        .shown(|value| vec![(*value).into(), hex(*value).into()])
 }
 
-impl Word {
-    fn new(number: u16, names: &Names, value: Result<u16, Failure>) -> Self {
-        let value = value.map(|value| WordValue { value, value_hex: format!("{value:#06x}") });
-        let label = names::label(names, Kind::Register, &register_address(number));
-        Self { number, label, outcome: ItemOutcome::new(format!("register {number}"), value) }
-    }
-}
-
-impl Registers {
-    fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        self.registers.iter().filter_map(|word| word.outcome.error())
-    }
-}
-
-/// Registers in the order they were asked for.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Registers {
-    registers: Vec<Word>,
-}
-
-/// Registers the controller confirmed.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct WrittenRegisters {
-    written: Vec<Written<Word>>,
-}
-
-fn table<'a>(first: &'static str, words: impl Iterator<Item = &'a Word>) -> View {
-    let mut table = Table::new(&[first, "label", "value", "hex"], "no registers");
-    for word in words {
-        let [value, hex] = match (word.outcome.data(), word.outcome.error()) {
-            (Some(word), _) => [word.value.into(), Cell::from(word.value_hex.as_str())],
-            (None, error) => ["-".into(), error.map_or_else(|| "-".into(), ItemError::cell)],
-        };
-        table.row([word.number.into(), Cell::maybe(word.label.as_deref()), value, hex]);
-    }
-    View::table(table.without_blank("label"))
-}
-
-impl Report for Registers {
-    fn view(&self) -> View {
-        table("register", self.registers.iter())
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.registers.len(), self.errors())
-    }
-}
-
-impl Report for WrittenRegisters {
-    fn view(&self) -> View {
-        table("written", self.written.iter().map(|written| &written.item))
-    }
+fn columns() -> Columns {
+    Columns { name: "register", values: vec!["value", "hex"], empty: "no registers" }
 }
 
 #[cfg(test)]
@@ -243,7 +200,7 @@ mod tests {
         let mut bench = Bench::new("sim:");
         bench.data(&["register", "set", "5=0xFFFF", "6=1"]);
         let data = bench.data(&["register", "get", "6", "5..6"]);
-        let numbers: Vec<&Value> = data["registers"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
+        let numbers: Vec<&Value> = data["items"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
         assert_eq!(numbers, [&Value::from(1), &Value::from(0xFFFF)]);
     }
 }

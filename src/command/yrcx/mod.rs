@@ -7,7 +7,7 @@
 //! To add a command:
 //!
 //! 1. Its file: arguments (texts go to the codec as they were typed: `draft.with(Key::SpeedPercent, text)` reads them in
-//!    the unit of the field and checks their range), the report, a row of `one_row!`, or of `by_number!` for what is stored
+//!    the unit of the field and checks their range), the report, a row of `one_row!`, or a table of `stores` for what is stored
 //!    by its number. Shared arguments are in `arguments.rs`, positions in `position.rs`.
 //! 2. A line in the list below, or in that of its noun.
 //! 3. Tests: `testing::words` gives the words of a command line, `testing::example` those of an example of the manual.
@@ -64,6 +64,7 @@ mod several;
 pub mod simulated;
 mod single;
 mod status;
+mod stores;
 mod teach;
 #[cfg(test)]
 mod testing;

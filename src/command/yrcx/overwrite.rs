@@ -12,11 +12,10 @@ use super::position::{Unit, position};
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
 use crate::client::yrcx;
-use crate::command::Report;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::orders;
 use crate::command::frame::orders::Old;
+use crate::command::robot::item::{Item, Written, WrittenItems};
 use crate::controller::Risk;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table::Command;
@@ -24,7 +23,6 @@ use crate::controller::yrcx::table::parameter::Parameter;
 use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
 use crate::gate::{Change, Confirmation};
-use crate::output::view::View;
 
 /// What was carried out.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -54,11 +52,19 @@ pub struct Replaced {
     old: Option<String>,
     /// What shall be there, as far as that is known before.
     new: String,
-    /// Both for programs, null where it is not known; and what it is: name and numbers.
+    /// Both for programs, null where it is not known.
     data: [Json; 2],
-    which: (&'static str, Vec<(Key, Json)>),
+    which: Which,
     /// It is there already, so that there is nothing to write.
     is_there: bool,
+}
+
+/// What an order overwrites: its kind, its name, and of what it is a parameter.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Which {
+    kind: &'static str,
+    name: String,
+    of: OfAxis,
 }
 
 /// How a yes is given to a remote command.
@@ -184,23 +190,24 @@ fn target(order: &Order) -> Option<(&'static str, String, Draft)> {
 }
 
 /// What an order overwrites, for programs.
-fn which(order: &Order) -> (&'static str, Vec<(Key, Json)>) {
+fn which(order: &Order) -> Which {
     let values = order.values();
     let number = |key| values.int(key).unwrap_or_default();
-    let (name, keys): (_, &[Key]) = match order.command() {
-        Command::CommentSet => ("comment", &[Key::Point]),
-        Command::PalletSet => ("pallet", &[Key::Pallet]),
-        Command::ShiftSet | Command::ShiftElement => ("shift", &[Key::Shift]),
-        Command::HandSet => ("hand", &[Key::Hand]),
+    let (kind, key) = match order.command() {
+        Command::CommentSet => ("comment of point", Key::Point),
+        Command::PalletSet => ("pallet", Key::Pallet),
+        Command::ShiftSet | Command::ShiftElement => ("shift", Key::Shift),
+        Command::HandSet => ("hand", Key::Hand),
         Command::ParamSet => {
             let name = Parameter::from_number(number(Key::Parameter)).map_or("parameter", |parameter| parameter.name);
-            let axis = number(Key::Axes);
-            let axis = if axis == 0 { Json::Null } else { (axis.trailing_zeros() + 1).into() };
-            return (name, vec![(Key::Robot, number(Key::Robot).max(1).into()), (Key::Axes, axis)]);
+            let axis = Some(number(Key::Axes)).filter(|axis| *axis != 0);
+            let axis = axis.and_then(|axis| i32::try_from(axis.trailing_zeros() + 1).ok());
+            let of = OfAxis { robot: Some(number(Key::Robot).max(1)), axis };
+            return Which { kind: "parameter", name: name.to_owned(), of };
         }
-        _ => ("point", &[Key::Point]),
+        _ => ("point", Key::Point),
     };
-    (name, keys.iter().map(|key| (*key, number(*key).into())).collect())
+    Which { kind, name: number(key).to_string(), of: OfAxis::default() }
 }
 
 /// Reads what is there; nothing where the controller refuses to tell, as it does of what is not defined.
@@ -371,7 +378,7 @@ fn data(command: Command, values: &Values) -> Json {
             "nz": number(Key::CountZ),
             "first_point": number(Key::FirstPoint),
         }),
-        Command::ShiftSet | Command::ShiftElement => json!({ "position_mm": Key::AXES.map(mm) }),
+        Command::ShiftSet | Command::ShiftElement => json!({ "shift_mm": Key::AXES.map(mm) }),
         Command::HandSet => json!({
             "robot": owner(values),
             "data_1": number(Key::Data1),
@@ -401,37 +408,23 @@ pub fn mm(steps: i32) -> String {
 }
 
 /// Something that was stored by its number.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Stored {
-    /// What it is, what it was (null if it was not defined), and what it is now, as far as that is known.
-    #[serde(flatten)]
-    done: orders::Done,
-    /// Whether it was written; false where it was so already.
-    written: bool,
-    #[serde(skip)]
-    there: String,
+pub type Stored = WrittenItems<Json, OfAxis>;
+
+/// Whose parameter it is.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
+pub struct OfAxis {
+    /// Robot, 1 to 4; null for what is no parameter.
+    pub robot: Option<i32>,
+    /// Axis, 1 to 4; null for what is no parameter of an axis.
+    pub axis: Option<i32>,
 }
 
-impl Stored {
-    /// What was done, in words, and what became of it.
-    pub fn new(done: impl Into<String>, given: &Done) -> Self {
-        let Replaced { what, new, data, which: (name, numbers), is_there, .. } =
-            given.replaced.clone().unwrap_or_default();
-        let [before, after] = data;
-        let there = format!("{what}: {new} already; nothing was written");
-        let with = |new: orders::New, (key, value): (Key, Json)| {
-            new.with(if key == Key::Axes { "axis" } else { key.name() }, value)
-        };
-        let new = numbers.into_iter().fold(orders::New::of(name, after, done), with);
-        Self { done: new.replaces(Old::read(Some(before))), written: !is_there, there }
-    }
-}
-
-impl Report for Stored {
-    fn view(&self) -> View {
-        if self.written {
-            return self.done.view();
-        }
-        View::text(self.there.clone())
-    }
+/// What was stored, in words, with what it replaced.
+pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
+    let Replaced { what, new, data, which: Which { kind, name, of }, is_there, .. } =
+        given.replaced.clone().unwrap_or_default();
+    let [old, now] = data.map(|data| Some(data).filter(|data| !data.is_null()));
+    let words = if is_there { format!("{what}: {new} already; nothing was written") } else { words.into() };
+    let item = Item::with(kind, name, of, Ok(now));
+    WrittenItems::said(words, vec![Written::new(item, old, !is_there)])
 }

@@ -7,17 +7,18 @@ use serde::Serialize;
 use super::link::Yrcx;
 use super::numbers::single;
 use super::overwrite::Stored;
-use super::several::{Rows, Several, ask_each};
+use super::several::ask_each;
 use super::single::one_row;
+use crate::command::robot::item::{Columns, Item, Items};
 use crate::command::yrcx::complete;
-use crate::command::{Command, Context, Report, commands};
+use crate::command::{Command, Context, commands};
 use crate::controller::nearest::nearest;
 use crate::controller::yrcx::order::Order;
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, View};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with parameters.
@@ -66,10 +67,10 @@ pub struct Get {
 
 impl Command for Get {
     type Family = Yrcx;
-    type Report = Parameters;
+    type Report = Items<i32, Setting>;
     const ID: &'static str = "yrcx.param.get";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Parameters, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<i32, Setting>, Failure> {
         let Context { link, screen, .. } = context;
         let axes: Vec<Option<u8>> =
             if self.axis.is_empty() { vec![None] } else { self.axis.iter().copied().map(Some).collect() };
@@ -81,63 +82,32 @@ impl Command for Get {
         };
         let orders = wanted.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading parameters", &orders).await?;
-        let names = wanted.iter().map(|(parameter, axis)| match axis {
-            Some(number) => format!("{} of axis {number}", parameter.name),
-            None => parameter.name.to_owned(),
+        let items = wanted.iter().zip(answers.outcomes).map(|((parameter, axis), outcome)| {
+            let Parameter { name, number, unit, meaning, .. } = **parameter;
+            let unit = Some(unit).filter(|unit| !unit.is_empty());
+            let value = outcome.map(|values| Some(values.int(Key::Value).unwrap_or_default()));
+            let more = Setting { number, axis: *axis, unit, meaning };
+            let axis = axis.map_or_else(|| "-".into(), Cell::from);
+            let cells = |value: &i32| vec![axis.clone(), (*value).into(), Cell::maybe(unit), meaning.into()];
+            let item = Item::with("parameter", name, more, value);
+            if item.ok { item.shown(cells) } else { Item { cells: vec![axis], ..item } }
         });
-        let set = Several::of(names, answers, |at, values| {
-            let (unit, meaning) = wanted.get(at).map_or(("", ""), |(parameter, _)| (parameter.unit, parameter.meaning));
-            let value = values.int(Key::Value).unwrap_or_default();
-            Setting { value, unit: Some(unit).filter(|unit| !unit.is_empty()), meaning }
-        })?;
-        let which = wanted.iter().map(|(parameter, axis)| Which {
-            parameter: parameter.name,
-            number: parameter.number,
-            axis: *axis,
-        });
-        Ok(Parameters { parameters: set.rows(which) })
+        let columns =
+            Columns { name: "parameter", values: vec!["axis", "value", "unit", "meaning"], empty: "no parameters" };
+        Items::new(columns, items.collect()).asked(answers.asked).or_only_failure()
     }
 }
 
-/// Parameters.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Parameters {
-    parameters: Rows<Which, Setting>,
-}
-
-/// A parameter.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    /// Its name in the robot language.
-    parameter: &'static str,
+/// What a parameter has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Setting {
+    /// Its number in the robot language.
     number: u16,
     /// 1 to 4; null for a parameter of the robot.
     axis: Option<u8>,
-}
-
-/// What a parameter is set to.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Setting {
-    value: i32,
     /// What it is measured in; null where the manual does not say.
     unit: Option<&'static str>,
     meaning: &'static str,
-}
-
-impl Report for Parameters {
-    fn view(&self) -> View {
-        let name = |which: &Which| {
-            let axis = which.axis.map_or_else(|| "-".into(), Cell::from);
-            [which.parameter.into(), axis]
-        };
-        let cells = |set: &Setting| [set.value.into(), Cell::maybe(set.unit), set.meaning.into()];
-        let (names, values) = (["parameter", "axis"], ["value", "unit", "meaning"]);
-        View::table(self.parameters.table(names, values, "no parameters", name, cells))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.parameters.failure()
-    }
 }
 
 one_row! {
@@ -176,13 +146,13 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["param", "set", "TOLE", "1000", "--axis", "3"];
         assert_eq!(written(&set).unwrap(), [example("4.4.2-assign")]);
-        assert_eq!(read_example("4.4.2-assign", &set)["new"], 1000);
+        assert_eq!(read_example("4.4.2-assign", &set)["items"][0]["new"], 1000);
         let read = read_example("4.4.2-reference", &["param", "get", "outpos", "--axis", "1"]);
         let row = json!({
-            "parameter": "OUTPOS", "number": 260, "axis": 1, "ok": true, "value": 131_071, "unit": "pulses",
-            "meaning": "OUT effective position",
+            "name": "OUTPOS", "label": null, "kind": "parameter", "number": 260, "axis": 1, "unit": "pulses",
+            "meaning": "OUT effective position", "ok": true, "value": 131_071,
         });
-        assert_eq!(read, json!({"parameters": [row]}));
+        assert_eq!(read, json!({"items": [row]}));
     }
 
     #[test]

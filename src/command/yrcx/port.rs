@@ -6,20 +6,20 @@ use serde::Serialize;
 
 use super::link::Yrcx;
 use super::numbers::{Series, named, single};
-use super::several::{Rows, Several, ask_each};
+use super::several::ask_each;
 use super::single::one_row;
 use crate::command::frame::names;
 use crate::command::frame::orders::{Done, New};
 use crate::command::frame::watch::{Watch, Watchable, Watched};
+use crate::command::robot::item::{Columns, Item, Items};
 use crate::command::yrcx::complete;
-use crate::command::{Command, Context, Report, commands};
+use crate::command::{Command, Context, commands};
 use crate::controller::names::{Kind, Names};
 use crate::controller::yrcx::names::signal_of_port;
 use crate::controller::yrcx::order::{Draft, Order};
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::{Key, Values};
+use crate::controller::yrcx::value::Key;
 use crate::failure::Failure;
-use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with ports.
@@ -128,81 +128,72 @@ pub struct Get {
 
 impl Watchable for Get {
     const WATCH: &'static str = "yrcx.port.watch";
-    const WATCHED: Watched =
-        Watched { list: "ports", name: "port", prefix: "", label: "", value: Some("value"), empty: "no ports" };
+    const WATCHED: Watched = Watched::ITEMS;
 }
 
 impl Command for Get {
     type Family = Yrcx;
-    type Report = Ports;
+    type Report = Items<Level, Bits>;
     const ID: &'static str = "yrcx.port.get";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ports, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<Level, Bits>, Failure> {
         let Context { link, robot, screen, .. } = context;
         let called = names::of(robot, screen);
         let places: Vec<PortSignal> = Series::all(&self.places).copied().collect();
         let order = |place: &PortSignal| place.order(link.draft(table::Command::PortGet)?).map_err(Failure::usage);
         let orders = places.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading ports", &orders).await?;
-        let names = || places.iter().map(|place| place.describe());
-        let of = |at: usize, values: &Values| {
-            let bit = places.get(at).and_then(|place| place.bit);
-            State::of(bit, values.int(Key::Value).unwrap_or_default())
-        };
-        let states = Several::of(names(), answers, of)?;
-        Ok(Ports { ports: states.rows(names().map(|port| Which { label: label(called, &port), port })) })
+        let items = places.iter().zip(answers.outcomes).map(|(place, outcome)| {
+            let state = outcome.map(|values| Some(values.int(Key::Value).unwrap_or_default()));
+            place.item(called, state)
+        });
+        let columns = Columns { name: "port", values: vec!["value", "bits 7 - 0"], empty: "no ports" };
+        Items::new(columns, items.collect()).asked(answers.asked).or_only_failure()
     }
 }
 
-/// Ports and signals.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Ports {
-    ports: Rows<Which, State>,
+/// The state of a port, or of a signal of it.
+#[derive(Debug, Clone, Copy, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Level {
+    /// Of a signal.
+    Signal(bool),
+    /// Of a port, 0 to 255.
+    Port(i32),
 }
 
-/// A port, or a signal of it.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    /// `DO12`, or `DO2.1` for a signal.
-    port: String,
-    /// What people call it; null where they gave it no name.
-    label: Option<String>,
+/// What a port has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Bits {
+    /// Bit 7 first: `00000111`; null for a signal.
+    bits: Option<String>,
+}
+
+impl PortSignal {
+    fn item(self, names: &Names, state: Result<Option<i32>, Failure>) -> Item<Level, Bits> {
+        let name = self.describe();
+        let port = state.as_ref().ok().copied().flatten().filter(|_| self.bit.is_none());
+        let level = |value: i32| match self.bit {
+            Some(bit) => Level::Signal(value >> bit & 1 == 1),
+            None => Level::Port(value),
+        };
+        let (kind, more) = (if self.bit.is_some() { "signal" } else { "port" }, Bits { bits: port.map(bits) });
+        let label = label(names, &name);
+        let cells = |level: &Level| match level {
+            Level::Signal(on) => vec![i32::from(*on).into(), "-".into()],
+            Level::Port(value) => vec![(*value).into(), bits(*value).into()],
+        };
+        Item::with(kind, name, more, state.map(|value| value.map(level))).labelled(label).shown(cells)
+    }
+}
+
+fn bits(value: i32) -> String {
+    format!("{value:08b}")
 }
 
 fn label(names: &Names, port: &str) -> Option<String> {
     let of_signal = || names::label(names, Kind::Signal, &signal_of_port(port)?);
     names::label(names, Kind::Port, port).or_else(of_signal)
-}
-
-/// The state of a port, or of a signal.
-#[derive(Debug, Serialize, JsonSchema)]
-struct State {
-    /// Of a port, 0 to 255; of a signal, 0 or 1.
-    value: i32,
-    /// Of a port, bit 7 first: `00000111`; null for a signal.
-    bits: Option<String>,
-}
-
-impl State {
-    fn of(bit: Option<i32>, value: i32) -> Self {
-        match bit {
-            Some(bit) => Self { value: value >> bit & 1, bits: None },
-            None => Self { value, bits: Some(format!("{value:08b}")) },
-        }
-    }
-}
-
-impl Report for Ports {
-    fn view(&self) -> View {
-        let name = |which: &Which| [which.port.as_str().into(), Cell::maybe(which.label.as_deref())];
-        let cells = |state: &State| [state.value.into(), Cell::maybe(state.bits.as_deref())];
-        let table = self.ports.table(["port", "label"], ["value", "bits 7 - 0"], "no ports", name, cells);
-        View::table(table.without_blank("label"))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.ports.failure()
-    }
 }
 
 one_row! {
@@ -269,14 +260,16 @@ mod tests {
             assert_eq!(read_example(id, &line), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
-        assert_eq!(read["ports"], json!([{"port": "DO12", "label": null, "ok": true, "value": 7, "bits": "00000111"}]));
+        assert_eq!(item(&read), json!(["DO12", "port", 7, "00000111"]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "DI2"]);
-        assert_eq!(
-            read["ports"],
-            json!([{"port": "DI2", "label": null, "ok": true, "value": 127, "bits": "01111111"}])
-        );
+        assert_eq!(item(&read), json!(["DI2", "port", 127, "01111111"]));
         let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
-        assert_eq!(read["ports"], json!([{"port": "DI2.7", "label": null, "ok": true, "value": 0, "bits": null}]));
+        assert_eq!(item(&read), json!(["DI2.7", "signal", false, null]));
+    }
+
+    fn item(read: &serde_json::Value) -> serde_json::Value {
+        let item = &read["items"][0];
+        json!([item["name"], item["kind"], item["value"], item["bits"]])
     }
 
     #[test]

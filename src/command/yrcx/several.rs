@@ -185,81 +185,15 @@ fn brief(error: &ItemError) -> Cell {
     Cell::from(why).tone(Tone::Bad)
 }
 
-/// Declares commands that read what is stored by its number, one after the other: what is typed, the remote command with
-/// the field of the number, what is reported under which keys, and as which columns.
-macro_rules! by_number {
-    ($(
-        $(#[$meta:meta])*
-        $get:ident $id:literal {
-            $(#[$arg:meta])*
-            $list:ident $value_name:literal
-        }
-        gives $command:ident $key:ident $nouns:expr,
-        $(#[$report_meta:meta])*
-        $report:ident,
-        $(#[$which_meta:meta])*
-        $number:ident of $content:ty: $of:expr,
-        columns $columns:expr,
-        cells $cells:expr;
-    )*) => {
-        $(
-            #[derive(Debug, clap::Args)]
-            $(#[$meta])*
-            pub struct $get {
-                $(#[$arg])*
-                #[arg(required = true, value_name = $value_name, value_delimiter = ',', value_parser = |text: &str| {
-                    $crate::command::yrcx::numbers::Numbers::parse(table::Command::$command, Key::$key, text)
-                })]
-                $list: Vec<$crate::command::yrcx::numbers::Numbers>,
-            }
-
-            impl $crate::command::Command for $get {
-                type Family = $crate::command::yrcx::link::Yrcx;
-                type Report = $report;
-                const ID: &'static str = $id;
-
-                async fn run(
-                    &self,
-                    context: $crate::command::Context<'_, Self::Family>,
-                ) -> Result<$report, $crate::failure::Failure> {
-                    let field = (table::Command::$command, Key::$key);
-                    let read = $crate::command::yrcx::several::read_numbers(context, $nouns, field, &self.$list, $of);
-                    let (numbers, several) = read.await?;
-                    Ok($report { $list: several.rows(numbers.into_iter().map(|$number| Which { $number })) })
-                }
-            }
-
-            $(#[$report_meta])*
-            #[derive(Debug, Serialize, JsonSchema)]
-            pub struct $report {
-                $list: $crate::command::yrcx::several::Rows<Which, $content>,
-            }
-
-            $(#[$which_meta])*
-            #[derive(Debug, Serialize, JsonSchema)]
-            struct Which {
-                $number: i32,
-            }
-
-            impl $crate::command::Report for $report {
-                fn view(&self) -> $crate::output::view::View {
-                    let name = |which: &Which| [which.$number.into()];
-                    $crate::output::view::View::table(self.$list.table(
-                        [stringify!($number)], $columns, concat!("no ", stringify!($list)), name, $cells))
-                }
-
-                fn failure(&self) -> Option<$crate::failure::Failure> {
-                    self.$list.failure()
-                }
-            }
-        )*
-    };
-}
-pub(super) use by_number;
-
 /// Whether a refusal is about remote commands as such: the next one would be refused as well.
 pub fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
+}
+
+/// Whether a refusal to read something says that it is not defined.
+pub fn is_undefined(failure: &Failure) -> bool {
+    let alarm = failure.code.as_deref().and_then(|code| code.parse().ok());
+    failure.kind == Kind::Refused && alarm.is_some_and(|alarm| !is_about_commands(alarm))
 }
 
 /// Answers repeat what was asked for, as far as they have it.

@@ -80,7 +80,7 @@ impl Said<orders::Done> for orders::New {
 
 impl Said<Stored> for String {
     fn report(self, done: &Done) -> Stored {
-        Stored::new(self, done)
+        overwrite::stored(self, done)
     }
 }
 

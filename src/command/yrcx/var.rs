@@ -5,32 +5,42 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
+use super::backup::{Records, VARIABLES};
 use super::link;
-use super::link::Yrcx;
-use super::numbers::{Numbers, named, single};
-use super::several::{Rows, Several, ask_each};
+use super::numbers::{named, single};
 use super::single::Single;
-use crate::command::frame::names;
-use crate::command::frame::orders::{self, Done, New};
-use crate::command::frame::watch::{Watch, Watchable, Watched};
+use super::stores::{Kind, Numbered};
+use crate::command::frame::names as labels;
+use crate::command::frame::orders;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::frame::watch::Watch;
+use crate::command::robot::item::{Item, Written, WrittenItems};
 use crate::command::yrcx::complete;
-use crate::command::{Command, Context, Report, commands};
-use crate::controller::names::Kind;
-use crate::controller::yrcx::order::{Draft, Order};
+use crate::command::{ValueKind, commands};
+use crate::controller::Risk;
+use crate::controller::names;
+use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::{Key, Value};
+use crate::controller::yrcx::value::{Key, Value, Values};
 use crate::failure::Failure;
-use crate::output::view::{Cell, View};
 
 commands! {
     /// What can be done with static variables.
     pub enum Var {
         /// Read variables: SGI1, SGI0..SGI31, SGR5
-        Get(Get),
+        Get(Get<Numbered<Variables>>),
+        /// List the variables that are not 0
+        List(List<Numbered<Variables>>),
         /// Set a variable: SGI1 10000, or SGI1 SGI2
         Set(Set),
         /// Print each change of variables
-        Watch(Watch<Get>),
+        Watch(Watch<Get<Numbered<Variables>>>),
+        /// Copy a variable to others: SGI1 SGI2..SGI5
+        Copy(Copy<Numbered<Variables>>),
+        /// Save variables to a CSV file
+        Dump(Dump<Numbered<Variables>>),
+        /// Write variables from a CSV file
+        Restore(Restore<Numbered<Variables>>),
         /// Add a number or a variable to a variable
         Add(Add),
         /// Subtract a number or a variable from a variable
@@ -42,96 +52,48 @@ commands! {
     }
 }
 
-/// Reads static variables, one after the other.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Variables: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range
-    #[arg(required = true, value_name = "VARIABLE", value_delimiter = ',',
-        value_parser = variables, add = complete::VARIABLE)]
-    variables: Vec<Numbers>,
-}
+/// The static variables of the controller.
+#[derive(Debug)]
+pub struct Variables;
 
-/// Variables as typed, a range of them, or the name of one.
-fn variables(text: &str) -> Result<Numbers, String> {
-    names::read(&[Kind::Variable], ANY, text, |text| Numbers::parse(table::Command::VarGet, Key::Variable, text))
-}
-
-/// Stands for a name that is not known yet.
-const ANY: &str = "SGI0";
-
-impl Watchable for Get {
-    const WATCH: &'static str = "yrcx.var.watch";
-    const WATCHED: Watched = Watched {
-        list: "variables",
-        name: "variable",
-        prefix: "",
-        label: "",
-        value: Some("value"),
-        empty: "no variables",
+impl Kind for Variables {
+    type Value = Number;
+    const WORDS: Words = Words {
+        nouns: ["variable", "variables"],
+        placeholder: "VARIABLE",
+        range: "SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real ones; SGI0..SGI5 is a range",
+        reading: None,
+        writing: None,
     };
-}
+    const IDS: Ids = ids!("yrcx.var");
+    const RECORDS: &'static Records = &VARIABLES;
+    const HEADINGS: &'static [&'static str] = &["value"];
+    const RISK: Risk = Risk::Write;
+    const LABELS: Option<names::Kind> = Some(names::Kind::Variable);
+    const COMPLETE: ValueKind = complete::VARIABLE;
 
-impl Command for Get {
-    type Family = Yrcx;
-    type Report = Variables;
-    const ID: &'static str = "yrcx.var.get";
+    fn value(values: &Values) -> Option<Number> {
+        number(values.value(Key::Value))
+    }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Variables, Failure> {
-        let Context { link, robot, screen, .. } = context;
-        let called = names::of(robot, screen);
-        let numbers = Numbers::of(&self.variables);
-        let order = |number: &i32| Ok(link.draft(table::Command::VarGet)?.with(Key::Variable, *number).build()?);
-        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
-        let answers = ask_each(link, screen, "reading variables", &orders).await?;
-        let names = || numbers.iter().map(|number| name(*number));
-        let held = Several::of(names(), answers, |_, values| Held::of(values.value(Key::Value)))?;
-        Ok(Variables {
-            variables: held.rows(
-                names().map(|variable| Which { label: names::label(called, Kind::Variable, &variable), variable }),
-            ),
-        })
+    fn is_blank(values: &Values) -> bool {
+        number(values.value(Key::Value)).is_some_and(|number| number.as_f64() == Some(0.0))
     }
 }
 
-/// Static variables.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Variables {
-    variables: Rows<Which, Held>,
-}
-
-/// Which variable.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Which {
-    /// `SGI1`, `SGR1`.
-    variable: String,
-    /// What people call it; null where they gave it no name.
-    label: Option<String>,
-}
-
-/// What a variable holds.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Held {
-    /// A whole or a real number; null where the controller holds what is no number.
-    value: Option<Number>,
-    #[serde(skip)]
-    text: String,
-}
-
-impl Held {
-    fn of(value: Option<&Value>) -> Self {
-        let (value, text) = match value {
-            Some(Value::Int(number)) => (Some(Number::from(*number)), number.to_string()),
-            // By its digits: as a double it would get more than it has.
-            Some(Value::Real(number)) => (real(*number), number.to_string()),
-            Some(Value::Text(_)) | None => (None, "-".to_owned()),
-        };
-        Self { value, text }
+/// What a variable holds; nothing where that is no number.
+fn number(value: Option<&Value>) -> Option<Number> {
+    match value {
+        Some(Value::Int(number)) => Some(Number::from(*number)),
+        // By its digits: as a double it would get more than it has.
+        Some(Value::Real(number)) => real(*number),
+        Some(Value::Text(_)) | None => None,
     }
 }
 
 /// What a variable holds, for programs; null where that is no number.
 pub fn held(value: Option<&Value>) -> Json {
-    Held::of(value).value.map_or(Json::Null, Json::Number)
+    number(value).map_or(Json::Null, Json::Number)
 }
 
 /// A single-precision number with its own digits.
@@ -139,19 +101,6 @@ fn real(number: f32) -> Option<Number> {
     match serde_json::from_str(&number.to_string()) {
         Ok(Json::Number(number)) => Some(number),
         _ => None,
-    }
-}
-
-impl Report for Variables {
-    fn view(&self) -> View {
-        let name = |which: &Which| [which.variable.as_str().into(), Cell::maybe(which.label.as_deref())];
-        let value = |held: &Held| [Cell::number(held.text.as_str())];
-        let table = self.variables.table(["variable", "label"], ["value"], "no variables", name, value);
-        View::table(table.without_blank("label"))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        self.variables.failure()
     }
 }
 
@@ -165,7 +114,7 @@ enum Operand {
 }
 
 fn variable(text: &str) -> Result<i32, String> {
-    names::read(&[Kind::Variable], ANY, text, variable_by_address)
+    labels::read(&[names::Kind::Variable], "SGI0", text, variable_by_address)
 }
 
 fn variable_by_address(text: &str) -> Result<i32, String> {
@@ -199,16 +148,15 @@ impl Operand {
     }
 
     /// What was assigned, or computed from what was there.
-    fn done(&self, variable: String, does: &str, words: String) -> New {
+    fn report(&self, variable: String, operation: &'static str, words: String, done: &link::Done) -> Changed {
         let operand = match self {
             Self::Number(text) => orders::number(text),
             Self::Variable(number) => name(*number).into(),
         };
-        let new = match (does, self) {
-            ("set", Self::Number(_)) => operand.clone(),
-            _ => Json::Null,
-        };
-        New::of(variable, new, words).with("operation", does).with("operand", operand)
+        // What a controller computes is not read back.
+        let new = Some(operand.clone()).filter(|_| operation == "set" && matches!(self, Self::Number(_)));
+        let item = Item::with("variable", variable, Operation { operation, operand }, Ok(new));
+        WrittenItems::said(words, vec![Written::new(item, done.old.value(), true)])
     }
 
     fn describe(&self) -> String {
@@ -217,6 +165,18 @@ impl Operand {
             Self::Variable(number) => name(*number),
         }
     }
+}
+
+/// A variable that was changed.
+type Changed = WrittenItems<Json, Operation>;
+
+/// How a variable was changed.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct Operation {
+    /// `set`, `add`, `sub`, `mul`, `div`.
+    operation: &'static str,
+    /// A number, or the name of a variable.
+    operand: Json,
 }
 
 /// Declares the commands that change a variable: by a number, or by a variable.
@@ -235,7 +195,7 @@ macro_rules! changes {
             }
 
             impl Single for $name {
-                type Report = Done;
+                type Report = Changed;
                 const ID: &'static str = $id;
 
                 fn command(&self) -> table::Command {
@@ -249,10 +209,10 @@ macro_rules! changes {
                     self.operand.put(draft.with(Key::Variable, self.variable))
                 }
 
-                fn report(&self, done: &link::Done) -> Result<Done, Failure> {
+                fn report(&self, done: &link::Done) -> Result<Changed, Failure> {
                     let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
-                    Ok(self.operand.done(variable, $does, words).replaces(done.old.clone()))
+                    Ok(self.operand.report(variable, $does, words, done))
                 }
             }
         )*
@@ -288,11 +248,15 @@ mod tests {
             ("4.4.1-arith-variable", ["var", "mul", "SGI1", "SGI2"], (json!("SGI2"), json!(null))),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            let done = json!({"set": "SGI1", "operation": line[1], "operand": operand, "old": null, "new": new});
-            assert_eq!(read_example(id, &line), done);
+            let done = json!({
+                "name": "SGI1", "label": null, "kind": "variable", "operation": line[1], "operand": operand, "ok": true,
+                "value": new, "old": null, "new": new, "written": true,
+            });
+            assert_eq!(read_example(id, &line)["items"], json!([done]));
         }
         let read = read_example("4.4.1-reference", &["var", "get", "SGI5"]);
-        assert_eq!(read, json!({"variables": [{"variable": "SGI5", "label": null, "ok": true, "value": 50}]}));
+        let item = json!({"name": "SGI5", "label": null, "kind": "variable", "ok": true, "value": 50});
+        assert_eq!(read, json!({"items": [item]}));
     }
 
     #[test]
@@ -305,8 +269,8 @@ mod tests {
             (words[0], words[2], words[4], words[5]) = (0x0200, 0x0101, low, high);
             run_on(Scripted::new([Reply::Ends(1, words)]), &["var", "get", "SGR1"]).0.unwrap()
         };
-        assert_eq!(answered(0xCCCD, 0x3F8C)["variables"][0]["value"].to_string(), "1.1");
-        assert_eq!(answered(0, 0x7FC0)["variables"][0]["value"], json!(null), "not a number");
+        assert_eq!(answered(0xCCCD, 0x3F8C)["items"][0]["value"].to_string(), "1.1");
+        assert_eq!(answered(0, 0x7FC0)["items"][0]["value"], json!(null), "not a number");
         assert_eq!(words(&["var", "sub", "SGR0", "-0.5"]).unwrap()[0][5], "0xBF00");
     }
 

@@ -62,7 +62,7 @@ fn a_point_is_stored_after_a_look_and_a_y() {
     model.obey(KeyAction::Store);
     assert_eq!(typed(&mut model, "5x"), None);
     assert_eq!(model.obey(KeyAction::Enter), Some(Wish::Look(5)));
-    model.found(5, Ok(json!({"variables": [{"name": "P5", "value": {"text": "pulse:s=1"}}]})));
+    model.found(5, Ok(json!({"items": [{"name": "P5", "value": {"text": "pulse:s=1"}}]})));
     assert_eq!(model.asked, Some(Asked::Sure(Use::Store, 5, "pulse:s=1".to_owned())));
     assert_eq!(typed(&mut model, "y"), Some(Wish::Store(5)));
 

@@ -1,33 +1,37 @@
 //! `toyo easy`: the eight easy programs, each a part of the sequential program that is repeated.
 
-mod get;
 mod progress;
-mod set;
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::eeprom::Cell;
-use super::items::Item;
 use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
+use super::rows::{self, Rows, WRITING};
 use crate::command::commands;
-use crate::controller::toyo::field::{Field, Value};
+use crate::command::frame::store::{Dump, Field, Get, Ids, List, Restore, Set, Words, ids};
+use crate::controller::toyo::field::{self, Value};
 use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Command;
 use crate::failure::Failure;
-use crate::output::view::Table;
 
 commands! {
     /// What can be done with easy programs.
     pub enum Easy {
         /// Read programs: 1-3; without any, all 8
-        Get(get::Get),
+        Get(Get<Rows<Numbered>>),
+        /// List programs that hold something
+        List(List<Rows<Numbered>>),
         /// Write a program: 1 START LOOP END
-        Set(set::Set),
+        Set(Set<Rows<Numbered>>),
         /// Copy a program to another number
         Copy(Copy<Numbered>),
+        /// Save programs to a CSV file
+        Dump(Dump<Rows<Numbered>>),
+        /// Write programs from a CSV file
+        Restore(Restore<Rows<Numbered>>),
         /// Select the program that `run easy` starts
         Select(Select<Numbered>),
         /// Progress of the running program
@@ -47,8 +51,8 @@ impl Kind for Numbered {
     const RUN: &'static str = "toyo run easy";
     const COMMANDS: [Command; 3] = [Command::Cesy, Command::Sesn, Command::Resd];
 
-    fn field() -> &'static Field {
-        field()
+    fn field() -> &'static field::Field {
+        key()
     }
 
     fn reads(program: i32) -> Result<Vec<Request>, Failure> {
@@ -57,13 +61,8 @@ impl Kind for Numbered {
 }
 
 /// The number of a program, 1 to 8.
-fn field() -> &'static Field {
+fn key() -> &'static field::Field {
     &Command::Resy.row().requests[0].fields[0]
-}
-
-/// The values of a program, behind its number and what is always 0.
-fn values() -> Layout {
-    Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
 }
 
 /// What reads a program.
@@ -79,41 +78,60 @@ pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     Ok(Cell { read: read(program)?, write, wanted })
 }
 
-/// The block that writes a program; `?` stands for values that are kept.
-fn sketch(program: i32, values: &[Option<Value>]) -> String {
-    let keys = [program, 0].map(|key| Some(Value::Number(key)));
-    let all: Vec<_> = keys.into_iter().chain(values.iter().cloned()).collect();
-    format!("@{}", Command::Wesy.row().requests[0].sketch(&all).unwrap_or_default())
+impl rows::Kind for Numbered {
+    type Value = Program;
+    const WORDS: Words = Words {
+        nouns: ["easy program", "easy programs"],
+        placeholder: "PROGRAM",
+        range: "Programs, 1 to 8: 5, 1-3",
+        reading: None,
+        writing: Some(WRITING),
+    };
+    const IDS: Ids = ids!("toyo.easy");
+    const FIELDS: &'static [Field] = &[
+        Field { name: "start_tag", heading: "start tag", is_number: true },
+        Field { name: "loops", heading: "loops", is_number: true },
+        Field { name: "end_tag", heading: "end tag", is_number: true },
+    ];
+    const ZERO_IS_BLANK: bool = true;
+
+    fn key() -> &'static field::Field {
+        key()
+    }
+
+    fn body() -> Layout {
+        Layout::new("START={} LOOP={} END={}", &Command::Wesy.row().requests[0].fields[2..])
+    }
+
+    fn read(program: i32) -> Result<Request, Failure> {
+        read(program)
+    }
+
+    fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        cell(program, values)
+    }
+
+    fn sketch(program: i32, values: &[Option<Value>]) -> String {
+        let keys = [program, 0].map(|key| Some(Value::Number(key)));
+        let all: Vec<_> = keys.into_iter().chain(values.iter().cloned()).collect();
+        format!("@{}", Command::Wesy.row().requests[0].sketch(&all).unwrap_or_default())
+    }
+
+    fn value(record: &Record) -> Program {
+        let number = |name| record.number(name).unwrap_or_default();
+        Program { start_tag: number("start"), loops: number("loop"), end_tag: number("end") }
+    }
 }
 
 /// An easy program.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Program {
-    /// 1 to 8.
-    program: i32,
     /// Tag of the sequential program where it begins.
     start_tag: i32,
     /// How often it is repeated.
     loops: i32,
     /// Tag where it ends.
     end_tag: i32,
-}
-
-impl Program {
-    fn of(record: &Record) -> Self {
-        let number = |name| record.number(name).unwrap_or_default();
-        Self { program: number("program"), start_tag: number("start"), loops: number("loop"), end_tag: number("end") }
-    }
-
-    fn table(programs: &[Item<Self>]) -> Table {
-        let mut table = Table::new(&["program", "start tag", "loops", "end tag"], "no programs");
-        for program in programs {
-            program.show(&mut table, |Self { program, start_tag, loops, end_tag }| {
-                vec![(*program).into(), (*start_tag).into(), (*loops).into(), (*end_tag).into()]
-            });
-        }
-        table
-    }
 }
 
 #[cfg(test)]
@@ -150,14 +168,12 @@ mod tests {
     fn a_copy_is_made_once() {
         let mut bench = Bench::new("sim:");
         bench.data(&["easy", "set", "1", "10", "5", "20"]);
-        assert_eq!(bench.data(&["easy", "set", "1", "loop=6"])["loops"], 6);
+        assert_eq!(bench.data(&["easy", "set", "1", "loop=6"])["items"][0]["new"]["loops"], 6);
         let copied = |bench: &mut Bench| bench.data(&["easy", "copy", "1", "8"])["cells_written"].clone();
         assert_eq!((copied(&mut bench), copied(&mut bench)), (1.into(), 0.into()));
         let read = bench.data(&["easy", "get", "8"]);
-        assert_eq!(
-            read["programs"][0],
-            serde_json::json!({ "ok": true, "program": 8, "start_tag": 10, "loops": 6, "end_tag": 20 })
-        );
+        let value = serde_json::json!({ "start_tag": 10, "loops": 6, "end_tag": 20 });
+        assert_eq!((&read["items"][0]["name"], &read["items"][0]["value"]), (&"8".into(), &value));
         assert_eq!(bench.run(&["easy", "copy", "1", "1"]).unwrap_err().kind.exit(), 2);
         bench.data(&["easy", "select", "8"]);
         assert_eq!(bench.data(&["easy", "progress"])["program"], 8);

@@ -6,15 +6,16 @@ mod set;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::items::Item;
 use super::link;
+use super::rows::Listed;
 use crate::command::commands;
+use crate::command::robot::item::{Columns, Item};
 use crate::controller::toyo::field::{Field, Value};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
-use crate::output::view::{Cell, Section, Table, View};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with groups of the MVM table.
@@ -63,10 +64,8 @@ fn reads(group: i32) -> Result<Vec<Request>, Failure> {
 }
 
 /// A group of the MVM table.
-#[derive(Debug, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Group {
-    /// 1 to 32.
-    group: i32,
     /// Row of the coordinate table of corner P0.
     origin_point: i32,
     /// Row of the coordinate table of corner P1; 0 for none.
@@ -98,7 +97,6 @@ impl Group {
         let aim = record(3).and_then(|sheet| sheet.pairs().find(|(field, _)| field.name == "aim"));
         let raw = |value: &Value| if let Value::Word(word) = value { *word } else { "" };
         Self {
-            group: number(0, "row"),
             origin_point: number(0, "origin"),
             p1_point: number(0, "p1"),
             p2_point: number(0, "p2"),
@@ -113,46 +111,38 @@ impl Group {
         }
     }
 
-    /// A line a group.
-    fn table(groups: &[Item<Self>]) -> View {
-        let mut table = Table::new(
-            &["group", "P0 P1 P2 P3", "pieces", "counters", "approach", "z (mm)", "r (mm)", "dest r (mm)"],
-            "no groups",
-        );
-        for group in groups {
-            group.show(&mut table, |group| {
-                vec![
-                    group.group.into(),
-                    group.corners().into(),
-                    joined(group.pieces).into(),
-                    joined(group.counters).into(),
-                    group.approach.as_str().into(),
-                    mm(group.approach_z_mm),
-                    mm(group.approach_r_mm),
-                    mm(group.destination_r_mm),
-                ]
-            });
-        }
-        View::table(table)
-    }
-
-    /// A line a value.
-    fn fields(&self) -> Section {
-        Section::Fields(vec![
-            ("group", self.group.into()),
-            ("points P0 P1 P2 P3", self.corners().into()),
-            ("pieces", joined(self.pieces).into()),
-            ("counters", joined(self.counters).into()),
-            ("approach", self.approach.as_str().into()),
-            ("approach z (mm)", mm(self.approach_z_mm)),
-            ("approach r (mm)", mm(self.approach_r_mm)),
-            ("destination r (mm)", mm(self.destination_r_mm)),
-        ])
+    fn cells(&self) -> Vec<Cell> {
+        vec![
+            self.corners().into(),
+            joined(self.pieces).into(),
+            joined(self.counters).into(),
+            self.approach.as_str().into(),
+            mm(self.approach_z_mm),
+            mm(self.approach_r_mm),
+            mm(self.destination_r_mm),
+        ]
     }
 
     fn corners(&self) -> String {
         joined([self.origin_point, self.p1_point, self.p2_point, self.p3_point])
     }
+}
+
+/// Headings of a table of groups.
+fn columns() -> Columns {
+    let values = vec!["P0 P1 P2 P3", "pieces", "counters", "approach", "z (mm)", "r (mm)", "dest r (mm)"];
+    Columns { name: "group", values, empty: "no groups" }
+}
+
+/// A group by its sheets; the first that was refused, or holds what the manual does not list, tells of the whole.
+fn item(group: i32, sheets: &[Result<Record, Failure>]) -> Item<Group, Listed> {
+    let all: Vec<Record> = sheets.iter().flatten().cloned().collect();
+    let unlisted = all.iter().find(|sheet| !sheet.is_listed());
+    let failed = sheets.iter().find_map(|sheet| sheet.as_ref().err());
+    let outcome =
+        failed.map_or_else(|| Ok(unlisted.is_none().then(|| Group::of(&all))), |failure| Err(failure.clone()));
+    let listed = Listed::of(unlisted.or(all.first()).filter(|_| failed.is_none()));
+    Item::with("group", group.to_string(), listed, outcome).shown(Group::cells)
 }
 
 fn joined<const N: usize>(numbers: [i32; N]) -> String {
@@ -223,15 +213,15 @@ mod tests {
         let mut bench = Bench::new("sim:");
         let words = ["origin=5", "p1=6", "pieces1=10", "counter3=7", "approach=incremental", "approach-z=2.5"];
         let stored = bench.data(&[&["mvm", "set", "2"], &words[..]].concat());
-        assert_eq!(stored["cells_written"], 4, "{stored}");
+        assert_eq!(stored["items"][0]["written"], true, "{stored}");
         let read = bench.data(&["mvm", "get", "2"]);
-        let group = &read["groups"][0];
+        let group = &read["items"][0]["value"];
         assert_eq!(
             (&group["origin_point"], &group["p1_point"], &group["pieces"][0]),
             (&5.into(), &6.into(), &10.into())
         );
         assert_eq!((&group["approach"], &group["approach_z_mm"]), (&"incremental".into(), &2.5.into()));
         let again = bench.data(&[&["mvm", "set", "2"], &words[..]].concat());
-        assert_eq!((&again["cells_written"], &again["cells_unchanged"]), (&0.into(), &4.into()));
+        assert_eq!((&again["items"][0]["written"], &again["items"][0]["old"]), (&false.into(), group));
     }
 }

@@ -1,24 +1,23 @@
 //! `toyo mvm set`.
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::{Group, SHEETS, VALUES, field, reads, sheet};
+use super::{Group, SHEETS, VALUES, field, item, reads, sheet};
 use crate::command::frame::dry_run::unknown;
-use crate::command::toyo::eeprom::{Cells, THERE};
+use crate::command::robot::item::{Written, WrittenItems};
+use crate::command::toyo::eeprom::THERE;
 use crate::command::toyo::link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{ask_all, number};
+use crate::command::toyo::rows::Listed;
 use crate::command::toyo::stores::{self, Store, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::{assignment, word};
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::nearest::nearest;
 use crate::controller::toyo::field::Value;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::{Section, View};
 
 /// A group, and what shall change in it.
 #[derive(Debug, Args)]
@@ -44,13 +43,13 @@ const WORK: StoreTask = StoreTask { doing: "storing sheets", noun: "", things: [
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Stored;
+    type Report = WrittenItems<Group, Listed>;
     const ID: &'static str = "toyo.mvm.set";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite a matrix";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenItems<Group, Listed>, Failure> {
         let Context { link, screen, authority, .. } = context;
         let changes = self.changes()?;
         let reads = reads(self.group)?;
@@ -67,6 +66,7 @@ impl Command for Set {
             return Err(unknown());
         }
         let mut sheets = ask_all(link, screen, "reading sheets", &reads).await?;
+        let old = Group::of(&sheets);
         let mut stores = Vec::new();
         for (index, changes) in changes.iter().enumerate().filter(|(_, changes)| changes.iter().any(Option::is_some)) {
             let found = sheets[index].values().get(1..).unwrap_or_default();
@@ -78,7 +78,11 @@ impl Command for Set {
         let of = format!(" of group {}", self.group);
         authority.confirm(&stores::replacing(WORK, &stores, &of)).await?;
         let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
-        Ok(Stored { group: Group::of(&sheets), items: stores::written(&stores), cells: stores::sum(&fates) })
+        let cells = stores::sum(&fates);
+        let sheets: Vec<_> = sheets.into_iter().map(Ok).collect();
+        let item = item(self.group, &sheets);
+        let words = format!("group {}: {}\n{}", self.group, self.values.join(" "), cells.in_words());
+        Ok(WrittenItems::said(words, vec![Written::new(item, Some(old), cells.cells_written > 0)]))
     }
 }
 
@@ -109,22 +113,5 @@ impl Set {
             }
         }
         Ok(changes)
-    }
-}
-
-/// What a group holds now.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Stored {
-    #[serde(flatten)]
-    group: Group,
-    /// What each held and holds.
-    items: stores::WrittenCells,
-    #[serde(flatten)]
-    cells: Cells,
-}
-
-impl Report for Stored {
-    fn view(&self) -> View {
-        View { sections: vec![self.group.fields()] }.and(Section::Text(self.cells.in_words()))
     }
 }

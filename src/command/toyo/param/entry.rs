@@ -17,17 +17,19 @@ use crate::output::view::{Cell, Table, Tone};
 /// A parameter with its values.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Entry {
-    /// `P01`.
-    pub id: &'static str,
     /// `soft-limit-plus`.
     pub name: &'static str,
+    /// `parameter`.
+    pub kind: &'static str,
+    /// `P01`.
+    pub id: &'static str,
     /// `mode`, `axis`, `machine` or `special`.
     pub group: &'static str,
     /// What it holds.
     pub about: &'static str,
     /// Its values; none if the controller refuses it.
     #[schemars(length(max = 8))]
-    pub values: Vec<Shown>,
+    pub value: Vec<Shown>,
     /// Whether it was answered.
     pub ok: bool,
     /// Whether the controller refuses it: mostly because it does not have it.
@@ -48,9 +50,10 @@ impl Entry {
         Self {
             id: parameter.id,
             name: parameter.name,
+            kind: "parameter",
             group: parameter.group().name(),
             about: parameter.about,
-            values: content.map_or_else(Vec::new, values::shown),
+            value: content.map_or_else(Vec::new, values::shown),
             ok: answer.is_ok(),
             refused: is_refused(answer),
             in_manual: content.is_none_or(Record::is_listed),
@@ -67,7 +70,7 @@ impl Entry {
                 (Some(_), true, []) => Cell::from("refused").tone(Tone::Warning),
                 (Some(_), true, _) => Cell::from("not on this controller").tone(Tone::Warning),
                 (Some(error), ..) => Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
-                (None, ..) => Cell::from(values::in_a_line(&entry.values)),
+                (None, ..) => Cell::from(values::in_a_line(&entry.value)),
             };
             table.row([Cell::from(entry.id).whole(), entry.name.into(), value]);
         }

@@ -12,6 +12,7 @@ use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::Parameter;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
 /// Which parameters.
@@ -31,24 +32,28 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Parameters, Failure> {
         let parameters = entry::read_all(context.link, context.screen, &self.names).await?;
-        Ok(Parameters { parameters })
+        Ok(Parameters { items: parameters })
     }
 }
 
 /// What was asked for.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Parameters {
-    parameters: Vec<Entry>,
+    items: Vec<Entry>,
 }
 
 impl Report for Parameters {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("items")
+    }
+
     fn view(&self) -> View {
-        View::table(Entry::table(&self.parameters))
+        View::table(Entry::table(&self.items))
     }
 
     fn failure(&self) -> Option<Failure> {
-        let failure = items::failure(self.parameters.len(), self.parameters.iter().map(|entry| entry.error.as_ref()))?;
-        let refused = self.parameters.iter().any(|entry| entry.refused);
+        let failure = items::failure(self.items.len(), self.items.iter().map(|entry| entry.error.as_ref()))?;
+        let refused = self.items.iter().any(|entry| entry.refused);
         let hint = "some parameters are only on some controllers; `only_on` in the JSON names them";
         Some(if refused { failure.hint(hint) } else { failure })
     }

@@ -11,6 +11,7 @@ use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::toyo::table::{Group, Parameter};
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
 use crate::output::view::View;
 
 /// Which groups.
@@ -56,26 +57,30 @@ impl Command for List {
         let wanted: Vec<&'static Parameter> = singles().filter(is_wanted).collect();
         let parameters = entry::read_all(context.link, context.screen, &wanted).await?;
         let refused = parameters.iter().filter(|entry| entry.refused).count();
-        Ok(Listing { parameters, refused })
+        Ok(Listing { items: parameters, refused })
     }
 }
 
 /// All parameters of a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listing {
-    parameters: Vec<Entry>,
+    items: Vec<Entry>,
     /// How many of them the controller refuses.
     refused: usize,
 }
 
 impl Report for Listing {
+    fn rows(&self) -> RowsOf {
+        RowsOf::List("items")
+    }
+
     fn view(&self) -> View {
-        View::table(Entry::table(&self.parameters))
+        View::table(Entry::table(&self.items))
     }
 
     /// That a controller does not have all parameters there are is no failure.
     fn failure(&self) -> Option<Failure> {
-        let errors = self.parameters.iter().map(|entry| entry.error.as_ref().filter(|_| !entry.refused));
-        items::failure(self.parameters.len(), errors)
+        let errors = self.items.iter().map(|entry| entry.error.as_ref().filter(|_| !entry.refused));
+        items::failure(self.items.len(), errors)
     }
 }

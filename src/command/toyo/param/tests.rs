@@ -181,7 +181,7 @@ fn a_busy_controller_is_asked_again() {
         _ => Fault::None,
     });
     let listed = bench.data(&["param", "list", "--group", "special"]);
-    let refused: Vec<_> = listed["parameters"].as_array().unwrap().iter().map(|entry| &entry["refused"]).collect();
+    let refused: Vec<_> = listed["items"].as_array().unwrap().iter().map(|entry| &entry["refused"]).collect();
     assert_eq!(refused, [false, false, true]);
 }
 
@@ -219,7 +219,7 @@ fn what_may_not_be_written_stands_in_a_dump_as_a_comment() {
 #[test]
 fn a_machine_parameter_asks_for_the_power_to_be_cycled() {
     let mut bench = Bench::new("sim:");
-    let before = bench.data(&["param", "get", "e06"])["parameters"][0]["values"][0]["value"].clone();
+    let before = bench.data(&["param", "get", "e06"])["items"][0]["value"][0]["value"].clone();
     let same = bench.data(&["param", "set", "e06", &format!("ax1={before}")]);
     assert_eq!((&same["needs_power_cycle"], &same["cells_unchanged"]), (&false.into(), &1.into()));
     let changed = bench.data(&["param", "set", "e06", "ax1=777"]);

@@ -4,11 +4,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::get::Points;
-use super::{OTHER_TASK, Row, read_all};
+use super::{OTHER_TASK, OfTask, items, read_all};
+use crate::command::frame::items::verdict;
 use crate::command::frame::sheet::{self, SheetOptions, SheetTarget};
+use crate::command::robot::item::{Item, Items};
+use crate::command::robot::position::Position;
 use crate::command::toyo::files;
-use crate::command::toyo::items::{self, Item};
 use crate::command::toyo::link::Toyo;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -67,10 +68,8 @@ impl Command for List {
         };
         let letters = link.letters().await?;
         let (task, answers) = read_all(link, screen, self.task, &points).await?;
-        let items = Row::items(&points, &answers, letters);
-        let Some(target) = target else {
-            return Ok(Listing::Points(Points { task, points: items, axes: letters.all() }));
-        };
+        let items = items(task, &points, &answers, letters);
+        let Some(target) = target else { return Ok(Listing::Points(items)) };
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
         let settings: Vec<Setting> =
             answers.iter().flatten().filter(|record| record.is_listed()).map(setting).collect();
@@ -79,7 +78,7 @@ impl Command for List {
             &points::rows(&settings),
             sheet::number,
         )?;
-        let left_out = items.into_iter().filter(|item| item.value().is_none()).collect();
+        let left_out = items.items.into_iter().filter(|item| item.value.is_none()).collect();
         Ok(Listing::File(Saved { task, file, saved: settings.len(), asked: points.len(), left_out }))
     }
 }
@@ -92,7 +91,7 @@ pub const AXES: usize = 4;
 #[serde(untagged)]
 pub enum Listing {
     /// Without a file.
-    Points(Points),
+    Points(Items<Position, OfTask>),
     /// With `--csv`.
     File(Saved),
 }
@@ -109,12 +108,12 @@ pub struct Saved {
     #[serde(skip)]
     asked: usize,
     /// Points that it does not hold: refused, or with something that the manual does not list.
-    left_out: Vec<Item<Row>>,
+    left_out: Vec<Item<Position, OfTask>>,
 }
 
 impl Report for Listing {
     fn rows(&self) -> RowsOf {
-        RowsOf::List("points")
+        RowsOf::List("items")
     }
 
     fn view(&self) -> View {
@@ -134,7 +133,7 @@ impl Report for Listing {
     fn failure(&self) -> Option<Failure> {
         match self {
             Self::Points(points) => points.failure(),
-            Self::File(saved) => items::failure(saved.asked, saved.left_out.iter().map(Item::error)),
+            Self::File(saved) => verdict(saved.asked, saved.left_out.iter().filter_map(|item| item.error.as_ref())),
         }
     }
 }

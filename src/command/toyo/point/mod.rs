@@ -11,20 +11,24 @@ pub use teach::Teach;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::items::{Answers, Item, read_each};
+use super::items::{Answers, read_each};
 use super::link::{self, Link};
 use super::numbers::Numbers;
 use super::position::{Coordinates, heading};
+use super::rows::Listed;
 use super::tasks;
+use super::values::NOT_IN_MANUAL;
 use crate::client::toyo::Letters;
 use crate::command::commands;
+use crate::command::robot::item::{Columns, Item, Items};
+use crate::command::robot::position::Position;
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::{Cell, Table};
+use crate::output::view::Cell;
 
 commands! {
     /// What can be done with points.
@@ -42,41 +46,38 @@ commands! {
 const OTHER_TASK: &str = "Each task has its own points. With --task, that task is made the current one for a while, which \
                           is a change: a read-only robot refuses it.";
 
-/// A point of the coordinate table.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Row {
-    /// Its row, from 1.
-    point: i32,
+/// What a point has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct OfTask {
+    /// Whose point it is.
+    pub task: u8,
     #[serde(flatten)]
-    place: Coordinates,
+    listed: Listed,
 }
 
-impl Row {
-    fn of(record: &Record, letters: Letters) -> Self {
-        Self { point: record.number("row").unwrap_or_default(), place: Coordinates::of(record, letters) }
-    }
+/// A point that was read, or why it was not.
+fn item(task: u8, point: i32, answer: Result<&Record, Failure>, letters: Letters) -> Item<Position, OfTask> {
+    let listed = Listed::of(answer.as_ref().ok().copied());
+    let place = answer.map(|record| record.is_listed().then(|| Coordinates::of(record, letters)));
+    let cells = match (place.as_ref().ok().copied().flatten(), &listed.raw) {
+        (Some(place), _) => place.mm().map(|mm| Cell::number(format!("{mm:.2}"))).into(),
+        (None, raw) => raw.iter().map(|raw| format!("{raw} ({NOT_IN_MANUAL})").into()).collect(),
+    };
+    let position = place.map(|place| place.map(|place| place.position()));
+    Item { cells, ..Item::with("point", point.to_string(), OfTask { task, listed }, position) }
+}
 
-    /// With the columns of a CSV file that `point set --from` reads.
-    fn table(rows: &[Item<Self>], letters: &[String; 4]) -> Table {
-        let [x, y, z, r] = [0, 1, 2, 3].map(|index| heading(index, &letters[index]));
-        let mut table = Table::new(&["point", x, y, z, r], "no points");
-        let mm = |value: f64| Cell::number(format!("{value:.2}"));
-        for row in rows {
-            row.show(&mut table, |Self { point, place }| {
-                std::iter::once((*point).into()).chain(place.mm().map(mm)).collect()
-            });
-        }
-        table
-    }
+/// What was answered for these points.
+fn items(task: u8, points: &[i32], answers: &Answers, letters: Letters) -> Items<Position, OfTask> {
+    let items = points.iter().zip(answers);
+    let items = items.map(|(point, answer)| item(task, *point, answer.as_ref().map_err(Clone::clone), letters));
+    Items::new(columns(letters), items.collect())
+}
 
-    /// Of what was answered for these points.
-    fn items(points: &[i32], answers: &Answers, letters: Letters) -> Vec<Item<Self>> {
-        points
-            .iter()
-            .zip(answers)
-            .map(|(point, answer)| Item::of("point", *point, answer, |record| Self::of(record, letters)))
-            .collect()
-    }
+/// With the columns of a CSV file that `point set --from` reads.
+fn columns(letters: Letters) -> Columns {
+    let letters = letters.all();
+    Columns { name: "point", values: (0..4).map(|axis| heading(axis, &letters[axis])).collect(), empty: "no points" }
 }
 
 /// The number of a point, 1 to 999.

@@ -6,15 +6,18 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{OTHER_TASK, Row, field};
+use super::{OTHER_TASK, OfTask, field, item};
 use crate::client::toyo::Letters;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::teach::printed_position;
+use crate::command::robot::item::Written;
+use crate::command::robot::position::Position;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::{number, runs};
+use crate::command::toyo::position::Coordinates;
 use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
 use crate::command::toyo::{files, link, tasks};
@@ -22,6 +25,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::bulk::points::{self, Partial};
 use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
@@ -186,58 +190,60 @@ fn printed_values(values: &[String]) -> Result<Option<Vec<String>>, Failure> {
     Ok(Some(text.split_whitespace().map(ToOwned::to_owned).collect()))
 }
 
-/// Result of points.
+/// Points that were written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
-    /// Whose points these are.
-    task: u8,
-    points: Vec<StoredRow>,
-    /// What each held and holds.
-    items: stores::WrittenCells,
+    items: Vec<Written<Position, OfTask>>,
     #[serde(flatten)]
     cells: Cells,
-}
-
-/// A point, and what became of it.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct StoredRow {
-    #[serde(flatten)]
-    row: Row,
-    result: StoreResult,
+    /// What became of each, by its number; what it shall hold.
+    #[serde(skip)]
+    results: Vec<(i32, StoreResult, Coordinates)>,
+    #[serde(skip)]
+    task: u8,
 }
 
 impl Stored {
     fn new(task: u8, stores: &[Store], fates: &[StoreResult]) -> Self {
-        let rows = stores
-            .iter()
-            .zip(fates)
-            .map(|(store, fate)| StoredRow { row: Row::of(&store.cell.wanted, store.letters), result: *fate });
-        Self { task, points: rows.collect(), items: stores::written(stores), cells: stores::sum(fates) }
+        let (mut items, mut results) = (Vec::new(), Vec::new());
+        for (store, fate) in stores.iter().zip(fates) {
+            let wanted = &store.cell.wanted;
+            let point = wanted.number("row").unwrap_or_default();
+            let place = |record: &Record| Coordinates::of(record, store.letters);
+            let old = if let CellState::This(found) = &store.found { Some(place(found).position()) } else { None };
+            let mut item = item(task, point, Ok(wanted), store.letters);
+            if *fate == StoreResult::LeftOut {
+                item.value = None;
+            }
+            items.push(Written::new(item, old, *fate == StoreResult::Written));
+            results.push((point, *fate, place(wanted)));
+        }
+        Self { items, cells: stores::sum(fates), results, task }
     }
 }
 
 impl Report for Stored {
     fn rows(&self) -> RowsOf {
-        RowsOf::List("points")
+        RowsOf::List("items")
     }
 
     fn view(&self) -> View {
         let of = |fate: StoreResult| {
-            let rows = self.points.iter().filter(move |row| row.result == fate);
-            runs(&rows.map(|row| row.row.point).collect::<Vec<_>>())
+            let points = self.results.iter().filter(move |(_, result, _)| *result == fate);
+            runs(&points.map(|(point, ..)| *point).collect::<Vec<_>>())
         };
         let mut lines = Vec::new();
-        if let [StoredRow { row, .. }] = &self.points[..] {
-            lines.push(format!("point {} of task {}: {} (mm)", row.point, self.task, row.place.in_a_line()));
+        if let [(point, _, place)] = &self.results[..] {
+            lines.push(format!("point {point} of task {}: {} (mm)", self.task, place.in_a_line()));
         } else {
             for (words, fate) in [
                 ("written", StoreResult::Written),
                 ("unchanged", StoreResult::Unchanged),
                 ("left out", StoreResult::LeftOut),
             ] {
-                let rows = of(fate);
-                if !rows.is_empty() {
-                    lines.push(format!("points of task {} {words}: {rows}", self.task));
+                let points = of(fate);
+                if !points.is_empty() {
+                    lines.push(format!("points of task {} {words}: {points}", self.task));
                 }
             }
         }

@@ -47,16 +47,13 @@ fn points_go_through_a_file_and_back() {
     let mut bench = Bench::new("sim:");
     let stored = bench.data(&["point", "set", "--from", &first]);
     assert_eq!((&stored["cells_written"], &stored["cells_unchanged"]), (&2.into(), &1.into()), "{stored}");
-    assert_eq!(
-        (&stored["points"][0]["result"], &stored["points"][1]["result"]),
-        (&"written".into(), &"unchanged".into())
-    );
+    assert_eq!((&stored["items"][0]["written"], &stored["items"][1]["written"]), (&true.into(), &false.into()));
     let saved = bench.data(&["point", "list", "--to", "3", "--csv", &second]);
     assert_eq!((&saved["saved"], &saved["task"]), (&3.into(), &1.into()));
     assert_eq!(std::fs::read_to_string(&second).unwrap(), text);
     assert_eq!(bench.run(&["point", "list", "--csv", &second]).unwrap_err().kind.exit(), 1);
     let again = bench.data(&["point", "set", "--from", &first, "--resume=2"]);
-    assert_eq!((&again["points"][0]["result"], &again["cells_unchanged"]), (&"left_out".into(), &2.into()));
+    assert_eq!((&again["items"][0]["new"], &again["cells_unchanged"]), (&serde_json::Value::Null, &2.into()));
     assert_eq!(bench.run(&["point", "set", "--from", &first, "--resume=9"]).unwrap_err().kind.exit(), 2);
 }
 
@@ -65,9 +62,9 @@ fn one_coordinate_is_changed_alone() {
     let mut bench = Bench::new("sim:");
     bench.data(&["point", "set", "5", "1", "2", "3", "4"]);
     let changed = bench.data(&["point", "set", "5", "Y=-7.5"]);
-    assert_eq!(changed["points"][0]["y_mm"], -7.5);
+    assert_eq!(changed["items"][0]["new"]["y_mm"], -7.5);
     let read = bench.data(&["point", "get", "5"]);
-    assert_eq!((&read["points"][0]["x_mm"], &read["points"][0]["y_mm"]), (&1.0.into(), &(-7.5).into()));
+    assert_eq!((&read["items"][0]["value"]["x_mm"], &read["items"][0]["value"]["y_mm"]), (&1.0.into(), &(-7.5).into()));
 }
 
 #[test]
@@ -141,7 +138,7 @@ fn a_task_that_was_chosen_is_put_back() {
     let mut bench = Bench::new("sim:");
     bench.data(&["task", "set", "3"]);
     assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["task"], 2);
-    assert_eq!(bench.data(&["point", "get", "1", "--task", "2"])["points"][0]["x_mm"], 1.0);
+    assert_eq!(bench.data(&["point", "get", "1", "--task", "2"])["items"][0]["value"]["x_mm"], 1.0);
     assert_eq!(bench.data(&["point", "get", "1"])["task"], 3);
 }
 
@@ -152,11 +149,14 @@ const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = 
 fn a_letter_is_the_same_axis_everywhere() {
     let (mut bench, heard) = Bench::with_faults(CROSSED, |_, _| Fault::None);
     let stored = bench.data(&["point", "set", "1", "z=12.5"]);
-    assert_eq!((&stored["points"][0]["z_mm"], &stored["items"][0]["new"]["z"]), (&12.5.into(), &12.5.into()));
+    assert_eq!(
+        (&stored["items"][0]["value"]["z_mm"], &stored["items"][0]["new"]["z_mm"]),
+        (&12.5.into(), &12.5.into())
+    );
     let last = |word: &str| heard.borrow().iter().rfind(|block| block.starts_with(word)).cloned();
     assert_eq!(last("@WPAR").unwrap(), "@WPAR T1 PT=001 X=+0000.00 Y=+0012.50 Z=+0000.00 R=+0000.00");
     bench.data(&["point", "set", "1", "ax3=7"]);
-    assert_eq!(bench.data(&["point", "get", "1"])["points"][0]["y_mm"], 7.0);
+    assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["y_mm"], 7.0);
     let jogged = bench.data(&["jog", "Z", "+", "low", "--for", "1s"]);
     assert_eq!((&jogged["axis"], &jogged["axis_number"]), (&"Z".into(), &2.into()));
     let position = bench.data(&["position"]);
@@ -195,7 +195,7 @@ fn letters_that_are_not_told_mean_no_axis() {
         assert!(failure.message.contains("which axis Z is, is not known"), "{failure}");
     }
     assert!(!heard.borrow().iter().any(|block| block.starts_with("@WPAR") || block.starts_with("@JGST")));
-    assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["points"][0]["ax3_mm"], 12.5);
+    assert_eq!(bench.data(&["point", "set", "1", "ax3=12.5"])["items"][0]["value"]["joints"][2]["mm"], 12.5);
     assert_eq!(bench.data(&["jog", "3", "+", "low", "--for", "1s"])["axis_number"], 3);
 }
 
@@ -212,7 +212,7 @@ fn a_file_has_the_letters_of_the_machine() {
     let text = std::fs::read_to_string(&saved).unwrap();
     assert_eq!(text, "point,x_mm,z_mm,y_mm,r_mm\n1,1.00,3.00,2.00,4.00\n");
     bench.data(&["point", "set", "--from", &numbers]);
-    assert_eq!(bench.data(&["point", "get", "1"])["points"][0]["y_mm"], 9.0);
+    assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["y_mm"], 9.0);
 }
 
 #[test]

@@ -25,7 +25,7 @@ pub struct Entry {
     #[serde(skip_serializing_if = "Label::is_of_file")]
     #[schemars(with = "Option<String>")]
     label: Label,
-    /// `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
+    /// `variable`; in files `B`, `I`, `D`, `R`, `S`, `P`, `BP` or `EX`.
     kind: &'static str,
     number: u16,
     /// Whether the controller answered, if only that there is no value; not in files.
@@ -99,7 +99,7 @@ pub fn is_undefined(denied: &Denied) -> bool {
 impl Entry {
     /// What a controller answered.
     pub fn new(reference: Reference, outcome: &Outcome<Value>, encoding: Encoding) -> Self {
-        let (name, kind, number) = (reference.to_string(), reference.kind.letters(), reference.number);
+        let (name, kind, number) = (reference.to_string(), VARIABLE, reference.number);
         let known = Self {
             name,
             label: Label::Unnamed,
@@ -131,7 +131,8 @@ impl Entry {
     /// The same without what the controller said, for a file in which null says enough.
     #[must_use]
     pub fn bare(self) -> Self {
-        Self { label: Label::default(), ok: None, undefined: false, error: None, missing: None, ..self }
+        let letters = self.name.parse().map_or(self.kind, |reference: Reference| reference.kind.letters());
+        Self { label: Label::default(), kind: letters, ok: None, undefined: false, error: None, missing: None, ..self }
     }
 
     /// The same with the name that people gave it.
@@ -237,6 +238,9 @@ pub struct Reading {
     pub encoding: Encoding,
 }
 
+/// The kind of every item in a report.
+const VARIABLE: &str = "variable";
+
 const KEYS: [&str; 5] = ["name", "kind", "number", "value", "value_hex"];
 /// What a report says beside them.
 const REPORTED: [&str; 4] = ["ok", "label", "undefined", "error"];
@@ -252,7 +256,7 @@ impl Reading {
         let name = object.get("name").and_then(Json::as_str).ok_or(".name: a name such as \"B0\" is expected")?;
         let reference: Reference = name.parse().map_err(|error| format!(".name: {error}"))?;
         let reference = in_form(reference, self.model, false);
-        if object.get("kind").is_some_and(|kind| kind != reference.kind.letters()) {
+        if object.get("kind").is_some_and(|kind| kind != reference.kind.letters() && kind != VARIABLE) {
             return Err(format!(".kind: contradicts the name {name}"));
         }
         if object.get("number").is_some_and(|number| number.as_u64() != Some(reference.number.into())) {
@@ -349,7 +353,7 @@ mod tests {
     fn numbers_survive_json() {
         assert_eq!(
             round("B7", &Value::Byte(255)),
-            json!({"name": "B7", "label": null, "kind": "B", "number": 7, "ok": true, "value": 255})
+            json!({"name": "B7", "label": null, "kind": "variable", "number": 7, "ok": true, "value": 255})
         );
         round("I0", &Value::Integer(-32768));
         round("D0", &Value::Double(i32::MIN));
@@ -369,7 +373,7 @@ mod tests {
         let s = |bytes: &[u8]| Value::Long(Text::new(bytes).unwrap());
         assert_eq!(
             round("S0", &s(b"\x83\x65")),
-            json!({"name": "S0", "label": null, "kind": "S", "number": 0, "ok": true, "value": "テ"})
+            json!({"name": "S0", "label": null, "kind": "variable", "number": 0, "ok": true, "value": "テ"})
         );
         assert_eq!(round("S0", &s(b"A\xFF"))["value_hex"], json!("41ff"));
         round("S0", &s(b""));

@@ -62,29 +62,28 @@ impl Command for Get {
             let answer = answers.get(reference)?;
             Some(Entry::new(*reference, answer, link.encoding).labelled(names))
         });
-        let report = Variables { variables: entries.collect() };
-        items::nothing(report.variables.len(), report.variables.iter().filter_map(Entry::error))?;
+        let report = Variables { items: entries.collect() };
+        items::nothing(report.items.len(), report.items.iter().filter_map(Entry::error))?;
         Ok(report)
     }
 }
 
 impl Watchable for Get {
     const WATCH: &'static str = "yerc.var.watch";
-    const WATCHED: Watched =
-        Watched { list: "variables", name: "name", prefix: "", label: "", value: Some("value"), empty: "no variables" };
+    const WATCHED: Watched = Watched::ITEMS;
 }
 
 /// Variables in the order they were asked for.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Variables {
-    variables: Vec<Entry>,
+    items: Vec<Entry>,
 }
 
 impl Report for Variables {
     fn view(&self) -> View {
         let mut table = Table::new(&["name", "label", "value"], "no variables");
-        let numbers = self.variables.iter().all(Entry::is_number);
-        for entry in &self.variables {
+        let numbers = self.items.iter().all(Entry::is_number);
+        for entry in &self.items {
             let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };
             table.row([entry.name().into(), Cell::maybe(entry.label()), value]);
         }
@@ -92,7 +91,7 @@ impl Report for Variables {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let variables = &self.variables;
+        let variables = &self.items;
         if variables.iter().any(Entry::has_value) {
             return items::verdict(variables.len(), variables.iter().filter_map(Entry::error));
         }

@@ -83,7 +83,7 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
     let mut bench = Bench::new("sim:");
     bench.data(&["var", "set", "P20=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "EX3=pulse:1=9"]);
     let data = bench.data(&["var", "get", "P18..P22", "EX3", "P18", "B8"]);
-    let entries = data["variables"].as_array().unwrap();
+    let entries = data["items"].as_array().unwrap();
     let shown: Vec<(&str, &Value)> =
         entries.iter().map(|entry| (entry["name"].as_str().unwrap(), &entry["value"]["text"])).collect();
     let text = |text: &str| Value::from(text);
@@ -103,7 +103,7 @@ fn undefined_positions_in_a_range_are_reported_one_by_one() {
 fn numbers_beyond_the_last_are_found_and_named() {
     let (data, failure) = Bench::new("sim:").run(&["var", "get", "B90..B110"]).unwrap();
     assert_eq!(failure.unwrap().kind.exit(), 9);
-    let values = data["variables"].as_array().unwrap();
+    let values = data["items"].as_array().unwrap();
     assert_eq!(values.iter().filter(|entry| entry["value"] == 0).count(), 10);
     assert!(
         values[10..].iter().all(|entry| entry["ok"] == false && entry["error"]["asked"] == entry["name"]),
@@ -163,8 +163,8 @@ fn a_file_of_var_get_sets_a_position() {
     let shown = bench.data(&["var", "get", "P2"]);
     std::fs::write(file.path(), serde_json::json!({ "ok": true, "data": shown }).to_string()).unwrap();
     bench.data(&["var", "set", &format!("P9=@{}", file.path().display()), "P9.tool=7"]);
-    let (p2, p9) = (&shown["variables"][0]["value"], bench.data(&["var", "get", "P9"]));
-    let p9 = &p9["variables"][0]["value"];
+    let (p2, p9) = (&shown["items"][0]["value"], bench.data(&["var", "get", "P9"]));
+    let p9 = &p9["items"][0]["value"];
     assert_eq!((&p9["x_mm"], &p9["tool"]), (&p2["x_mm"], &Value::from(7)));
     let failure = bench.run(&["var", "set", &format!("EX9=@{}", file.path().display())]).unwrap_err();
     assert_eq!(failure.kind.exit(), 2);

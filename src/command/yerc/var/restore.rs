@@ -200,7 +200,8 @@ impl Dump {
             |name: &str| json.get(name).and_then(Json::as_str).ok_or_else(|| format!("{name}: a name is expected"));
         let taken_from: Model = text("model")?.parse().map_err(|error| format!("model: {error}"))?;
         let encoding: Encoding = text("encoding")?.parse().map_err(|error| format!("encoding: {error}"))?;
-        let entries = json.get("variables").and_then(Json::as_array).ok_or("variables: a list is expected")?;
+        let entries = ["variables", "items"].iter().find_map(|list| json.get(*list)?.as_array());
+        let entries = entries.ok_or("variables: a list is expected")?;
         let reading = Reading { model, encoding };
         let mut seen = HashMap::new();
         let mut variables = Vec::with_capacity(entries.len());

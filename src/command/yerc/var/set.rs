@@ -274,7 +274,7 @@ impl Command for Set {
             let new = item.data();
             orders::Written::new(item, Old::read(old), new)
         });
-        Ok(Written { written: written.collect(), parts })
+        Ok(Written { items: written.collect(), parts })
     }
 }
 
@@ -371,7 +371,7 @@ impl WriteOrder for Change {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Written {
     /// Whole variables.
-    written: Vec<orders::Written<Entry>>,
+    items: Vec<orders::Written<Entry>>,
     /// Single words of positions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<Part>,
@@ -403,12 +403,12 @@ impl Part {
 
 impl Report for Written {
     fn rows(&self) -> RowsOf {
-        RowsOf::List("written")
+        RowsOf::List("items")
     }
 
     fn view(&self) -> View {
         let mut table = Table::new(&["written", "label", "value"], "nothing to write");
-        let entries = || self.written.iter().map(|written| &written.item);
+        let entries = || self.items.iter().map(|written| &written.item);
         let numbers = entries().all(Entry::is_number);
         for entry in entries() {
             let value = if numbers { Cell::number(entry.shown()) } else { entry.shown().into() };

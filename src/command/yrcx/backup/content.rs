@@ -491,6 +491,11 @@ pub struct Store {
 }
 
 impl Store {
+    /// What an answer that reads it would hold.
+    pub fn wanted_values(&self) -> Values {
+        self.wanted.iter().cloned().collect()
+    }
+
     /// Whether what was read is what would be written.
     pub fn is_there(&self, values: &Values) -> bool {
         self.wanted.iter().all(|(key, wanted)| values.value(*key).unwrap_or(&Value::Int(0)) == wanted)
@@ -507,7 +512,7 @@ impl Store {
 
     /// What would be written, in words.
     pub fn wanted(&self) -> String {
-        self.describe(&self.wanted.iter().cloned().collect())
+        self.describe(&self.wanted_values())
     }
 }
 

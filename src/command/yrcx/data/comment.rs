@@ -1,13 +1,12 @@
 //! `yrcx comment` (4.3.2).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::command::commands;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::yrcx::backup::{COMMENTS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
+use crate::command::yrcx::stores::{Kind, Numbered};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 
@@ -15,32 +14,45 @@ commands! {
     /// What can be done with comments of points.
     pub enum Comment {
         /// Read the comments of points: 100, 0..29
-        Get(Get),
+        Get(Get<Numbered<Comments>>),
+        /// List the points that have a comment
+        List(List<Numbered<Comments>>),
         /// Write the comment of a point: 100 'WAIT ORG'
         Set(Set),
+        /// Copy a comment to other points
+        Copy(Copy<Numbered<Comments>>),
+        /// Save comments to a CSV file
+        Dump(Dump<Numbered<Comments>>),
+        /// Write comments from a CSV file
+        Restore(Restore<Numbered<Comments>>),
     }
 }
 
-by_number! {
-    /// Reads the comments of points, one after the other.
-    Get "yrcx.comment.get" {
-        /// Points, 0 to 29999: 100, 0..29 or 0..29,100
-        comments "POINT"
-    }
-    gives CommentGet Point ["comment of point", "comments"],
-    /// Comments of points.
-    Comments,
-    /// Which point.
-    point of Text: |values: &Values| Text { comment: values.text(Key::Comment).unwrap_or_default().to_owned() },
-    columns ["comment"],
-    cells |text| [text.comment.as_str().into()];
-}
+/// Comments of points.
+#[derive(Debug)]
+pub struct Comments;
 
-/// The comment of a point.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Text {
-    /// Up to 16 characters; empty if there is none.
-    comment: String,
+impl Kind for Comments {
+    type Value = String;
+    const WORDS: Words = Words {
+        nouns: ["comment of point", "comments"],
+        placeholder: "POINT",
+        range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
+        reading: None,
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.comment");
+    const RECORDS: &'static Records = &COMMENTS;
+    const HEADINGS: &'static [&'static str] = &["comment"];
+    const IS_SMALL: bool = false;
+
+    fn value(values: &Values) -> Option<String> {
+        Some(values.text(Key::Comment).unwrap_or_default().to_owned())
+    }
+
+    fn is_blank(values: &Values) -> bool {
+        values.text(Key::Comment).is_none_or(str::is_empty)
+    }
 }
 
 one_row! {
@@ -71,9 +83,11 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["comment", "set", "100", "WAIT ORG"];
         assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
-        assert_eq!(read_example("4.3.2-define", &set)["new"], "WAIT ORG");
+        assert_eq!(read_example("4.3.2-define", &set)["items"][0]["new"], "WAIT ORG");
         let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
-        assert_eq!(read["comments"], json!([{"point": 50, "ok": true, "comment": "WAIT ORG"}]));
+        let (name, kind) = ("50", "comment of point");
+        let item = json!({"name": name, "label": null, "kind": kind, "ok": true, "value": "WAIT ORG"});
+        assert_eq!(read["items"], json!([item]));
     }
 
     #[test]

@@ -3,23 +3,31 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::mm;
 use crate::command::commands;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::yrcx::backup::{HANDS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
+use crate::command::yrcx::stores::{Kind, Numbered, int, mm};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::output::view::Cell;
 
 commands! {
     /// What can be done with hands.
     pub enum HandData {
         /// Read hands: 1, 0..31
-        Get(Get),
+        Get(Get<Numbered<Hands>>),
+        /// List those that are defined
+        List(List<Numbered<Hands>>),
         /// Define a hand: 1 --data-1 10000 --data-2 -2 --data-3 5
         Set(Set),
+        /// Copy one to others
+        Copy(Copy<Numbered<Hands>>),
+        /// Save to a CSV file
+        Dump(Dump<Numbered<Hands>>),
+        /// Write from a CSV file
+        Restore(Restore<Numbered<Hands>>),
     }
 }
 
@@ -27,25 +35,41 @@ commands! {
 const DATA_1: &str = "Data 1 is shown and given as it travels, since the manual measures it in two ways: its example of a \
                       Cartesian robot has 10000 for 10.000 mm, its text a whole number.";
 
-by_number! {
-    /// Reads hands, one after the other.
-    #[command(after_help = DATA_1)]
-    Get "yrcx.hand-data.get" {
-        /// Hands, 0 to 31: 1, 0..31 or 1,5
-        hands "HAND"
+/// The hands of the controller.
+#[derive(Debug)]
+pub struct Hands;
+
+impl Kind for Hands {
+    type Value = Data;
+    const WORDS: Words = Words {
+        nouns: ["hand", "hands"],
+        placeholder: "HAND",
+        range: "Hands, 0 to 31: 1, 0..31 or 1,5",
+        reading: Some(DATA_1),
+        writing: Some(DATA_1),
+    };
+    const IDS: Ids = ids!("yrcx.hand-data");
+    const RECORDS: &'static Records = &HANDS;
+    const HEADINGS: &'static [&'static str] = &["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "data 4"];
+
+    fn value(values: &Values) -> Option<Data> {
+        Some(Data {
+            robot: int(values, Key::Owner),
+            data_1: int(values, Key::Data1),
+            data_2_mm: mm(values, Key::Data2),
+            data_3_mm: mm(values, Key::Data3),
+            data_4: int(values, Key::Data4),
+        })
     }
-    gives HandGet Hand ["hand", "hands"],
-    /// Hands.
-    Hands,
-    /// Which hand.
-    hand of Data: Data::of,
-    columns ["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "on R axis"],
-    cells |hand| [hand.robot.into(), hand.data_1.into(), mm(hand.data_2_mm), mm(hand.data_3_mm), hand.on_r_axis()];
+
+    fn is_blank(values: &Values) -> bool {
+        int(values, Key::Owner) == 0
+    }
 }
 
 /// A hand.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Data {
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Data {
     /// The robot that has it.
     robot: i32,
     /// As it travels: the manual does not tell its unit for certain.
@@ -54,27 +78,6 @@ struct Data {
     data_3_mm: f64,
     /// 1 for a hand on the R axis, else 0.
     data_4: i32,
-}
-
-impl Data {
-    fn of(values: &Values) -> Self {
-        let int = |key| values.int(key).unwrap_or_default();
-        Self {
-            robot: int(Key::Owner),
-            data_1: int(Key::Data1),
-            data_2_mm: f64::from(int(Key::Data2)) / 1000.0,
-            data_3_mm: f64::from(int(Key::Data3)) / 1000.0,
-            data_4: int(Key::Data4),
-        }
-    }
-
-    fn on_r_axis(&self) -> Cell {
-        match self.data_4 {
-            0 => "no".into(),
-            1 => "yes".into(),
-            other => Cell::from(other),
-        }
-    }
 }
 
 one_row! {
@@ -122,10 +125,10 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         assert_eq!(written(&SET).unwrap(), [example("4.3.5-define")]);
-        assert_eq!(read_example("4.3.5-define", &SET)["new"]["data_2_mm"], -2.0);
+        assert_eq!(read_example("4.3.5-define", &SET)["items"][0]["new"]["data_2_mm"], -2.0);
         let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
-        let hand = json!({"hand": 1, "ok": true, "robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
-        assert_eq!(read["hands"], json!([hand]));
+        let hand = json!({"robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
+        assert_eq!(read["items"][0]["value"], hand);
     }
 
     #[test]

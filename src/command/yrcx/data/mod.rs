@@ -14,7 +14,6 @@ pub use shift::ShiftData;
 
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::value::Key;
-use crate::output::view::Cell;
 
 /// A number for each of the four axes, as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -35,9 +34,4 @@ impl Four {
     fn describe(&self) -> String {
         self.0.join(", ")
     }
-}
-
-/// A coordinate in mm.
-fn mm(value: f64) -> Cell {
-    Cell::number(format!("{value:.3}"))
 }

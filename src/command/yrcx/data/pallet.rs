@@ -4,42 +4,64 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::commands;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::yrcx::backup::{PALLETS, Records};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
+use crate::command::yrcx::stores::{Kind, Numbered, all_zero, int};
 use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
-use crate::output::view::Cell;
 
 commands! {
     /// What can be done with pallets.
     pub enum PalletData {
         /// Read pallets: 10, 0..39
-        Get(Get),
+        Get(Get<Numbered<Pallets>>),
+        /// List those that are defined
+        List(List<Numbered<Pallets>>),
         /// Define a pallet: 10 --nx 10 --ny 15 --first-point 100
         Set(Set),
+        /// Copy one to others
+        Copy(Copy<Numbered<Pallets>>),
+        /// Save to a CSV file
+        Dump(Dump<Numbered<Pallets>>),
+        /// Write from a CSV file
+        Restore(Restore<Numbered<Pallets>>),
     }
 }
 
-by_number! {
-    /// Reads pallets, one after the other.
-    Get "yrcx.pallet-data.get" {
-        /// Pallets, 0 to 39: 10, 0..39 or 1,5
-        pallets "PALLET"
+/// The pallets of the controller.
+#[derive(Debug)]
+pub struct Pallets;
+
+impl Kind for Pallets {
+    type Value = Places;
+    const WORDS: Words = Words {
+        nouns: ["pallet", "pallets"],
+        placeholder: "PALLET",
+        range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
+        reading: None,
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.pallet-data");
+    const RECORDS: &'static Records = &PALLETS;
+    const HEADINGS: &'static [&'static str] = &["nx", "ny", "nz", "first point"];
+
+    fn value(values: &Values) -> Option<Places> {
+        let [nx, ny, nz, first_point] =
+            [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| int(values, key));
+        Some(Places { nx, ny, nz, first_point })
     }
-    gives PalletGet Pallet ["pallet", "pallets"],
-    /// Pallets.
-    Pallets,
-    /// Which pallet.
-    pallet of Places: Places::of,
-    columns ["nx", "ny", "nz", "first point"],
-    cells |places| [places.nx, places.ny, places.nz, places.first_point].map(Cell::from);
+
+    fn is_blank(values: &Values) -> bool {
+        all_zero(values, &[Key::CountX, Key::CountY, Key::CountZ])
+    }
 }
 
 /// A pallet.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Places {
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Places {
     /// Places in X.
     nx: i32,
     /// Places in Y.
@@ -48,14 +70,6 @@ struct Places {
     nz: i32,
     /// The first of the five points that define it.
     first_point: i32,
-}
-
-impl Places {
-    fn of(values: &Values) -> Self {
-        let [nx, ny, nz, first_point] =
-            [Key::CountX, Key::CountY, Key::CountZ, Key::FirstPoint].map(|key| values.int(key).unwrap_or_default());
-        Self { nx, ny, nz, first_point }
-    }
 }
 
 one_row! {
@@ -103,12 +117,12 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["pallet-data", "set", "10", "--nx", "10", "--ny", "15", "--first-point", "100"];
         assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
-        assert_eq!(read_example("4.3.3-define", &set)["new"], json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100}));
-        let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
         assert_eq!(
-            read["pallets"],
-            json!([{"pallet": 10, "ok": true, "nx": 10, "ny": 15, "nz": 1, "first_point": 100}])
+            read_example("4.3.3-define", &set)["items"][0]["new"],
+            json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100})
         );
+        let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
+        assert_eq!(read["items"][0]["value"], json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100}));
     }
 
     #[test]

@@ -2,20 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ArgGroup;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::{Four, four};
+use crate::command::frame::store::{Copy, Get, Ids, List, Words, ids};
 use crate::command::frame::teach::printed_position;
-use crate::command::robot::position::{Joint, Position};
-use crate::command::yrcx::backup::{Dump, Restore};
+use crate::command::robot::position::Position;
+use crate::command::yrcx::backup::{Dump, POINTS, Records, Restore};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite;
 use crate::command::yrcx::overwrite::Stored;
 use crate::command::yrcx::position::position;
-use crate::command::yrcx::several::by_number;
+use crate::command::yrcx::stores::{Kind, Numbered};
 use crate::command::yrcx::teach::unit_of;
 use crate::command::{Command, Context, commands};
 use crate::controller::Risk;
@@ -23,15 +20,19 @@ use crate::controller::yrcx::table;
 use crate::controller::yrcx::value::{Key, Values};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
-use crate::output::view::Cell;
+use clap::ArgGroup;
 
 commands! {
     /// What can be done with points.
     pub enum Point {
         /// Read points: 100, 0..29
-        Get(Get),
+        Get(Get<Numbered<Points>>),
+        /// List the points of a range that are defined
+        List(List<Numbered<Points>>),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
+        /// Copy a point to others: 5 6..8
+        Copy(Copy<Numbered<Points>>),
         /// Save points and their comments to a CSV file
         Dump(Dump),
         /// Write points and their comments from a CSV file
@@ -39,34 +40,30 @@ commands! {
     }
 }
 
-by_number! {
-    /// Reads points, one after the other.
-    #[command(
-        after_help = "A point that is not defined is refused, and the others are told all the same: exit code 9. `-o csv` \
-        prints a table for a spreadsheet."
-    )]
-    Get "yrcx.point.get" {
-        /// Points, 0 to 29999: 100, 0..29 or 0..29,100
-        points "POINT"
+/// The points of the controller.
+#[derive(Debug)]
+pub struct Points;
+
+impl Kind for Points {
+    type Value = Position;
+    const WORDS: Words = Words {
+        nouns: ["point", "points"],
+        placeholder: "POINT",
+        range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
+        reading: Some(
+            "The controller refuses a point that is not defined; the others are reported all the same (exit code 9). \
+             `-o csv` prints a table for a spreadsheet.",
+        ),
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.point");
+    const RECORDS: &'static Records = &POINTS;
+    const HEADINGS: &'static [&'static str] = &["unit", "axis 1", "axis 2", "axis 3", "axis 4", "hand"];
+    const IS_SMALL: bool = false;
+
+    fn value(values: &Values) -> Option<Position> {
+        position(values, unit_of(values))
     }
-    gives PointGet Point ["point", "points"],
-    /// Points.
-    Points,
-    /// Which point.
-    point of Position: point,
-    columns ["axis 1", "axis 2", "axis 3", "axis 4", "unit", "hand"],
-    cells cells;
-}
-
-/// A point of the values of an answer.
-fn point(values: &Values) -> Position {
-    position(values, unit_of(values)).unwrap_or_default()
-}
-
-fn cells(point: &Position) -> [Cell; 6] {
-    let axis = |at: usize| point.joints.get(at).map_or_else(|| "-".into(), Joint::cell);
-    let unit = if point.frame == "joint" { "pulses" } else { "mm" };
-    [axis(0), axis(1), axis(2), axis(3), unit.into(), Cell::maybe(point.form.as_deref())]
 }
 
 /// Defines a point.
@@ -114,7 +111,7 @@ impl Command for Set {
         let unit = if unit == "mm" { "mm" } else { "pulses" };
         let hand = hand.map(|hand| format!(", {hand}-handed")).unwrap_or_default();
         let words = format!("defined point {}: {} {unit}{hand}", self.point, four.describe());
-        Ok(Stored::new(words, &done))
+        Ok(overwrite::stored(words, &done))
     }
 }
 
@@ -165,10 +162,14 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
         assert_eq!(written(&set).unwrap(), [example("4.3.1-define")]);
-        assert_eq!(read_example("4.3.1-define", &set)["new"]["text"], json!("--pulse 10000,-20000,5000,-18000"));
+        assert_eq!(
+            read_example("4.3.1-define", &set)["items"][0]["new"]["text"],
+            json!("--pulse 10000,-20000,5000,-18000")
+        );
         let read = read_example("4.3.1-reference", &["point", "get", "50"]);
-        let row = &read["points"][0];
-        assert_eq!((&row["point"], &row["ok"], &row["frame"]), (&json!(50), &json!(true), &json!("base")));
+        let row = &read["items"][0];
+        assert_eq!((&row["name"], &row["ok"], &row["kind"]), (&json!("50"), &json!(true), &json!("point")));
+        let row = &row["value"];
         assert_eq!(row["text"], json!("--mm 10.000,-20.000,5.000,-18.000"));
         assert_eq!((&row["x_mm"], &row["joints"][3]["mm"]), (&json!(10.0), &json!(-18.0)));
     }
@@ -210,9 +211,9 @@ mod tests {
     fn what_is_not_defined_stands_beside_what_is() {
         let line = ["point", "get", "3..5"];
         let (read, failure, _) = report_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
-        let points = read["points"].as_array().unwrap();
-        let numbers = points.iter().map(|point| (point["point"].as_i64().unwrap(), point["ok"].as_bool().unwrap()));
-        assert_eq!(numbers.collect::<Vec<_>>(), [(3, false), (4, true), (5, false)]);
+        let points = read["items"].as_array().unwrap();
+        let numbers = points.iter().map(|point| (point["name"].as_str().unwrap(), point["ok"].as_bool().unwrap()));
+        assert_eq!(numbers.collect::<Vec<_>>(), [("3", false), ("4", true), ("5", false)]);
         let error = &points[0]["error"];
         assert_eq!(
             (&error["asked"], &error["code"], &error["kind"]),
@@ -234,7 +235,7 @@ mod tests {
         let failure = failure.unwrap();
         assert_eq!((failure.kind.exit(), failure.code.as_deref(), peer.taken.len()), (9, Some("12.76"), 2));
         assert!(failure.message.ends_with("; 29995 were not asked for"), "{failure}");
-        assert_eq!((&read["points"][0]["ok"], &read["points"][29_996]["ok"]), (&json!(true), &json!(false)));
+        assert_eq!((&read["items"][0]["ok"], &read["items"][29_996]["ok"]), (&json!(true), &json!(false)));
         let (outcome, peer) = run_on(Scripted::new([refusal(12, 76)]), &line);
         assert_eq!((outcome.unwrap_err().kind, peer.taken.len()), (Kind::Refused, 1));
     }

@@ -3,44 +3,64 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Four, four, mm};
+use super::{Four, four};
 use crate::command::commands;
+use crate::command::frame::store::{Copy, Dump, Get, Ids, List, Restore, Words, ids};
+use crate::command::yrcx::backup::{Records, SHIFTS};
 use crate::command::yrcx::numbers::single;
 use crate::command::yrcx::overwrite::Stored;
-use crate::command::yrcx::position::mm as mm_of;
-use crate::command::yrcx::several::by_number;
 use crate::command::yrcx::single::one_row;
+use crate::command::yrcx::stores::{Kind, Numbered, all_zero, mm as mm_of};
 use crate::controller::yrcx::table;
-use crate::controller::yrcx::value::Key;
+use crate::controller::yrcx::value::{Key, Values};
 
 commands! {
     /// What can be done with shifts.
     pub enum ShiftData {
         /// Read shifts: 5, 0..39
-        Get(Get),
+        Get(Get<Numbered<Shifts>>),
+        /// List those that are defined
+        List(List<Numbered<Shifts>>),
         /// Define a shift: 5 --mm 10,-20,5,-18
         Set(Set),
+        /// Copy one to others
+        Copy(Copy<Numbered<Shifts>>),
+        /// Save to a CSV file
+        Dump(Dump<Numbered<Shifts>>),
+        /// Write from a CSV file
+        Restore(Restore<Numbered<Shifts>>),
     }
 }
 
-by_number! {
-    /// Reads shifts, one after the other.
-    Get "yrcx.shift-data.get" {
-        /// Shifts, 0 to 39: 5, 0..39 or 1,5
-        shifts "SHIFT"
+/// The shifts of the controller.
+#[derive(Debug)]
+pub struct Shifts;
+
+impl Kind for Shifts {
+    type Value = Shift;
+    const WORDS: Words = Words {
+        nouns: ["shift", "shifts"],
+        placeholder: "SHIFT",
+        range: "Shifts, 0 to 39: 5, 0..39 or 1,5",
+        reading: None,
+        writing: None,
+    };
+    const IDS: Ids = ids!("yrcx.shift-data");
+    const RECORDS: &'static Records = &SHIFTS;
+    const HEADINGS: &'static [&'static str] = &["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
+
+    fn value(values: &Values) -> Option<Shift> {
+        Some(Shift { shift_mm: Key::AXES.map(|key| mm_of(values, key)) })
     }
-    gives ShiftGet Shift ["shift", "shifts"],
-    /// Shifts.
-    Shifts,
-    /// Which shift.
-    shift of ShiftReport: |values| ShiftReport { shift_mm: mm_of(values).unwrap_or_default() },
-    columns ["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"],
-    cells |way| way.shift_mm.map(mm);
+
+    fn is_blank(values: &Values) -> bool {
+        all_zero(values, &Key::AXES)
+    }
 }
 
 /// A shift.
-#[derive(Debug, Serialize, JsonSchema)]
-struct ShiftReport {
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Shift {
     /// Of axes 1 to 4; degrees of what turns.
     shift_mm: [f64; 4],
 }
@@ -70,9 +90,12 @@ mod tests {
     fn the_examples_of_the_manual() {
         let set = ["shift-data", "set", "5", "--mm", "10,-20,5,-18"];
         assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
-        assert_eq!(read_example("4.3.4-define", &set)["new"], json!({"position_mm": [10.0, -20.0, 5.0, -18.0]}));
+        assert_eq!(
+            read_example("4.3.4-define", &set)["items"][0]["new"],
+            json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]})
+        );
         let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
-        assert_eq!(read["shifts"], json!([{"shift": 5, "ok": true, "shift_mm": [10.0, -20.0, 5.0, -18.0]}]));
+        assert_eq!(read["items"][0]["value"], json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]}));
     }
 
     #[test]

@@ -1,0 +1,138 @@
+//! Writing rows: what is there is read first, what differs is confirmed, written, and answers for itself.
+
+use super::{Store, Writable, WrittenOf, columns, item, line};
+use crate::command::frame::authority::Authority;
+use crate::command::frame::connection::Family;
+use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::names;
+use crate::command::frame::orders::unwritten;
+use crate::command::robot::item::{Written, WrittenItems, asked};
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::gate::{Change, Confirmation};
+use crate::output::Screen;
+use crate::settings::Robot;
+
+/// How a yes is given to what writes rows.
+pub const fn confirmation<S: Writable>() -> Confirmation {
+    match S::RISK {
+        Risk::Destroy => Confirmation::WhenKnown,
+        Risk::Read | Risk::Write | Risk::Motion => Confirmation::Question,
+    }
+}
+
+/// Completes "This will …".
+pub fn intent<S: Writable>() -> String {
+    format!("overwrite {}", S::WORDS.nouns[1])
+}
+
+/// A row, and what it shall hold.
+pub type Row<S> = (<S as Store>::Key, <S as Writable>::Draft);
+
+/// Whatever a write needs beside its rows.
+pub struct Work<'a, S: Store> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The connection to it.
+    pub link: &'a mut <S::Family as Family>::Link,
+    /// For progress.
+    pub screen: &'a Screen,
+    /// Confirms what is overwritten.
+    pub authority: Authority<'a>,
+}
+
+/// A row that was compared with what the controller holds.
+struct Compared<S: Store> {
+    key: S::Key,
+    old: Option<S::Wire>,
+    new: S::Wire,
+    /// What became of it.
+    outcome: Result<bool, Failure>,
+}
+
+/// Writes rows that do not hold that already. The first failure of the link ends it; each row says what became of it.
+pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
+    let Work { robot, link, screen, authority } = work;
+    let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
+    let Some(answers) = S::read(link, screen, &keys).await.known().map_err(unwritten)? else {
+        for (key, draft) in &rows {
+            S::plan(link, *key, draft).await?;
+        }
+        return Err(unknown());
+    };
+    let mut compared = Vec::with_capacity(rows.len());
+    for ((key, draft), old) in rows.into_iter().zip(answers.rows) {
+        let old = match old {
+            Ok(old) => old,
+            Err(failure) if S::RISK < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::is_undefined(&failure) => None,
+            Err(failure) => return Err(unwritten(failure)),
+        };
+        let new = S::whole(key, &draft, old.as_ref())?;
+        compared.push(Compared::<S> { key, old, new, outcome: Ok(false) });
+    }
+    authority.confirm(&overwritten(&compared)).await?;
+    write_each(link, screen, &mut compared).await;
+    let names = names::of(robot, screen);
+    let items: Vec<_> = compared
+        .into_iter()
+        .map(|Compared { key, old, new, outcome }| {
+            let (is_written, outcome) = match outcome {
+                Ok(is_written) => (is_written, Ok(Some(new))),
+                Err(failure) => (false, Err(failure)),
+            };
+            Written::new(item::<S>(names, key, outcome), old.as_ref().and_then(S::value), is_written)
+        })
+        .collect();
+    Ok(WrittenItems::new(columns::<S>(), items))
+}
+
+/// What is overwritten that a person wrote.
+fn overwritten<S: Writable>(rows: &[Compared<S>]) -> Change {
+    let lost = rows.iter().filter_map(|Compared { key, old, new, .. }| {
+        let old = old.as_ref().filter(|old| *old != new && !S::is_blank(old))?;
+        Some((asked(S::WORDS.nouns[0], &S::name(*key)), line::<S>(old), line::<S>(new)))
+    });
+    let lost: Vec<_> = lost.collect();
+    let [one, many] = S::WORDS.nouns;
+    let change = match lost.len() {
+        0 => return Change::nothing(),
+        1 => Change::new(format!("overwrite a {one}")),
+        count => Change::new(format!("overwrite {count} {many}")),
+    };
+    lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
+}
+
+async fn write_each<S: Writable>(link: &mut <S::Family as Family>::Link, screen: &Screen, rows: &mut [Compared<S>]) {
+    let differing = rows.iter().filter(|row| row.old.as_ref() != Some(&row.new)).count();
+    let mut progress =
+        (differing > 1).then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing as u64));
+    let mut end: Option<Failure> = None;
+    for row in rows.iter_mut().filter(|row| row.old.as_ref() != Some(&row.new)) {
+        row.outcome = match &end {
+            Some(failure) => Err(not_written(failure)),
+            // Ctrl-C ends the work, and what was written is said.
+            None => match interruptible(S::write(link, screen, row.key, &row.new)).await {
+                Ok(outcome) => outcome.map(|()| true),
+                Err(interrupted) => Err(interrupted),
+            },
+        };
+        if let Err(failure) = &row.outcome
+            && failure.kind != Kind::Refused
+            && end.is_none()
+        {
+            end = Some(failure.clone());
+        }
+        if let Some(progress) = &mut progress {
+            progress.advance(1);
+        }
+    }
+}
+
+/// A row behind the one that ended the work.
+fn not_written(failure: &Failure) -> Failure {
+    let kind = if failure.kind == Kind::OutcomeUnknown { Kind::NoAnswer } else { failure.kind };
+    Failure { kind, message: format!("not written: {}", failure.message), ..failure.clone() }
+        .hint("the same command goes on: what is stored already is not written again")
+}

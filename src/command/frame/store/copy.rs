@@ -1,0 +1,65 @@
+//! `copy`: what one row holds into others.
+
+use clap::Args;
+
+use super::change::{Work, confirmation, intent, write};
+use super::get::Rows;
+use super::{Writable, WrittenOf};
+use crate::command::frame::command::{Command, Context};
+use crate::command::frame::dry_run::Known as _;
+use crate::command::robot::item::asked;
+use crate::controller::Risk;
+use crate::failure::{Failure, Kind};
+use crate::gate::Confirmation;
+
+/// Copies a row to another one, or to several.
+#[derive(Debug, Args)]
+#[command(after_help = S::WORDS.writing)]
+pub struct Copy<S: Writable> {
+    /// Row to copy
+    #[arg(value_name = "FROM", value_parser = Rows::<S>::parse)]
+    from: Rows<S>,
+    /// Rows to write
+    #[arg(required = true, value_name = "TO", value_delimiter = ',', value_parser = Rows::<S>::parse)]
+    to: Vec<Rows<S>>,
+}
+
+impl<S: Writable> Command for Copy<S> {
+    type Family = S::Family;
+    type Report = WrittenOf<S>;
+    const ID: &'static str = S::IDS.copy;
+    const RISK: Risk = S::RISK;
+    const CONFIRMATION: Confirmation = confirmation::<S>();
+
+    fn intent(&self) -> String {
+        intent::<S>()
+    }
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+        let Context { robot, link, screen, authority, .. } = context;
+        let one = S::WORDS.nouns[0];
+        let [from] = self.from.0[..] else {
+            return Err(
+                Failure::usage(format!("a single {one} can be copied")).hint("name one row, then where it goes")
+            );
+        };
+        let name = asked(one, &S::name(from));
+        let to = Rows::of(&self.to);
+        if to.contains(&from) {
+            return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("name another row"));
+        }
+        // A dry run knows no values: every field stays open.
+        let mut texts = vec![None; S::fields().len()];
+        if let Some(answers) = S::read(link, screen, &[from]).await.known()? {
+            let held = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {
+                let message = format!("{name} is not defined: there is nothing to copy");
+                Failure::new(Kind::ConditionNotMet, message).hint("nothing was written")
+            })?;
+            texts = S::texts(&held).into_iter().map(Some).collect();
+        }
+        let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
+        let draft = |key: S::Key| Ok((key, S::draft(key, &texts).map_err(Failure::local)?));
+        let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
+        write(Work::<S> { robot, link, screen, authority }, rows).await?.or_only_failure()
+    }
+}

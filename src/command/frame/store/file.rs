@@ -1,0 +1,195 @@
+//! `dump` and `restore`: rows as a CSV file for spreadsheets.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::change::{Work, confirmation, intent, write};
+use super::get::Rows;
+use super::{Store, Writable, WrittenOf, read_keys, sheet};
+use crate::command::frame::command::{Command, Context};
+use crate::command::frame::items::{ItemError, verdict};
+use crate::command::frame::report::Report;
+use crate::command::frame::sheet::SheetManner;
+use crate::command::frame::text_files;
+use crate::command::robot::item::asked;
+use crate::controller::Risk;
+use crate::controller::findings::Findings;
+use crate::controller::sheet::Sheet;
+use crate::failure::Failure;
+use crate::gate::Confirmation;
+use crate::output::view::View;
+
+/// Saves rows to a CSV file.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The file has a row per line: its name, then its values, each in a column of its own. `restore` writes \
+                        them back. Empty rows are left out. With --update, a file that exists keeps its own columns \
+                        (names that begin with comment) and its order."
+)]
+pub struct Dump<S: Store> {
+    /// A new CSV file
+    file: PathBuf,
+    #[arg(required = S::all().is_empty(), value_name = S::WORDS.placeholder, value_delimiter = ',',
+        value_parser = Rows::<S>::parse, help = S::WORDS.range)]
+    rows: Vec<Rows<S>>,
+    #[command(flatten)]
+    manner: SheetManner,
+}
+
+impl<S: Store> Command for Dump<S> {
+    type Family = S::Family;
+    type Report = Dumped;
+    const ID: &'static str = S::IDS.dump;
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
+        let Context { link, screen, several, .. } = context;
+        let target = self.manner.target(self.file.clone(), several)?;
+        let keys = Rows::of(&self.rows);
+        let answers = S::read(link, screen, &keys).await?;
+        let (mut rows, mut errors) = (Vec::new(), Vec::new());
+        for (key, outcome) in keys.iter().zip(answers.rows) {
+            let name = S::name(*key);
+            match outcome {
+                Ok(Some(wire)) if !S::is_blank(&wire) => rows.push([vec![name], S::texts(&wire)].concat()),
+                Ok(_) => {}
+                Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
+            }
+        }
+        let file = target.write(&sheet::<S>(), &rows, canonical::<S>)?;
+        Ok(Dumped { file, saved: rows.len(), failed: errors })
+    }
+}
+
+/// One spelling of a row.
+fn canonical<S: Store>(text: &str) -> String {
+    match S::keys(text).as_deref() {
+        Ok([key]) => S::name(*key),
+        _ => text.trim().to_owned(),
+    }
+}
+
+/// Where rows went.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Dumped {
+    file: String,
+    /// How many rows it holds.
+    saved: usize,
+    /// Rows that were not read.
+    failed: Vec<ItemError>,
+}
+
+impl Report for Dumped {
+    fn view(&self) -> View {
+        View::fields([("file", self.file.as_str().into()), ("rows", self.saved.into())])
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        verdict(self.saved + self.failed.len(), &self.failed)
+    }
+}
+
+/// Writes rows from a CSV file.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "All of the file is checked before anything is sent. A value without a column stays as it is on the \
+                        controller. What the controller holds already is not written: the same command goes on where one \
+                        was cut off. Columns whose names begin with comment are yours."
+)]
+pub struct Restore<S: Writable> {
+    /// What `dump` wrote, or a table like it; - is stdin
+    file: PathBuf,
+    #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', value_parser = Rows::<S>::parse,
+        help = "Only these")]
+    rows: Vec<Rows<S>>,
+}
+
+impl<S: Writable> Command for Restore<S> {
+    type Family = S::Family;
+    type Report = WrittenOf<S>;
+    const ID: &'static str = S::IDS.restore;
+    const RISK: Risk = S::RISK;
+    const CONFIRMATION: Confirmation = confirmation::<S>();
+
+    fn intent(&self) -> String {
+        intent::<S>()
+    }
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+        let Context { robot, link, screen, authority, .. } = context;
+        let name = text_files::shown(&self.file);
+        let mut findings = Findings::default();
+        let mut rows = parse::<S>(&text_files::read(&self.file)?, &mut findings);
+        if findings.errors() > 0 {
+            return Err(text_files::faulty(&name, &findings.into_errors()));
+        }
+        if !self.rows.is_empty() {
+            let chosen = Rows::of(&self.rows);
+            rows.retain(|(key, _)| chosen.contains(key));
+        }
+        if rows.is_empty() {
+            let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
+            return Err(Failure::usage(message).hint("`dump FILE` writes such a file"));
+        }
+        write(Work::<S> { robot, link, screen, authority }, rows).await
+    }
+}
+
+/// Rows of a file, with what each shall hold.
+fn parse<S: Writable>(bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
+    let columns = sheet::<S>();
+    let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
+    let expected = format!("the columns are {}", names.join(", "));
+    let mut rows = Vec::new();
+    let Some(sheet) = Sheet::read(bytes, &expected, findings) else { return rows };
+    let places = sheet.columns(&names, &expected, findings);
+    let Some(of_name) = places[0] else {
+        findings.error(sheet.end_of_head(), "column name is missing".to_owned(), Some(expected));
+        return rows;
+    };
+    let mut seen = HashMap::new();
+    for row in sheet.rows() {
+        let key = match read_keys::<S>(row.text(of_name)).as_deref() {
+            Ok([key]) => *key,
+            Ok(_) => {
+                findings.error(row.place(of_name), "one row per line".to_owned(), None);
+                continue;
+            }
+            Err(why) => {
+                findings.error(row.place(of_name), why, None);
+                continue;
+            }
+        };
+        if let Some(other) = seen.insert(key, row.line) {
+            findings.error(row.place(of_name), format!("{} is in line {other} already", S::name(key)), None);
+        }
+        let mut texts = Vec::new();
+        for (column, place) in columns.iter().zip(&places).skip(1) {
+            texts.push(match place {
+                None => None,
+                Some(at) if column.is_number => match sheet.number(row, *at) {
+                    Ok(number) if !number.is_empty() => Some(number.into_owned()),
+                    Ok(_) => {
+                        let message = format!("{} is empty; without its column, it stays as it is", column.name);
+                        findings.error(row.place(*at), message, None);
+                        None
+                    }
+                    Err(why) => {
+                        findings.error(row.place(*at), format!("{}: {why}", column.name), None);
+                        None
+                    }
+                },
+                Some(at) => Some(row.string(*at).to_owned()),
+            });
+        }
+        let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
+        match S::draft(key, &texts) {
+            Ok(draft) => rows.push((key, draft)),
+            Err(why) => findings.error(row.place(usize::MAX), why, None),
+        }
+    }
+    rows
+}

@@ -1,0 +1,103 @@
+//! `get`, `list` and what `watch` repeats.
+
+use std::marker::PhantomData;
+
+use clap::Args;
+
+use super::{ItemsOf, Store, columns, item, read_keys};
+use crate::command::frame::command::{Command, Context};
+use crate::command::frame::names;
+use crate::command::frame::watch::{Watchable, Watched};
+use crate::command::robot::item::{Item, Items};
+use crate::controller::typed;
+use crate::failure::Failure;
+
+/// Rows as typed.
+#[derive(Debug)]
+pub struct Rows<S: Store>(pub Vec<S::Key>);
+
+impl<S: Store> Clone for Rows<S> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<S: Store> Rows<S> {
+    /// Reads them.
+    ///
+    /// # Errors
+    /// Why they name no rows.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        read_keys::<S>(text).map(Self)
+    }
+
+    /// All that were given, each once; without any, all rows.
+    pub fn of(given: &[Self]) -> Vec<S::Key> {
+        if given.is_empty() { S::all() } else { typed::once(given.iter().flat_map(|rows| rows.0.iter().copied())) }
+    }
+}
+
+/// Reads rows.
+#[derive(Debug, Args)]
+#[command(after_help = S::WORDS.reading)]
+pub struct Get<S: Store> {
+    #[arg(required = S::all().is_empty(), value_name = S::WORDS.placeholder, value_delimiter = ',',
+        value_parser = Rows::<S>::parse, help = S::WORDS.range, add = S::COMPLETE)]
+    rows: Vec<Rows<S>>,
+}
+
+impl<S: Store> Command for Get<S> {
+    type Family = S::Family;
+    type Report = ItemsOf<S>;
+    const ID: &'static str = S::IDS.get;
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+        read::<S>(context, &Rows::of(&self.rows)).await?.or_only_failure()
+    }
+}
+
+impl<S: Store> Watchable for Get<S> {
+    const WATCH: &'static str = S::IDS.watch;
+    const WATCHED: Watched = Watched::ITEMS;
+}
+
+/// Reads all rows, and shows those that hold something.
+#[derive(Debug, Args)]
+pub struct List<S: Store> {
+    /// Only these
+    #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', required = S::all().is_empty(),
+        value_parser = Rows::<S>::parse)]
+    rows: Vec<Rows<S>>,
+    /// Empty rows as well
+    #[arg(long)]
+    empty: bool,
+    #[arg(skip)]
+    of: PhantomData<S>,
+}
+
+impl<S: Store> Command for List<S> {
+    type Family = S::Family;
+    type Report = ItemsOf<S>;
+    const ID: &'static str = S::IDS.list;
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
+        let Context { robot, link, screen, .. } = context;
+        let keys = Rows::of(&self.rows);
+        let answers = S::read(link, screen, &keys).await?;
+        let names = names::of(robot, screen);
+        let held = keys.into_iter().zip(answers.rows).filter(|(_, outcome)| {
+            let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(S::is_blank);
+            self.empty || !outcome.as_ref().is_ok_and(is_empty)
+        });
+        let items: Vec<Item<S::Value, S::More>> = held.map(|(key, outcome)| item::<S>(names, key, outcome)).collect();
+        Ok(Items::new(columns::<S>(), items))
+    }
+}
+
+async fn read<S: Store>(context: Context<'_, S::Family>, keys: &[S::Key]) -> Result<ItemsOf<S>, Failure> {
+    let Context { robot, link, screen, .. } = context;
+    let answers = S::read(link, screen, keys).await?;
+    let names = names::of(robot, screen);
+    let items = keys.iter().zip(answers.rows).map(|(key, outcome)| item::<S>(names, *key, outcome));
+    Ok(Items::new(columns::<S>(), items.collect()).asked(answers.asked))
+}

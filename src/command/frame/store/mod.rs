@@ -1,0 +1,302 @@
+//! Tables of a controller. A family declares what a table is ([`Store`], [`Writable`]); `get`, `list`, `watch`, `set`, `copy`,
+//! `dump` and `restore` follow from that, the same for every table of every family.
+
+mod change;
+mod copy;
+mod file;
+mod get;
+mod set;
+
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use self::copy::Copy;
+pub use self::file::{Dump, Restore};
+pub use self::get::{Get, List};
+pub use self::set::Set;
+use super::connection::Family;
+use super::kind::ValueKind;
+use super::names as labels;
+use crate::command::robot::item::{Columns, Item, Items, WrittenItems};
+use crate::controller::Risk;
+use crate::controller::names::{Kind, Names};
+use crate::controller::sheet::Column;
+use crate::failure::Failure;
+use crate::output::Screen;
+use crate::output::view::Cell;
+
+/// What a row holds by name, for tables and files.
+#[derive(Debug, Clone, Copy)]
+pub struct Field {
+    /// Column of a file: `speed_mm_s`.
+    pub name: &'static str,
+    /// Heading of a table: `speed (mm/s)`.
+    pub heading: &'static str,
+    /// Whether it is a number.
+    pub is_number: bool,
+}
+
+/// Words of a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Words {
+    /// One row, and several: `counter`, `counters`. The first is `kind` in reports.
+    pub nouns: [&'static str; 2],
+    /// Placeholder of a row on the command line: `N`, `POINT`.
+    pub placeholder: &'static str,
+    /// Which rows there are, for the help: `1 to 99: 5, CN05 or 1-10, or a name`.
+    pub range: &'static str,
+    /// Further help of commands that read.
+    pub reading: Option<&'static str>,
+    /// Further help of commands that write.
+    pub writing: Option<&'static str>,
+}
+
+/// Names of the reports of a table's commands; a command that a table does not have has none.
+#[derive(Debug, Clone, Copy)]
+pub struct Ids {
+    /// Of `get`: `toyo.counter.get`.
+    pub get: &'static str,
+    /// Of `list`.
+    pub list: &'static str,
+    /// Of `watch`.
+    pub watch: &'static str,
+    /// Of `set`.
+    pub set: &'static str,
+    /// Of `copy`.
+    pub copy: &'static str,
+    /// Of `dump`.
+    pub dump: &'static str,
+    /// Of `restore`.
+    pub restore: &'static str,
+}
+
+/// The ids of a noun: `ids!("toyo.counter")`.
+macro_rules! ids {
+    ($noun:literal) => {
+        $crate::command::frame::store::Ids {
+            get: concat!($noun, ".get"),
+            list: concat!($noun, ".list"),
+            watch: concat!($noun, ".watch"),
+            set: concat!($noun, ".set"),
+            copy: concat!($noun, ".copy"),
+            dump: concat!($noun, ".dump"),
+            restore: concat!($noun, ".restore"),
+        }
+    };
+}
+pub(crate) use ids;
+
+/// Declares the commands of a table: the verbs that every table has, then its own.
+macro_rules! table_commands {
+    ($(#[$meta:meta])* $name:ident of $store:ty { $($(#[$doc:meta])* $variant:ident($arguments:ty),)* }) => {
+        $crate::command::commands! {
+            $(#[$meta])*
+            pub enum $name {
+                /// Read by number or range
+                Get($crate::command::frame::store::Get<$store>),
+                /// List all that hold something
+                List($crate::command::frame::store::List<$store>),
+                /// Set one: its number, then its values
+                Set($crate::command::frame::store::Set<$store>),
+                /// Copy one to others: 5 6-8
+                Copy($crate::command::frame::store::Copy<$store>),
+                /// Save to a CSV file
+                Dump($crate::command::frame::store::Dump<$store>),
+                /// Write from a CSV file
+                Restore($crate::command::frame::store::Restore<$store>),
+                $($(#[$doc])* $variant($arguments),)*
+            }
+        }
+    };
+}
+pub(crate) use table_commands;
+
+/// What each row came to: what it holds, `None` where it is not defined, or why it was not read.
+#[derive(Debug)]
+pub struct Answers<W> {
+    /// One for each row, in the order asked for.
+    pub rows: Vec<Result<Option<W>, Failure>>,
+    /// How many were asked for: those behind would fail alike.
+    pub asked: usize,
+}
+
+impl<W> Answers<W> {
+    /// Of rows that all were asked for, and hold something where they were read.
+    pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
+        Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
+    }
+}
+
+/// A table of a controller: its rows, and how they are read.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Store: Debug + Send + Sync + Sized + 'static {
+    /// The family that has it.
+    type Family: Family;
+    /// What tells a row from the others.
+    type Key: Debug + Clone + std::marker::Copy + PartialEq + Eq + Hash + Send + Sync;
+    /// What a row holds, as the protocol has it.
+    type Wire: Debug + Clone + PartialEq;
+    /// The same for reports.
+    type Value: Debug + Clone + Serialize + JsonSchema;
+    /// What the family adds to an item: [`Plain`](crate::command::robot::item::Plain) where that is nothing.
+    type More: Debug + Clone + Serialize + JsonSchema;
+
+    /// Its words.
+    const WORDS: Words;
+    /// Names of its reports.
+    const IDS: Ids;
+    /// Kind of the names that people give to rows.
+    const LABELS: Option<Kind> = None;
+    /// What completes a row.
+    const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
+
+    /// Rows as typed: one, or a range.
+    ///
+    /// # Errors
+    /// Why it names no row.
+    fn keys(text: &str) -> Result<Vec<Self::Key>, String>;
+
+    /// All rows, where that is few enough to read them unasked; none otherwise.
+    fn all() -> Vec<Self::Key> {
+        Vec::new()
+    }
+
+    /// A row that is always there: it stands for a name that is not looked up yet.
+    fn any() -> String {
+        Self::all().first().map_or_else(String::new, |key| Self::name(*key))
+    }
+
+    /// A row as it is typed.
+    fn name(key: Self::Key) -> String;
+
+    /// What a row holds, by name.
+    fn fields() -> Vec<Field>;
+
+    /// The text of each field.
+    fn texts(wire: &Self::Wire) -> Vec<String>;
+
+    /// What a row holds, for reports; nothing where that fits no type.
+    fn value(wire: &Self::Wire) -> Option<Self::Value>;
+
+    /// What the family adds to the item of a row; without `wire`, that was not read, or is not defined.
+    fn more(key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
+
+    /// Whether a row holds nothing that anybody wrote.
+    fn is_blank(_wire: &Self::Wire) -> bool {
+        false
+    }
+
+    /// Whether a refusal to report a row says that it is not defined.
+    fn is_undefined(_failure: &Failure) -> bool {
+        false
+    }
+
+    /// Reads rows; each answers for itself. A dry run notes the questions and fails with
+    /// [`unknown`](super::dry_run::unknown).
+    ///
+    /// # Errors
+    /// What ends the whole, where nothing was read.
+    async fn read(
+        link: &mut <Self::Family as Family>::Link,
+        screen: &Screen,
+        keys: &[Self::Key],
+    ) -> Result<Answers<Self::Wire>, Failure>;
+}
+
+/// A table whose rows can be written.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait Writable: Store {
+    /// What a row shall hold, as far as that was given.
+    type Draft: Debug + Clone;
+
+    /// Write, or Destroy where a person wrote or taught what is overwritten.
+    const RISK: Risk;
+
+    /// What a row shall hold, from the text of each field; a field without text stays.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    fn draft(key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
+
+    /// The same from words of a command line: all values in their order, or some as `NAME=VALUE`.
+    ///
+    /// # Errors
+    /// Why that cannot be.
+    fn typed(key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
+        set::typed::<Self>(key, words)
+    }
+
+    /// What the row will hold, where `old` is what it holds.
+    ///
+    /// # Errors
+    /// Where what stays cannot be written, or is not known.
+    fn whole(key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire, Failure>;
+
+    /// Notes in a dry run what writes a row, and reads it back.
+    async fn plan(
+        link: &mut <Self::Family as Family>::Link,
+        key: Self::Key,
+        draft: &Self::Draft,
+    ) -> Result<(), Failure>;
+
+    /// Writes a row.
+    async fn write(
+        link: &mut <Self::Family as Family>::Link,
+        screen: &Screen,
+        key: Self::Key,
+        new: &Self::Wire,
+    ) -> Result<(), Failure>;
+}
+
+/// The report of reads.
+type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
+/// The report of writes.
+type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
+
+/// The item of a row.
+fn item<S: Store>(names: &Names, key: S::Key, outcome: Result<Option<S::Wire>, Failure>) -> Item<S::Value, S::More> {
+    let name = S::name(key);
+    let label = S::LABELS.and_then(|kind| labels::label(names, kind, &name));
+    let wire = outcome.as_ref().ok().and_then(Option::as_ref);
+    let (cells, more) = (wire.map(cells::<S>).unwrap_or_default(), S::more(key, wire));
+    let value = outcome.map(|wire| wire.as_ref().and_then(S::value));
+    Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
+}
+
+fn cells<S: Store>(wire: &S::Wire) -> Vec<Cell> {
+    let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
+    S::fields().into_iter().zip(S::texts(wire)).map(cell).collect()
+}
+
+/// Headings of a table of rows.
+fn columns<S: Store>() -> Columns {
+    let [one, many] = S::WORDS.nouns;
+    Columns { name: one, values: S::fields().iter().map(|field| field.heading).collect(), empty: many }
+}
+
+/// Columns of a file: the row, its fields, and the name that people gave it.
+fn sheet<S: Store>() -> Vec<Column> {
+    let column = |field: Field| {
+        if field.is_number { Column::number(field.name) } else { Column::text(field.name) }
+    };
+    std::iter::once(Column::text("name")).chain(S::fields().into_iter().map(column)).collect()
+}
+
+/// What a row holds in a line: `250.0`, or `limit=2.50 load=1.00`.
+fn line<S: Store>(wire: &S::Wire) -> String {
+    let (fields, texts) = (S::fields(), S::texts(wire));
+    if let [text] = &texts[..] {
+        return text.clone();
+    }
+    let pairs = fields.iter().zip(&texts).map(|(field, text)| format!("{}={text}", field.name));
+    pairs.collect::<Vec<_>>().join(" ")
+}
+
+/// Rows as typed, with names where people gave some.
+fn read_keys<S: Store>(text: &str) -> Result<Vec<S::Key>, String> {
+    let Some(kind) = S::LABELS else { return S::keys(text) };
+    labels::read(&[kind], &S::any(), text, S::keys)
+}

@@ -1,0 +1,97 @@
+//! `set`: one row.
+
+use clap::Args;
+
+use super::change::{Work, confirmation, intent, write};
+use super::{Store, Writable, WrittenOf, read_keys};
+use crate::command::frame::command::{Command, Context};
+use crate::command::robot::item::asked;
+use crate::controller::Risk;
+use crate::controller::nearest::nearest;
+use crate::failure::Failure;
+use crate::gate::Confirmation;
+
+/// A row, and what it shall hold.
+#[derive(Debug, Args)]
+#[command(after_help = S::WORDS.writing)]
+pub struct Set<S: Writable> {
+    #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
+    row: One<S>,
+    /// All values in their order, or some as NAME=VALUE, which keeps the others
+    #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true)]
+    values: Vec<String>,
+}
+
+/// A single row.
+#[derive(Debug)]
+struct One<S: Store>(S::Key);
+
+impl<S: Store> Clone for One<S> {
+    fn clone(&self) -> Self {
+        Self(self.0)
+    }
+}
+
+fn one<S: Store>(text: &str) -> Result<One<S>, String> {
+    match read_keys::<S>(text)?[..] {
+        [key] => Ok(One(key)),
+        _ => Err(format!("'{text}' names several {}; name one", S::WORDS.nouns[1])),
+    }
+}
+
+impl<S: Writable> Command for Set<S> {
+    type Family = S::Family;
+    type Report = WrittenOf<S>;
+    const ID: &'static str = S::IDS.set;
+    const RISK: Risk = S::RISK;
+    const CONFIRMATION: Confirmation = confirmation::<S>();
+
+    fn intent(&self) -> String {
+        intent::<S>()
+    }
+
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
+        let Context { robot, link, screen, authority, .. } = context;
+        let key = self.row.0;
+        let draft = S::typed(key, &self.values)?;
+        write(Work::<S> { robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
+    }
+}
+
+/// What a row shall hold from words: all values in their order, or some as `NAME=VALUE`.
+pub fn typed<S: Writable>(key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
+    let fields = S::fields();
+    let row = asked(S::WORDS.nouns[0], &S::name(key));
+    let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
+    let usage = match &names[..] {
+        [_] => "give one value".to_owned(),
+        names => format!("give all values in this order, or some by name: {}", names.join("=… ") + "=…"),
+    };
+    let wrong = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
+    let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
+    let named = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
+    if words.iter().any(named) {
+        for word in words {
+            let (name, value) = word.split_once('=').ok_or_else(|| wrong(format!("'{word}' has no name")))?;
+            // `speed` for `speed_mm_s`.
+            let is_name = |field: &str| {
+                field.eq_ignore_ascii_case(name)
+                    || field.split_once('_').is_some_and(|(first, _)| first.eq_ignore_ascii_case(name))
+            };
+            let exact = names.iter().position(|field| field.eq_ignore_ascii_case(name));
+            let at = exact.or_else(|| names.iter().position(|field| is_name(field))).ok_or_else(|| {
+                let near = nearest(name, names.iter().copied());
+                let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+                wrong(format!("there is no value '{}'{near}", name.escape_debug()))
+            })?;
+            if texts[at].replace(value).is_some() {
+                return Err(wrong(format!("{name} is given twice")));
+            }
+        }
+    } else if words.len() == fields.len() {
+        texts = words.iter().map(|word| Some(word.as_str())).collect();
+    } else {
+        return Err(wrong(format!("{} values needed, {} given", fields.len(), words.len())));
+    }
+    S::draft(key, &texts).map_err(wrong)
+}

@@ -1,0 +1,223 @@
+//! What the controller stores by number (4.3, 4.4.1) as tables: a declaration ([`Kind`]) each. How rows are read and written
+//! stands here, once.
+
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::backup::Records;
+use super::link::{Link, Yrcx};
+use super::numbers::{Numbers, named};
+use super::several::{ask_each, is_undefined};
+use crate::command::ValueKind;
+use crate::command::frame::dry_run::Reason;
+use crate::command::frame::store::{Answers, Field, Ids, Store, Words, Writable};
+use crate::command::robot::item::Plain;
+use crate::controller::Risk;
+use crate::controller::names::Kind as Label;
+use crate::controller::yrcx::order::Order;
+use crate::controller::yrcx::value::{Key, Value, Values};
+use crate::failure::Failure;
+use crate::output::Screen;
+
+/// What a table is, and what of it is reported.
+pub trait Kind: Debug + Send + Sync + 'static {
+    /// What one row holds, for reports.
+    type Value: Debug + Clone + Serialize + JsonSchema;
+    /// Its words.
+    const WORDS: Words;
+    /// Names of its reports.
+    const IDS: Ids;
+    /// Its commands and the fields of a row, as backups have them.
+    const RECORDS: &'static Records;
+    /// Headings of the fields.
+    const HEADINGS: &'static [&'static str];
+    /// Whether a person wrote what is overwritten.
+    const RISK: Risk = Risk::Destroy;
+    /// Whether there are few enough rows to read all of them unasked.
+    const IS_SMALL: bool = true;
+    /// Kind of the names that people give to rows.
+    const LABELS: Option<Label> = None;
+    /// What completes a row.
+    const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
+
+    /// What a row holds.
+    fn value(values: &Values) -> Option<Self::Value>;
+
+    /// Whether a row holds nothing that anybody wrote.
+    fn is_blank(_values: &Values) -> bool {
+        false
+    }
+}
+
+/// A table of `kind` as a store.
+#[derive(Debug)]
+pub struct Numbered<K>(PhantomData<K>);
+
+/// What a row holds.
+#[derive(Debug, Clone)]
+pub struct Row {
+    values: Values,
+    /// By the columns behind the number.
+    texts: Vec<String>,
+}
+
+/// Rows are the same where they read the same.
+impl PartialEq for Row {
+    fn eq(&self, other: &Self) -> bool {
+        self.texts == other.texts
+    }
+}
+
+impl Row {
+    fn new<K: Kind>(number: i32, values: Values) -> Self {
+        let mut texts = K::RECORDS.row(number, &values);
+        texts.remove(0);
+        Self { values, texts }
+    }
+}
+
+fn key<K: Kind>() -> Key {
+    K::RECORDS.columns[0].1
+}
+
+impl<K: Kind> Store for Numbered<K> {
+    type Family = Yrcx;
+    type Key = i32;
+    type Wire = Row;
+    type Value = K::Value;
+    type More = Plain;
+
+    const WORDS: Words = K::WORDS;
+    const IDS: Ids = K::IDS;
+    const LABELS: Option<Label> = K::LABELS;
+    const COMPLETE: ValueKind = K::COMPLETE;
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[K::RECORDS.parse(text)?]))
+    }
+
+    fn all() -> Vec<i32> {
+        if K::IS_SMALL { K::RECORDS.all().expect("the numbers of every table are numbers") } else { Vec::new() }
+    }
+
+    fn any() -> String {
+        named(K::RECORDS.read, key::<K>(), 0)
+    }
+
+    fn name(number: i32) -> String {
+        named(K::RECORDS.read, key::<K>(), number)
+    }
+
+    fn fields() -> Vec<Field> {
+        let fields = K::RECORDS.columns[1..].iter().zip(K::HEADINGS);
+        fields.map(|((name, key), heading)| Field { name, heading, is_number: is_number(*key) }).collect()
+    }
+
+    fn texts(row: &Row) -> Vec<String> {
+        row.texts.clone()
+    }
+
+    fn value(row: &Row) -> Option<K::Value> {
+        K::value(&row.values)
+    }
+
+    fn more(_number: i32, _row: Option<&Row>) -> Plain {
+        Plain {}
+    }
+
+    fn is_blank(row: &Row) -> bool {
+        K::is_blank(&row.values)
+    }
+
+    fn is_undefined(failure: &Failure) -> bool {
+        is_undefined(failure)
+    }
+
+    async fn read(link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
+        let order = |number: &i32| Ok(link.draft(K::RECORDS.read)?.with(key::<K>(), *number).build()?);
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
+        let rows = numbers.iter().zip(answers.outcomes);
+        let rows = rows.map(|(number, outcome)| outcome.map(|values| Some(Row::new::<K>(*number, values))));
+        Ok(Answers { rows: rows.collect(), asked: answers.asked })
+    }
+}
+
+/// Whether a field is a number.
+fn is_number(key: Key) -> bool {
+    !matches!(key, Key::Unit | Key::HandSystem | Key::Comment)
+}
+
+/// What a row shall hold: the text of each field, where it is given.
+type Draft = Vec<Option<String>>;
+
+impl<K: Kind> Writable for Numbered<K> {
+    type Draft = Draft;
+
+    const RISK: Risk = K::RISK;
+
+    fn draft(number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
+        let draft: Draft = texts.iter().map(|text| text.map(ToOwned::to_owned)).collect();
+        if let Some(texts) = draft.iter().cloned().collect::<Option<Vec<String>>>() {
+            stored::<K>(number, texts).map_err(|failure| failure.message)?;
+        }
+        Ok(draft)
+    }
+
+    fn whole(number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+        let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
+            (Some(text), _) => Ok(text.clone()),
+            (None, Some(old)) => Ok(old.texts[at].clone()),
+            (None, None) => {
+                let (one, field) = (Self::WORDS.nouns[0], K::RECORDS.columns[at + 1].0);
+                let message = format!("{one} {number} is not defined: there is no {field} to keep");
+                Err(Failure::usage(message).hint("nothing was written; give all values"))
+            }
+        };
+        let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
+        let (_, values) = stored::<K>(number, texts)?;
+        Ok(Row::new::<K>(number, values))
+    }
+
+    async fn plan(link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
+        let reason = Reason::default().depending_on("whether it differs from what is there");
+        // Two rows that agree in what is given alone.
+        let filled = |other: &str| draft.iter().map(|text| text.clone().unwrap_or_else(|| other.to_owned())).collect();
+        match (stored::<K>(number, filled("1")), stored::<K>(number, filled("2"))) {
+            (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
+            _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
+        }
+        Ok(())
+    }
+
+    async fn write(link: &mut Link, _screen: &Screen, number: i32, new: &Row) -> Result<(), Failure> {
+        let (order, _) = stored::<K>(number, new.texts.clone())?;
+        link.ask(&order).await.map(drop)
+    }
+}
+
+/// The order that stores a row, and what an answer that reads it would hold.
+fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), Failure> {
+    let name = named(K::RECORDS.read, key::<K>(), number);
+    let store = K::RECORDS.store(&std::iter::once(name).chain(texts).collect())?;
+    let values = store.wanted_values();
+    Ok((store.write, values))
+}
+
+/// A whole number of an answer.
+pub fn int(values: &Values, key: Key) -> i32 {
+    values.int(key).unwrap_or_default()
+}
+
+/// Thousandths of an answer in millimetres.
+pub fn mm(values: &Values, key: Key) -> f64 {
+    f64::from(int(values, key)) / 1000.0
+}
+
+/// Whether all of these fields are zero.
+pub fn all_zero(values: &Values, keys: &[Key]) -> bool {
+    keys.iter().all(|key| values.value(*key).is_none_or(|value| *value == Value::Int(0)))
+}
