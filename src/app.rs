@@ -141,7 +141,8 @@ const ROOM: usize = 20;
 fn has_room() -> Result<(), Failure> {
     let pairs: Result<Vec<_>, _> = (0..ROOM / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
     pairs.map(|_| ()).map_err(|error| {
-        Failure::io("start", &error).hint(format!("at least {ROOM} more open files must be allowed: see `ulimit -n`"))
+        Failure::io("start", &error)
+            .hint(format!("too few open files are allowed: {ROOM} more are needed. See `ulimit -n`"))
     })
 }
 

@@ -33,7 +33,7 @@ pub const LONG_VERSION: &str = concat!(
 
 /// Talk to industrial robot controllers from a terminal or a script.
 ///
-/// Without a robot at hand, add --sim: every controller has a built-in simulator.
+/// If you have no robot, add --sim: every family has a built-in simulator.
 #[derive(Debug, Parser)]
 #[command(
     name = "armctl",
@@ -122,26 +122,26 @@ impl FromArgMatches for FamilyWord {
 #[derive(Debug, Clone, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Globals {
-    /// Talk to the built-in simulator, in this process
+    /// Use the built-in simulator, in this process
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
-    /// Talk to the controller at URL, such as udp://192.168.1.31, or at 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
+    /// Controller by URL, such as udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<Given>,
-    /// Talk to robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
+    /// Robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
     #[arg(short, long, global = true, value_name = "NAME", value_delimiter = ',', add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
-    /// Talk to every robot of the inventory
+    /// All robots of the inventory
     #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
     pub all: bool,
-    /// Talk to the robots of the inventory with this tag (repeatable)
+    /// Robots of the inventory with this tag (repeatable)
     #[arg(long, global = true, hide_short_help = true, value_name = "TAG", add = ValueKind::Tag, help_heading = "Which robot")]
     pub tag: Vec<String>,
     /// The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
     pub config: Option<PathBuf>,
 
-    /// How to print data (ARMCTL_OUTPUT)
+    /// Output format (ARMCTL_OUTPUT)
     #[arg(
         short = 'o',
         long = "output",
@@ -155,7 +155,7 @@ pub struct Globals {
     /// Print JSON (the same as -o json)
     #[arg(long, global = true, help_heading = "Output", conflicts_with = "format", overrides_with = "json")]
     pub json: bool,
-    /// Print what a jq filter makes of the JSON
+    /// Print the result of a jq filter over the JSON
     #[arg(
         long,
         global = true,
@@ -187,20 +187,20 @@ pub struct Globals {
     /// No colour (the same as --color never)
     #[arg(long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "color")]
     pub no_color: bool,
-    /// Print long texts as they are, without the pager (PAGER)
+    /// Print long texts without the pager (PAGER)
     #[arg(long, global = true, hide_short_help = true, help_heading = "Output")]
     pub no_pager: bool,
     /// Record the traffic: a .pcapng file for Wireshark, or - for text on stderr
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
     pub trace: Option<PathBuf>,
 
-    /// Answer yes to the question before what moves, deletes or overwrites
+    /// Confirm commands that move, delete or overwrite
     #[arg(long, global = true, help_heading = "Safety")]
     pub yes: bool,
     /// Send nothing; print what would be sent
     #[arg(long, global = true, help_heading = "Safety")]
     pub dry_run: bool,
-    /// What Ctrl-C does to a motion
+    /// Effect of Ctrl-C during a motion
     #[arg(
         long,
         global = true,

@@ -96,10 +96,10 @@ const LOOKS: usize = 2000;
 fn what_it_is_not_for_is_refused() {
     let desk = Desk::new("yerc");
     for (words, part) in [
-        (&["teach", "yerc", "--dry-run"][..], "moves as keys order"),
-        (&["teach", "yerc", "-o", "json"], "is for people"),
+        (&["teach", "yerc", "--dry-run"][..], "has no dry run"),
+        (&["teach", "yerc", "-o", "json"], "is interactive"),
         (&["teach", "yerc", "--max-step", "0"], "more than nothing"),
-        (&["teach", "yerc", "--yes"], "draws on a terminal"),
+        (&["teach", "yerc", "--yes"], "needs a terminal"),
         (&["teach", "yerc", "--watch"], "--watch"),
     ] {
         let output = desk.run(words);

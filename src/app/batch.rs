@@ -54,7 +54,9 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
 /// What is repeated is a line, not the file.
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
-        return Err(Failure::usage("--watch, --count and --until are for a command").hint("write them into its line"));
+        return Err(
+            Failure::usage("--watch, --count and --until cannot apply to a batch").hint("write them into its line")
+        );
     }
     Ok(())
 }
@@ -108,11 +110,11 @@ impl Plan<'_> {
             .collect();
         let hint = first.hint.clone().filter(|_| wrong.len() == 1).unwrap_or_else(|| "correct these lines".to_owned());
         let failure = Failure::new(first.kind, reasons.join("\n"));
-        Err(failure.hint(format!("{hint}; nothing was sent: a file runs once all of it is understood")))
+        Err(failure.hint(format!("{hint}; nothing was sent: armctl checks the whole file first")))
     }
 
     fn line(&self, parser: &mut Parser, line: &str, origin: &Origin) -> Result<Option<Planned>, Failure> {
-        let usage = |why: String| Failure::usage(why).hint("`armctl help batch` tells what a line can be");
+        let usage = |why: String| Failure::usage(why).hint("see `armctl help batch`");
         let value = |name: &str| {
             let set = self.batch.set.iter().rev().find(|(other, _)| other == name);
             set.map(|(_, value)| value.as_str())
@@ -128,7 +130,8 @@ impl Plan<'_> {
         let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
         let says_format = globals.format.is_some() || globals.json || globals.jq.is_some();
         if says_format && self.screen.is_json() {
-            return Err(Failure::usage("the format is that of the whole batch").hint("leave it away in the line"));
+            return Err(Failure::usage("a line of a batch cannot have its own output format")
+                .hint("remove the format from the line"));
         }
         let typed: Arc<str> = line.trim().into();
         let line = Line {
@@ -138,12 +141,12 @@ impl Plan<'_> {
             results: self.results.clone(),
         };
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::usage("this command cannot be used in a file").hint("`armctl help batch`"));
+            return Err(Failure::usage("this command cannot be used in a file").hint("see `armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
-            return Err(Failure::usage(format!("this is nothing for a line of a file: {why}"))
-                .hint("type it at a terminal of its own"));
+            return Err(Failure::usage(format!("this command cannot be a line of a file: {why}"))
+                .hint("run it in another terminal"));
         }
         ready.check_gate()?;
         Ok(Some(Planned { ready, origin: origin.clone(), typed }))

@@ -110,9 +110,9 @@ fn given(globals: &Globals) -> [Given; 17] {
 fn wrong(flag: &str, task: &Task) -> Failure {
     let hint = match (flag, task) {
         ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
-            "--with-tag gives the new robot a tag; --tag chooses robots".to_owned()
+            "use --with-tag to give the new robot a tag; --tag selects robots".to_owned()
         }
         _ => format!("remove {flag}"),
     };
-    Failure::usage(format!("{flag} means nothing to this command")).hint(hint)
+    Failure::usage(format!("{flag} has no effect on this command")).hint(hint)
 }

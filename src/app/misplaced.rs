@@ -74,7 +74,7 @@ fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
     let of: Vec<&&dyn Face> = FAMILIES.iter().filter(knows).collect();
     let named = if of.is_empty() { FAMILIES.iter().collect() } else { of };
     let lines: Vec<String> = named.iter().map(|face| format!("`armctl explain {} {code}`", face.family())).collect();
-    Some(format!("say whose code it is: {}", lines.join(" or ")))
+    Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
 /// A flag that is a value here, or a value that belongs to a flag.
@@ -87,7 +87,7 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
         let is_named = |argument: &&Arg| argument.get_id().as_str().eq_ignore_ascii_case(flag);
         command.get_positionals().find(is_named)?;
         error.remove(ContextKind::SuggestedArg);
-        return Some(format!("{} stands alone, without --{flag}", flag.to_uppercase()));
+        return Some(format!("type {} without --{flag}", flag.to_uppercase()));
     }
     if command.get_positionals().next().is_some() || word.starts_with('-') {
         return None;
@@ -98,7 +98,7 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
         .filter(takes_value)
         .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
         .collect();
-    (!flags.is_empty()).then(|| format!("a value stands behind its flag here: {}", flags.join(", ")))
+    (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
 }
 
 /// Where the wrong word belongs.
@@ -169,7 +169,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     // A range is no part of a text.
     if let Some(range) = values.iter().find(|value| value.contains("..")) {
         let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
-        return has_flag.then(|| format!("a range belongs to its flag: --ranges {range}"));
+        return has_flag.then(|| format!("type the range after its flag: --ranges {range}"));
     }
     let takes_numbers =
         is_of_flag || command.get_positionals().last().is_some_and(|last| last.get_value_delimiter().is_some());
@@ -177,10 +177,10 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         return None;
     }
     Some(if values.iter().all(is_number) {
-        format!("write numbers with commas and without blanks: {}", values.join(","))
+        format!("write the numbers with commas and without spaces: {}", values.join(","))
     } else {
         let quote = if values.concat().contains('\'') { '"' } else { '\'' };
-        format!("a value with blanks stands in quotes: {quote}{}{quote}", values.join(" "))
+        format!("put a value with spaces in quotes: {quote}{}{quote}", values.join(" "))
     })
 }
 
@@ -191,7 +191,7 @@ fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
     let at = words.iter().position(|other| other == word).filter(|_| !word.contains('='))?;
     let pair = words[..at].last().filter(|before| before.contains('=') && !before.starts_with('-'))?;
     let quote = if pair.contains('\'') || word.contains('\'') { '"' } else { '\'' };
-    Some(format!("a value with blanks stands in quotes: {quote}{pair} {word}{quote}"))
+    Some(format!("put a value with spaces in quotes: {quote}{pair} {word}{quote}"))
 }
 
 /// The flag for a folder, where that of the format was taken for it.
@@ -199,7 +199,7 @@ fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<Str
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let has_folder = command.get_arguments().any(|argument| argument.get_long() == Some("dir"));
-    (has_folder && flag.starts_with("--output")).then(|| "--output is the format; the folder is --dir".to_owned())
+    (has_folder && flag.starts_with("--output")).then(|| "use --dir for the folder; --output is the format".to_owned())
 }
 
 /// Which number to type instead of one that is refused.
@@ -208,7 +208,7 @@ fn number(why: &str) -> Option<String> {
         return Some(format!("write a number from {least} to {most}"));
     }
     if why.ends_with(" given") {
-        return Some("commas part the numbers; each has a decimal point: 1.5,20".to_owned());
+        return Some("separate the numbers with commas, and use a decimal point: 1.5,20".to_owned());
     }
     let is_std = ["invalid digit found", "number too large", "number too small"].iter().any(|it| why.starts_with(it));
     decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
@@ -217,7 +217,8 @@ fn number(why: &str) -> Option<String> {
 /// All files are a pattern; `--all` is for robots.
 fn every_file(args: &[OsString], typed: &Typed<'_>) -> Option<String> {
     let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
-    is_meant.then(|| "'*' gets all files, '*.JBI' all jobs; --all asks all robots of the inventory".to_owned())
+    is_meant
+        .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots of the inventory".to_owned())
 }
 
 /// What can stand where a value is missing.
@@ -227,14 +228,14 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
     if missing.iter().any(|argument| argument.starts_with("--until")) {
-        return Some("--for is how long --until waits: add a condition such as --until idle".to_owned());
+        return Some("add a condition such as --until idle; --for limits its time".to_owned());
     }
     let values = argument?.get_possible_values();
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
     match names.split_last() {
-        Some((last, others)) if !others.is_empty() => Some(format!("say {} or {last}", others.join(", "))),
+        Some((last, others)) if !others.is_empty() => Some(format!("use {} or {last}", others.join(", "))),
         _ if is_dangerous(&typed.path, false) => None,
-        _ => leaves::examples(&typed.path).next().map(|line| format!("as in `armctl {line}`")),
+        _ => leaves::examples(&typed.path).next().map(|line| format!("example: `armctl {line}`")),
     }
 }
 
@@ -479,25 +480,25 @@ mod tests {
     #[test]
     fn values_are_told_as_they_are_to_be_typed() {
         for (line, expected) in [
-            ("armctl yerc servo", "say on or off"),
-            ("armctl yerc cycle", "say step, once or continuous"),
-            ("armctl yerc job select", "as in `armctl yerc job select WELD`"),
-            ("armctl yerc say BACK AT NOON", "a value with blanks stands in quotes: 'BACK AT NOON'"),
-            ("armctl yrcx comment set 100 WAIT ORG", "a value with blanks stands in quotes: 'WAIT ORG'"),
+            ("armctl yerc servo", "use on or off"),
+            ("armctl yerc cycle", "use step, once or continuous"),
+            ("armctl yerc job select", "example: `armctl yerc job select WELD`"),
+            ("armctl yerc say BACK AT NOON", "put a value with spaces in quotes: 'BACK AT NOON'"),
+            ("armctl yrcx comment set 100 WAIT ORG", "put a value with spaces in quotes: 'WAIT ORG'"),
             (
                 "armctl yerc move joint --to 400 0 300 180 0 0 --speed 10%",
-                "write numbers with commas and without blanks: 400,0,300,180,0,0",
+                "write the numbers with commas and without spaces: 400,0,300,180,0,0",
             ),
             ("armctl yerc move relative --z 2,5 --speed 1mm/s", "use a decimal point: 2.5"),
-            ("armctl yerc var set S1=HELLO WORLD", "a value with blanks stands in quotes: 'S1=HELLO WORLD'"),
+            ("armctl yerc var set S1=HELLO WORLD", "put a value with spaces in quotes: 'S1=HELLO WORLD'"),
             (
                 "armctl yerc move linear --to 1,5,2,3,4,5,6 --speed 1mm/s",
-                "commas part the numbers; each has a decimal point: 1.5,20",
+                "separate the numbers with commas, and use a decimal point: 1.5,20",
             ),
             ("armctl yerc var set R1=2,5", "use a decimal point: 2.5"),
             ("armctl --timeout 1,5s yerc status", "use a decimal point: 1.5s"),
             ("armctl --count 1,5 yerc status", "write a whole number"),
-            ("armctl yerc file get A.JBI --output saved", "--output is the format; the folder is --dir"),
+            ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
             ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
             ("armctl yerc job start --name WELD", "NAME stands alone, without --name"),

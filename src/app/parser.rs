@@ -85,7 +85,7 @@ impl Refusal {
     /// As a failure.
     pub fn failure(&self) -> Failure {
         match self {
-            Self::Text(_) => Failure::usage("this prints a text to read").hint("type it at a terminal"),
+            Self::Text(_) => Failure::usage("this command prints a text").hint("run it in a terminal"),
             Self::Verb(_, verbs) => Failure::usage("a command is missing").hint(format!("add one of {verbs}")),
             Self::Unknown(failure) | Self::Failed(failure) => failure.clone(),
             Self::Mistake(error) => {

@@ -241,7 +241,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     let environment = Options {
         timeout: variable("ARMCTL_TIMEOUT", duration::parse_some)?,
         retries: variable("ARMCTL_RETRIES", |number| {
-            number.parse().map_err(|_| format!("'{number}' is not a number of repetitions"))
+            number.parse().map_err(|_| format!("'{number}' is not a number of retries"))
         })?,
         encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
         ..Options::default()
@@ -252,7 +252,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
 /// Names or patterns of robots with commas between them.
 fn names(text: &str) -> Result<Vec<String>, String> {
     let names: Vec<String> = text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(Into::into).collect();
-    if names.is_empty() { Err(format!("'{text}' names no robot")) } else { Ok(names) }
+    if names.is_empty() { Err(format!("no robot name in '{text}'")) } else { Ok(names) }
 }
 
 /// `ARMCTL_OUTPUT`, where the line does not say how to print. What tells how to set it right, and what is for people alone,
@@ -272,7 +272,7 @@ const OUTPUT: &str = "ARMCTL_OUTPUT";
 
 fn format(name: &str) -> Result<Format, String> {
     Format::from_str(name, true)
-        .map_err(|_| format!("'{name}' is not a format; there are table, json, jsonl, csv and value"))
+        .map_err(|_| format!("unknown output format '{name}'; use table, json, jsonl, csv or value"))
 }
 
 /// Where the inventory is.
@@ -287,6 +287,6 @@ fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
 fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
     let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
     let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));
-    let text = value.to_str().ok_or_else(|| wrong("it is not UTF-8".to_owned()))?;
+    let text = value.to_str().ok_or_else(|| wrong("the value is not UTF-8".to_owned()))?;
     parse(text).map(Some).map_err(wrong)
 }

@@ -205,7 +205,10 @@ impl Repl {
         let words = match words::split(text) {
             Ok(words) => words,
             Err(why) => {
-                return failed(&self.screen, Failure::usage(why).hint("in quotes, everything is itself").into());
+                return failed(
+                    &self.screen,
+                    Failure::usage(why).hint("close the quotes; characters in quotes have no special meaning").into(),
+                );
             }
         };
         match &words[..] {
@@ -233,10 +236,12 @@ impl Repl {
                 Err(failure) => Err(failure.into()),
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
-            Invocation::Teach(_) => Err(Failure::usage("the panel has the terminal for itself")
-                .hint("leave the prompt, then `armctl teach`")
+            Invocation::Teach(_) => Err(Failure::usage("the teach panel needs its own terminal")
+                .hint("leave the prompt, then run `armctl teach`")
                 .into()),
-            Invocation::Prompt(_) => Err(Failure::usage("this is the prompt already").hint("`exit` leaves it").into()),
+            Invocation::Prompt(_) => {
+                Err(Failure::usage("you are at the prompt already").hint("leave it with `exit`").into())
+            }
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
@@ -253,7 +258,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
     let length = read.context("stdin")?;
     if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
         return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
-            .hint("give commands in lines; `armctl help repl` shows how"));
+            .hint("write one command per line: `armctl help repl`"));
     }
     if length == 0 {
         return Ok(None);

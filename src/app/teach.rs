@@ -52,24 +52,29 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
 fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
-        return Err(Failure::usage("a simulator of which family?").hint("such as `armctl --sim teach yerc`"));
+        return Err(
+            Failure::usage("the family of the simulator is missing").hint("add the family: `armctl --sim teach yerc`")
+        );
     }
     match &sources.robots(teach.family)?[..] {
         [robot] => Ok(robot.clone()),
-        robots => Err(Failure::usage(format!("keys move one robot, not {}", robots.len())).hint("name it with -r")),
+        robots => Err(Failure::usage(format!("teach moves one robot, not {}", robots.len())).hint("name it with -r")),
     }
 }
 
 fn fits(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
-        return wrong("moves as keys order", "--dry-run goes with the commands it types, such as `yerc move relative`");
+        return wrong(
+            "has no dry run: keys move the robot",
+            "use --dry-run with its commands, such as `yerc move relative`",
+        );
     }
     if screen.format != Format::Table || globals.jq.is_some() {
-        return wrong("is for people, and prints no data", "`position` and `move` are for programs");
+        return wrong("is interactive and prints no data", "in programs, use `position` and `move`");
     }
     if !screen.can_fill() || !screen.can_ask() {
-        return wrong("draws on a terminal, and takes its keys", "run it in one");
+        return wrong("needs a terminal for its display and keys", "run it in a terminal");
     }
     Ok(())
 }

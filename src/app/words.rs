@@ -4,7 +4,7 @@ use crate::command::frame::batch::is_name;
 
 /// The words of a line: quotes, backslashes and `#` as in a shell. None for a line that is empty or a comment alone.
 pub fn split(line: &str) -> Result<Vec<String>, String> {
-    let words = shlex::split(line).ok_or("a quote or a backslash is not followed by its end")?;
+    let words = shlex::split(line).ok_or("a closing quote, or the character after a backslash, is missing")?;
     // What somebody copied from a page of the manual.
     let named = words.first().is_some_and(|word| word == "armctl");
     Ok(words.into_iter().skip(usize::from(named)).collect())
@@ -27,7 +27,7 @@ pub fn expanded<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>) -> Resu
         if !is_name(name) {
             return Err(format!("'{name}' is not a variable name"));
         }
-        done.push_str(value(name).ok_or_else(|| format!("nothing says what ${{{name}}} is: --set {name}=VALUE does"))?);
+        done.push_str(value(name).ok_or_else(|| format!("${{{name}}} has no value: add --set {name}=VALUE"))?);
         rest = after;
     }
     done.push_str(rest);

@@ -132,7 +132,7 @@ impl Table {
             let failure = at(error.span().unwrap_or_default().start, error.message());
             match suggestion(error.message()) {
                 Some(word) => failure.hint(format!("did you mean `{word}`?")),
-                None => failure.hint("`armctl help inventory` shows the form of the file"),
+                None => failure.hint("see `armctl help inventory`"),
             }
         })?;
         let entry = |raw: RawEntry| {

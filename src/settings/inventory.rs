@@ -150,7 +150,7 @@ impl Inventory {
             let failure = at(error.span().unwrap_or_default(), error.message());
             match suggestion(error.message()) {
                 Some(word) => failure.hint(format!("did you mean `{word}`?")),
-                None => failure.hint("`armctl help inventory` shows the form of the file"),
+                None => failure.hint("see `armctl help inventory`"),
             }
         })?;
         let mut robots: Vec<Entry> = Vec::with_capacity(file.robot.len());

@@ -342,12 +342,12 @@ impl Sources {
         // A simulator for a command of any family: the first one.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
-            return Err(Failure::usage(format!("target '{target}' does not tell the family"))
+            return Err(Failure::usage(format!("target '{target}' does not show the family"))
                 .hint("name the family: `armctl yerc …`"));
         };
         target
             .check(family)
-            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
+            .map_err(|why| Failure::usage(why).hint("see the URLs of each family: `armctl help targets`"))?;
         let name = target.short_name();
         Ok(self.robot(name, family, Setting { value: target, origin }, &Options::default(), Vec::new()))
     }

@@ -131,14 +131,14 @@ fn fleets_want_each_robot_named() {
 fn a_flag_that_means_nothing_is_a_mistake() {
     let desk = Desk::new("");
     for (line, part) in [
-        ("robots add foo udp://127.0.0.1 --tag line1", "--tag means nothing"),
-        ("robots list --sim", "the list has the robots of the inventory"),
-        ("robots path --tag line1", "--tag means nothing"),
-        ("robots remove foo --dry-run", "--dry-run means nothing"),
-        ("decode toyo @STOP --all", "--all means nothing"),
-        ("decode toyo @STOP --timeout 1s", "--timeout means nothing"),
-        ("yrcx io map --bus devicenet --sim", "--sim means nothing"),
-        ("session list --watch", "--watch means nothing"),
+        ("robots add foo udp://127.0.0.1 --tag line1", "--tag has no effect"),
+        ("robots list --sim", "--sim and -t select no robots of the inventory"),
+        ("robots path --tag line1", "--tag has no effect"),
+        ("robots remove foo --dry-run", "--dry-run has no effect"),
+        ("decode toyo @STOP --all", "--all has no effect"),
+        ("decode toyo @STOP --timeout 1s", "--timeout has no effect"),
+        ("yrcx io map --bus devicenet --sim", "--sim has no effect"),
+        ("session list --watch", "--watch has no effect"),
     ] {
         desk.fails(line, 2, part);
     }

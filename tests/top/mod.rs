@@ -67,7 +67,7 @@ fn robots_are_listed_and_opened_and_q_ends_it() {
     top.press("\x7f");
     top.shows("3 robots · 3 answer");
     top.press("?");
-    top.shows("Nothing here can move a robot");
+    top.shows("No key can move a robot");
     top.press("?");
     top.press("/yer\r");
     top.until("only one robot", |picture| !picture.text().contains("robot2") && picture.text().contains("only 'yer'"));

@@ -71,7 +71,7 @@ pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
     ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
-        "a point has its speed, see `armctl toyo point get`, and all speeds are scaled by `armctl toyo override`"),
+        "a point has its own speed (`armctl toyo point get`). `armctl toyo override` scales all speeds"),
 ];
 
 /// Other words for verbs, and what they are behind a noun that has one of these.

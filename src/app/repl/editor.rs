@@ -101,7 +101,7 @@ fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> 
 }
 
 fn unusable(error: &ReadlineError) -> Failure {
-    Failure::local(format!("the terminal: {error}")).hint("lines can also come from a pipe: `armctl repl < FILE`")
+    Failure::local(format!("terminal error: {error}")).hint("send the lines through a pipe: `armctl repl < FILE`")
 }
 
 fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor> {
@@ -130,7 +130,7 @@ impl History {
             .map_err(ReadlineError::Io)
             .and_then(|()| if path.exists() { editor.load_history(&path) } else { Ok(()) });
         if let Err(error) = found {
-            screen.detail(1, &format!("{}: {error}; lines are remembered until you leave", path.display()));
+            screen.detail(1, &format!("{}: {error}; the history is kept only until you leave", path.display()));
             return None;
         }
         Some(Self(path))

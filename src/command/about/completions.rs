@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::command::frame::run::Run;
 use crate::failure::Failure;
 
-/// Prints a completion script.
+/// Print a completion script.
 #[derive(Debug, Args)]
 pub struct Completions {
     /// The shell

@@ -5,24 +5,24 @@ pub const VARIABLES: [(&str, &str); 13] = [
     ("ARMCTL_TARGET", "URL or address of the controller, as -t"),
     ("ARMCTL_ROBOT", "robots of the inventory, as -r: NAME, or NAME,NAME"),
     ("ARMCTL_CONFIG", "the inventory, as --config"),
-    ("ARMCTL_OUTPUT", "how to print data, as -o: table, json, jsonl or csv"),
-    ("ARMCTL_TIMEOUT", "longest wait of each try for its answer, as --timeout"),
-    ("ARMCTL_RETRIES", "further tries of a read after silence, as --retries"),
+    ("ARMCTL_OUTPUT", "output format, as -o: table, json, jsonl, csv or value"),
+    ("ARMCTL_TIMEOUT", "longest wait for an answer, for each try, as --timeout"),
+    ("ARMCTL_RETRIES", "more tries of a read without an answer, as --retries"),
     ("ARMCTL_ENCODING", "encoding of names and texts on the controller, as --encoding"),
-    ("NO_COLOR", "no colour, unless --color says otherwise"),
-    ("CLICOLOR_FORCE", "colour even into a file, unless it is 0 or NO_COLOR is set"),
-    ("TERM", "dumb: no colour, no pager, nothing that redraws itself"),
-    ("PAGER", "what shows long help on a terminal; cat for none"),
+    ("NO_COLOR", "no color, unless --color is given"),
+    ("CLICOLOR_FORCE", "color also in files, unless it is 0 or NO_COLOR is set"),
+    ("TERM", "dumb: no color, no pager, no full-screen display"),
+    ("PAGER", "program that shows long help on a terminal; cat for none"),
     ("XDG_CONFIG_HOME", "folder of armctl/robots.toml, instead of ~/.config"),
-    ("XDG_RUNTIME_DIR", "folder of the sockets of sessions"),
+    ("XDG_RUNTIME_DIR", "folder of the session sockets"),
 ];
 
 /// What counts before and after them.
-pub const ORDER: &str = "Flags count before the environment, the environment before robots.toml.
-An empty variable is as none; a wrong value is an error that names it (exit
-code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error unless a flag
-names the robot. What moves, deletes or overwrites takes several robots by -r
-alone.";
+pub const ORDER: &str = "A flag has priority over the environment, the environment over robots.toml.
+An empty variable has no effect. A wrong value is an error that names the
+variable (exit code 2). ARMCTL_TARGET and ARMCTL_ROBOT together are an error,
+unless a flag selects the robot. For several robots, commands that move, delete
+or overwrite accept only -r.";
 
 /// The topic.
 pub fn text() -> String {

@@ -11,7 +11,7 @@ use crate::command::frame::run::Run;
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
 
-/// Explains a topic, or a command.
+/// Show the help of a topic or a command.
 #[derive(Debug, Args)]
 pub struct Help {
     /// A topic (options, exit-codes, environment, targets, inventory, output, safety, scripting, sessions, repl, batch,
@@ -27,7 +27,7 @@ const TOPICS: [(&str, &str, &str); 13] = [
     ("profibus", "wiring, URL, first contact", include_str!("topics/profibus.txt")),
     ("profinet", "requirements, URL, first contact", include_str!("topics/profinet.txt")),
     ("inventory", "robots.toml", include_str!("topics/inventory.txt")),
-    ("output", "tables, JSON, jq, colour", include_str!("topics/output.txt")),
+    ("output", "tables, JSON, jq, color", include_str!("topics/output.txt")),
     ("safety", "risks, confirmation, Ctrl-C", include_str!("topics/safety.txt")),
     ("scripting", "JSON, exit codes, waiting", include_str!("topics/scripting.txt")),
     ("sessions", "keep a connection open", include_str!("topics/sessions.txt")),
@@ -114,11 +114,11 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
     for word in words {
         let known: Vec<String> = command.get_subcommands().map(|sub| sub.get_name().to_owned()).collect();
         let Some(sub) = command.find_subcommand(word) else {
-            let failure = Failure::usage(format!("there is no topic or command '{word}'"));
+            let failure = Failure::usage(format!("unknown topic or command '{word}'"));
             let known: Vec<String> = known.into_iter().chain(topics().map(|(name, _)| name)).collect();
             return Err(match nearest(word, known.iter().map(String::as_str)) {
                 Some(near) => failure.hint(format!("did you mean '{near}'?")),
-                None => failure.hint("`armctl help` lists topics and commands"),
+                None => failure.hint("list topics and commands: `armctl help`"),
             });
         };
         command = sub;

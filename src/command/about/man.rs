@@ -11,7 +11,7 @@ use crate::command::frame::run::Run;
 use crate::command::leaves;
 use crate::failure::{Failure, Kind};
 
-/// Writes the man pages into a folder, or prints the one of `armctl`.
+/// Write the man pages into a folder, or print the man page of `armctl`.
 #[derive(Debug, Args)]
 pub struct Man {
     /// The folder, such as /usr/local/share/man/man1; it must exist
@@ -112,7 +112,7 @@ fn written(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u
             writeln!(text, ".TP\n{exit}\n{}", escaped(meaning))?;
         }
     } else {
-        writeln!(text, "0 when done, 2 for a wrong command line; the others stand in \\fBarmctl\\fR(1).")?;
+        writeln!(text, "0 for success, 2 for a wrong command line. See \\fBarmctl\\fR(1) for the others.")?;
     }
     if path.is_empty() {
         writeln!(text, ".SH ENVIRONMENT")?;

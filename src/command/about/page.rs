@@ -72,7 +72,7 @@ fn furnished(mut command: Command, root: &Command, path: &[&str], is_long: bool)
         let _ = writeln!(after, "{notes}\n");
     }
     if Pair::of(&command).is_some() {
-        let _ = writeln!(after, "A name and its value may be one word: NAME=VALUE.\n");
+        let _ = writeln!(after, "You can write a name and its value as one word: NAME=VALUE.\n");
     }
     let examples: Vec<&str> =
         if command.has_subcommands() { Vec::new() } else { leaves::examples(path).take(3).collect() };

@@ -19,10 +19,10 @@ use crate::controller::nearest::nearest;
 use crate::failure::Failure;
 use crate::output::envelope::{Envelope, ErrorBody};
 
-/// Prints the schema of `data` in the envelope, or the names of all reports.
+/// Print the JSON Schema of `data` in the envelope, or the names of all reports.
 ///
-/// Beside those of the commands there are `envelope`, what `--json` prints around them; `failure`, its `error`; and
-/// `dry-run`, the data of every command under --dry-run.
+/// Three schemas belong to all commands: `envelope` (the output of `--json`), `failure` (its `error`), and `dry-run` (the
+/// data with --dry-run).
 #[derive(Debug, Args)]
 pub struct SchemaOf {
     /// The command, such as yerc.status; without it, all names
@@ -39,10 +39,10 @@ impl SchemaOf {
             return run.screen.data(&names);
         };
         let Some(entry) = all.iter().find(|entry| entry.id == id) else {
-            let failure = Failure::usage(format!("there is no report '{id}'"));
+            let failure = Failure::usage(format!("unknown report '{id}'"));
             return Err(match nearest(&id, all.iter().map(|entry| entry.id)) {
                 Some(near) => failure.hint(format!("did you mean '{near}'?")),
-                None => failure.hint("`armctl schema` lists them"),
+                None => failure.hint("list the reports: `armctl schema`"),
             });
         };
         run.screen.json(&json!((entry.schema)()))

@@ -33,19 +33,19 @@ pub enum Robots {
     Add(entry::Add),
     /// Change settings of a robot
     Set(entry::Set),
-    /// Give a robot another name
+    /// Rename a robot
     Rename(entry::Rename),
-    /// Choose the robot that is taken when none is named
+    /// Set the default robot
     Default(entry::Default),
     /// Remove a robot
     Remove(entry::Remove),
-    /// Open the inventory in an editor, and check it before it counts
+    /// Edit the inventory, and check it before it is used
     Edit,
-    /// Print where the inventory is
+    /// Print the path of the inventory
     Path,
     /// Diagnose a connection step by step
     Check(check::Check),
-    /// Which controllers answer on the network, and which serial ports are there
+    /// Find controllers on the network and list serial ports
     Discover(discover::Discover),
 }
 
@@ -55,7 +55,7 @@ pub struct Show {
     /// Its name
     #[arg(add = ValueKind::Robot)]
     name: String,
-    /// Say where each value came from
+    /// Show the origin of each value
     #[arg(long)]
     origin: bool,
 }
@@ -163,7 +163,9 @@ impl List {
     fn of(run: &Run) -> Result<Self, Failure> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {
-            return Err(Failure::usage("the list has the robots of the inventory").hint("choose some with -r or --tag"));
+            return Err(
+                Failure::usage("--sim and -t select no robots of the inventory").hint("select robots with -r or --tag")
+            );
         }
         let is_chosen = |robot: &&Entry| {
             let is_named = selection.from_environment

@@ -7,15 +7,15 @@ use clap::Args;
 
 /// Arguments of `batch`.
 #[derive(Debug, Args)]
-#[command(after_help = "What stands in the file: `armctl help batch`.")]
+#[command(after_help = "The form of the file: `armctl help batch`.")]
 pub struct Batch {
-    /// A command a line, each with its family; - is stdin
+    /// One command per line, each with its family; - is stdin
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Go on after a line that has failed
+    /// Continue after a failed line
     #[arg(short, long)]
     pub keep_going: bool,
-    /// What ${NAME} stands for in the file (repeatable)
+    /// Value of ${NAME} in the file (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub set: Vec<(String, String)>,
 }

@@ -4,5 +4,5 @@ use clap::Args;
 
 /// Arguments of `repl`: none beside the flags of every command, which are those of each line.
 #[derive(Debug, Args)]
-#[command(after_help = "What a line can be, and how to leave: `armctl help repl`.")]
+#[command(after_help = "Lines and keys: `armctl help repl`.")]
 pub struct Repl {}

@@ -52,7 +52,7 @@ impl ServeArgs {
 }
 
 fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
-    Failure::usage(format!("--{flag} means nothing with --bus {chosen}: it is for {right}"))
+    Failure::usage(format!("--{flag} has no effect with --bus {chosen}: it is for {right}"))
         .hint("`armctl sim yrcx -h` says which options are for which fieldbus")
 }
 

@@ -98,7 +98,7 @@ impl Metrics {
         service.ready(robots)?;
         let ended = interruptible(async {
             tokio::select! {
-                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+                () = &mut polled => Err(Failure::local("internal error: polling has ended")),
                 () = listen(&mut events, &service, &board) => Err(Failure::local("nobody tells of the robots any more")),
                 ended = server.run(|request| answer(request, &board)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
@@ -158,10 +158,10 @@ fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
         return wrong("goes on until it is ended", "`armctl status --until FILTER` waits for a condition");
     }
     if run.trace.is_some() {
-        return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
+        return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
     }
     if every < LEAST {
-        return wrong("asks every 50ms at most", "--watch 50ms or more");
+        return wrong("asks every 50ms at most", "use --watch 50ms or more");
     }
     Ok(())
 }

@@ -290,7 +290,7 @@ impl Publish {
             };
             tokio::select! {
                 ended = pump.run(found, stop) => ended,
-                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+                () = &mut polled => Err(Failure::local("internal error: polling has ended")),
                 () = service.pulses(|| log.status()) => Err(Failure::local("nobody tells how it is any more")),
             }
         };
@@ -315,16 +315,16 @@ impl Publish {
             );
         }
         if run.gate.dry_run {
-            return wrong("sends nothing to robots but reads", "`armctl status --dry-run` shows some of them");
+            return wrong("sends nothing to robots but reads", "see some of its reads: `armctl status --dry-run`");
         }
         if run.trace.is_some() {
-            return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
+            return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
         }
         if run.screen.format.is_rows() {
             return wrong("prints no table", "leave the format out, or take --json");
         }
         if interval < LEAST_EVERY {
-            return wrong("looks every 50ms at most", "--watch 50ms or more");
+            return wrong("polls every 50ms at most", "use --watch 50ms or more");
         }
         if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
             return wrong("--host waits for a host, however long that takes", "leave --count or --host out");

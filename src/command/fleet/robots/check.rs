@@ -19,7 +19,7 @@ use crate::settings::{Robot, target};
 /// if a layer failed.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A robot of the inventory or a target URL; without it, what -r, -t and the like say
+    /// A robot of the inventory, or a target URL; otherwise the robots of -r, -t and others
     #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }
@@ -65,7 +65,8 @@ impl Command for Check {
         let Context { robot, screen, .. } = context;
         let access = context.link.clone();
         if access.dry_run {
-            return Err(Failure::usage("what a check asks next depends on the answers").hint("it only reads"));
+            return Err(Failure::usage("a check has no dry run: its requests depend on the answers")
+                .hint("run it without --dry-run; it only reads"));
         }
         let mut layers = families::of(robot.family).check(robot, access, screen).await?;
         layers.extend(layers::drafts());
@@ -90,7 +91,7 @@ impl Report for CheckReport {
         let (layer, found) = layers::first_failed(&self.layers)?;
         Some(
             Failure::new(Kind::ConditionNotMet, format!("{layer}: {found}"))
-                .hint(format!("`armctl help {}-setup` tells the settings of a controller", self.family)),
+                .hint(format!("see the settings of the controller: `armctl help {}-setup`", self.family)),
         )
     }
 }

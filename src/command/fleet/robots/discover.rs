@@ -19,14 +19,14 @@ use crate::settings::duration;
 /// Asks who is there (ListIdentity), and lists serial ports without opening them.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A broadcast stays in the network of the card that it leaves by: --bind chooses the card by its \
-                        address, --broadcast the network, as in 192.168.0.255. yerc controllers answer no such question: \
-                        `armctl robots check udp://ADDRESS` asks one."
+    after_help = "A broadcast stays in the network of its network card. --bind selects the card by its address, \
+                  --broadcast the network, such as 192.168.0.255. yerc controllers do not answer a broadcast: use \
+                  `armctl robots check udp://ADDRESS`."
 )]
 pub struct Discover {
     #[command(flatten)]
     searches: Box<Searches>,
-    /// How long to wait for answers
+    /// Wait for answers
     #[arg(long, value_name = "TIME", default_value = "2500ms", value_parser = wait)]
     wait: Duration,
 }
@@ -50,7 +50,9 @@ impl Discover {
 
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         if run.gate.dry_run {
-            return Err(Failure::usage("nothing is found without asking").hint("it only asks who is there").into());
+            return Err(Failure::usage("discover has no dry run")
+                .hint("run it without --dry-run; it only reads")
+                .into());
         }
         run.local("robots.discover", &self.find(run).await?)
     }
@@ -62,7 +64,7 @@ impl Discover {
         let boards = discover::discover(&self.searches, self.wait, &access, &run.screen).await?;
         let has_ports = discover::scope(&self.searches) < Scope::Devices;
         let serial_ports = if has_ports { serial_ports(run) } else { Vec::new() };
-        let nothing = if has_ports { NOTHING } else { "nobody answered" };
+        let nothing = if has_ports { NOTHING } else { "no answer" };
         Ok(Discovered { boards, serial_ports, nothing })
     }
 }
@@ -95,8 +97,8 @@ impl Discovered {
 }
 
 /// Said of an empty report.
-const NOTHING: &str = "nobody answered, and no serial port was found; is this machine in the robots' network? \
-                       --broadcast 192.168.0.255 asks a certain one";
+const NOTHING: &str = "no answer, and no serial port found. Connect this computer to the network of the robots, or \
+                       select a network with --broadcast 192.168.0.255";
 
 impl Report for Discovered {
     fn view(&self) -> View {

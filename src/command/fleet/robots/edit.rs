@@ -16,7 +16,7 @@ use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
 /// What a new file begins with.
-const NEW: &str = "# The robots of this site. `armctl help inventory` shows the form of this file.\n";
+const NEW: &str = "# The robots of this site. `armctl help inventory` describes this file.\n";
 
 /// Has a copy of the file edited; it replaces the file if it can be read.
 pub fn edit(run: &Run) -> Result<(), RunError> {
@@ -43,7 +43,8 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
             if now == before {
                 Ok(after)
             } else {
-                Err(Failure::usage(format!("{} was changed meanwhile", place())).hint("put both together by hand"))
+                Err(Failure::usage(format!("{} was changed by another program during the edit", place()))
+                    .hint("merge both versions"))
             }
         })
     });
@@ -55,7 +56,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
         Err(failure) => {
             let kept = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
             let why = failure.hint.map_or_else(String::new, |hint| format!("{hint}; "));
-            let hint = format!("{why}nothing was replaced: what you wrote is in {}", kept.display());
+            let hint = format!("{why}the inventory is unchanged; your text is in {}", kept.display());
             Err(Failure { hint: Some(hint), ..failure }.into())
         }
     }

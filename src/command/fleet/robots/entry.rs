@@ -24,22 +24,22 @@ use crate::settings::target::{Family, Given, Target};
 pub struct Add {
     /// Its name
     name: String,
-    /// Where it is, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
+    /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
     url: Given,
-    /// Its family, where the URL does not tell
+    /// Its family, if the URL does not show it
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
-    /// Take read commands only
+    /// Accept only reads and stops
     #[arg(long)]
     read_only: bool,
-    /// Have the first command that needs a command connection open a session for it (yrcx)
+    /// Open a session with the first command that needs a connection (yrcx)
     #[arg(long)]
     hold: bool,
-    /// A word to choose it by (repeatable)
+    /// A tag, to select it by (repeatable)
     #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
-    /// Make it the robot that is taken when none is named
+    /// Make it the default robot
     #[arg(long)]
     default: bool,
 }
@@ -94,12 +94,12 @@ impl Add {
         check_new(&run.sources.inventory, &self.name)?;
         let target = self.url.of(self.family)?;
         let Some(family) = self.family.or(target.family()) else {
-            let failure = Failure::usage(format!("'{target}' does not tell the family"));
+            let failure = Failure::usage(format!("'{target}' does not show the family"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
         };
         target
             .check(family)
-            .map_err(|why| Failure::usage(why).hint("`armctl help targets` lists the URLs of each family"))?;
+            .map_err(|why| Failure::usage(why).hint("see the URLs of each family: `armctl help targets`"))?;
         let Self { name, read_only, hold, tags, default: is_default, .. } = self;
         NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add")
     }
@@ -139,7 +139,7 @@ type Parse = fn(&str, Family) -> Result<Value, Failure>;
 
 /// The settings of an entry, with what they are.
 const SETTINGS: [(&str, &str, Parse); 10] = [
-    ("target", "where it is", |text, family| {
+    ("target", "target URL", |text, family| {
         let target = text.parse::<Given>()?.of(Some(family))?;
         Ok(target.url().into())
     }),
@@ -147,27 +147,30 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     ("model", "auto, fs100, dx100, dx200 or yrc1000 (yerc)", |text, _| {
         Ok(parsed::<ModelSetting>(text)?.to_string().into())
     }),
-    ("read_only", "on or off: take read commands only", |text, _| Ok(switch(text)?.into())),
-    ("hold", "on or off: open a session by itself (yrcx)", |text, _| Ok(switch(text)?.into())),
+    ("read_only", "on or off: accept only reads and stops", |text, _| Ok(switch(text)?.into())),
+    ("hold", "on or off: open a session automatically (yrcx)", |text, _| Ok(switch(text)?.into())),
     ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
-    ("timeout", "longest wait of each try, such as 5s", |text, _| {
-        let timeout = duration::parse_some(text).map_err(|why| wrong(why, "as in timeout=5s"))?;
+    ("timeout", "longest wait for an answer, for each try, such as 5s", |text, _| {
+        let timeout = duration::parse_some(text).map_err(|why| wrong(why, "example: timeout=5s"))?;
         Ok(duration::display(timeout).into())
     }),
-    ("retries", "further tries of a read after silence", |text, _| {
+    ("retries", "more tries of a read without an answer", |text, _| {
         let retries = text.parse::<u32>();
         let why = format!("'{text}' is not a number of tries");
-        Ok(i64::from(retries.map_err(|_| wrong(why, "as in retries=3"))?).into())
+        Ok(i64::from(retries.map_err(|_| wrong(why, "example: retries=3"))?).into())
     }),
     ("pulses_per_degree", "of the axes S,L,U,R,B,T of R1 (yerc)", |text, _| {
         let values: Result<Vec<f64>, _> = text.split(',').map(|value| value.trim().parse::<f64>()).collect();
         let values = values.ok().filter(|values| values.iter().all(|value| value.is_finite() && *value > 0.0));
         let why = || {
-            wrong(format!("'{text}' is not numbers of pulses"), "as in pulses_per_degree=1360,1360,1360,1000,1000,500")
+            wrong(
+                format!("'{text}' is not numbers of pulses"),
+                "example: pulses_per_degree=1360,1360,1360,1000,1000,500",
+            )
         };
         Ok(Value::Array(values.ok_or_else(why)?.into_iter().collect()))
     }),
-    ("tags", "words to choose it by, such as line1,welding", |text, _| {
+    ("tags", "tags to select it by, such as line1,welding", |text, _| {
         Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))
     }),
 ];
@@ -179,7 +182,7 @@ fn candidates() -> Vec<Candidate> {
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T, Failure> {
-    text.parse::<T>().map_err(|why| wrong(why.to_string(), "`armctl help inventory` shows the form of the file"))
+    text.parse::<T>().map_err(|why| wrong(why.to_string(), "see `armctl help inventory`"))
 }
 
 fn wrong(why: impl Into<String>, hint: &str) -> Failure {
@@ -190,7 +193,7 @@ fn switch(text: &str) -> Result<bool, Failure> {
     match text {
         "on" | "true" | "yes" => Ok(true),
         "off" | "false" | "no" => Ok(false),
-        _ => Err(wrong(format!("'{text}' is not on or off"), "as in read_only=off")),
+        _ => Err(wrong(format!("'{text}' is not on or off"), "example: read_only=off")),
     }
 }
 
@@ -236,7 +239,7 @@ fn address(text: &str, family: Family) -> Result<Value, Failure> {
 /// A setting as typed: its key, the text of its value, and how that is read.
 fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
-        return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("as in read_only=off or timeout=5s"));
+        return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("examples: read_only=off, timeout=5s"));
     };
     if key.strip_prefix("names.").is_some_and(|name| !name.is_empty()) {
         return Ok((key, text.trim(), address));
@@ -246,8 +249,8 @@ fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     }
     let failure = Failure::usage(format!("a robot has no setting '{key}'"));
     Err(match (key, nearest(key, SETTINGS.iter().map(|(known, ..)| *known))) {
-        ("name", _) => failure.hint("`armctl robots rename OLD NEW` gives it another name"),
-        ("default", _) => failure.hint("`armctl robots default NAME` chooses the default"),
+        ("name", _) => failure.hint("rename it with `armctl robots rename OLD NEW`"),
+        ("default", _) => failure.hint("set the default with `armctl robots default NAME`"),
         (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
         (_, None) => failure.hint(format!("there are {}", SETTINGS.map(|(known, ..)| known).join(", "))),
     })
@@ -323,8 +326,8 @@ impl Rename {
         let file = change(run, |document| document.rename(&self.old, &self.new))?;
         let Self { old, new } = self;
         run.screen.note(&format!(
-            "hint: backups of several robots have a folder for each: rename those that are called {old}; a session that \
-             is open keeps that name until it is closed"
+            "hint: rename the folders {old} in backups of several robots. An open session keeps the old name until it \
+             is closed"
         ));
         told(run.local("robots.rename", &Renamed { old, new, target, file }))
     }
@@ -396,8 +399,8 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
         );
     }
     if inventory.robots.iter().any(|robot| robot.name == name) {
-        return Err(Failure::usage(format!("there is a robot '{name}' already")).hint(format!(
-            "`armctl robots set {name} KEY=VALUE` changes it, `armctl robots remove {name}` removes it"
+        return Err(Failure::usage(format!("robot '{name}' exists already")).hint(format!(
+            "change it with `armctl robots set {name} KEY=VALUE`, or remove it with `armctl robots remove {name}`"
         )));
     }
     Ok(())
@@ -409,7 +412,7 @@ pub fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Fail
         let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));
         match nearest(name, inventory.robots.iter().map(|robot| robot.name.as_str())) {
             Some(near) => failure.hint(format!("did you mean '{near}'?")),
-            None => failure.hint("`armctl robots list` shows them, `armctl robots add` adds one"),
+            None => failure.hint("list the robots with `armctl robots list`, or add one with `armctl robots add`"),
         }
     })
 }

@@ -13,9 +13,11 @@ use crate::settings::inventory::Inventory;
 
 /// Where the inventory is, or would be.
 pub fn path(run: &Run) -> Result<&Path, Failure> {
-    run.sources.inventory.path.as_deref().ok_or_else(|| {
-        Failure::new(Kind::Usage, "there is no home folder to keep robots.toml in").hint("name a file with --config")
-    })
+    run.sources
+        .inventory
+        .path
+        .as_deref()
+        .ok_or_else(|| Failure::new(Kind::Usage, "no home folder for robots.toml").hint("give a file with --config"))
 }
 
 /// The text of the file; empty where there is none yet.
@@ -32,7 +34,7 @@ pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>
     replace(path, |text| {
         let wrong = |why: &dyn std::fmt::Display| {
             Failure::usage(format!("{}: {why}", path.display()))
-                .hint("correct the file with `armctl robots edit`: `armctl help inventory` shows its form")
+                .hint("correct the file with `armctl robots edit`; see `armctl help inventory`")
         };
         let mut document = Document::parse(text).map_err(|error| wrong(&error))?;
         change(&mut document).map_err(|why| wrong(&why))?;

@@ -31,13 +31,13 @@ use crate::settings::target::Family;
                   help safety`. The keys are on the screen, `?` explains them; `q` ends."
 )]
 pub struct Teach {
-    /// The family, where the robot does not tell it
+    /// The family, if the robot does not show it
     #[arg(value_name = "FAMILY")]
     pub family: Option<Family>,
-    /// Most that a key may move, in mm, degrees, or the unit of the axes
+    /// Largest step of a key, in mm, degrees, or the unit of the axes
     #[arg(long, value_name = "MM", default_value = "10", value_parser = positive)]
     pub max_step: f64,
-    /// Highest speed that can be chosen, in mm/s or percent
+    /// Highest speed, in mm/s or percent
     #[arg(long, value_name = "SPEED", default_value = "10", value_parser = clap::value_parser!(u32).range(1..=250))]
     pub max_speed: u32,
 }

@@ -16,7 +16,7 @@ pub enum KeyAction {
     Next,
     /// Give the robot at the cursor the screen.
     Open,
-    /// Back to the list; in the list, all robots again.
+    /// Back to the list; in the list, show all robots again.
     Back,
     /// Another order of the list.
     Sort,
@@ -98,21 +98,21 @@ pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
 
 /// Every key, in the order in which they are explained: whether it counts in the list, and on the screen of one robot.
 pub const KEYS: [((bool, bool), Explained); 15] = [
-    explained((true, false), "↑ ↓", "choose", "choose a robot; also j k, PgUp PgDn, Home End"),
-    explained((true, false), "Enter", "open", "all about the chosen robot"),
+    explained((true, false), "↑ ↓", "choose", "select a robot; also j k, PgUp PgDn, Home End"),
+    explained((true, false), "Enter", "open", "open the selected robot"),
     explained((false, true), "Esc", "list", "back to the list; also Backspace"),
-    explained((false, true), "↑ ↓", "axis", "choose the axis of the charts"),
-    explained((false, true), "← →", "robot", "the robot before, the one behind; also p n"),
-    explained((true, false), "/", "filter", "only robots with a text in name, family, address or tag"),
-    explained((true, false), "Esc", "", "all robots again"),
-    explained((true, false), "s", "sort", "as given, trouble first, by name, slowest first"),
+    explained((false, true), "↑ ↓", "axis", "select the axis of the charts"),
+    explained((false, true), "← →", "robot", "previous robot, next robot; also p n"),
+    explained((true, false), "/", "filter", "filter by a text in name, family, address or tag"),
+    explained((true, false), "Esc", "", "show all robots again"),
+    explained((true, false), "s", "sort", "sort: inventory, alarms first, name, slowest first"),
     explained((true, true), "Space", "pause", "pause the display; polling continues"),
-    explained((true, true), "+ -", "pace", "look more often, less often"),
+    explained((true, true), "+ -", "pace", "poll more often, less often"),
     explained((true, true), "?", "help", "this list; also h"),
     explained((true, true), "q", "quit", "end"),
     explained((true, true), "Ctrl-C", "", "end with exit code 130"),
-    explained((true, true), "Ctrl-Z", "", "suspend; `fg` goes on"),
-    explained((true, true), "Ctrl-L", "", "draw everything anew"),
+    explained((true, true), "Ctrl-Z", "", "suspend; `fg` continues"),
+    explained((true, true), "Ctrl-L", "", "redraw the screen"),
 ];
 
 const fn explained(

@@ -34,10 +34,10 @@ use crate::output::fullscreen::{Event, Fullscreen, Keys};
 /// All robots, or one, live on the whole screen.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without -r, --tag, --sim or -t, all robots of the inventory. --watch INTERVAL sets how often they are \
-                  looked at (500ms). The keys are on the screen, `?` explains them. Nothing in here can move a robot or \
-                  change anything: only reads are sent, and to a YRCX only messages, unless a session has its command. \
-                  `q` ends with exit code 0, Ctrl-C with 130."
+    after_help = "Without -r, --tag, --sim or -t, top shows all robots of the inventory. --watch INTERVAL sets how often \
+                  it polls them (500ms). `?` explains the keys. top cannot move a robot or change anything: it sends only \
+                  reads, and to a YRCX only messages, unless a session holds the connection. `q` ends with exit code 0, \
+                  Ctrl-C with 130."
 )]
 pub struct Top {}
 
@@ -59,8 +59,8 @@ impl Top {
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let screen = run.screen;
         if !screen.can_fill() {
-            return Err(Failure::usage("top draws on a terminal, and stdout is none that can be drawn on")
-                .hint("`armctl status --watch` prints a table again and again; -o jsonl is for programs")
+            return Err(Failure::usage("top needs a terminal, and stdout is not a suitable one")
+                .hint("use `armctl status --watch`; for programs, add -o jsonl")
                 .into());
         }
         let model = Model::new(poll.robots(), every);
@@ -78,7 +78,7 @@ impl Top {
             tokio::select! {
                 ended = shown => ended.and_then(|ended| ended),
                 // It goes on as long as somebody wants to know.
-                () = &mut polled => Err(Failure::local("nobody looks at the robots any more")),
+                () = &mut polled => Err(Failure::local("internal error: polling has ended")),
             }
         };
         // The terminal is as it was found. Links are left properly, but nobody waits long for it.
@@ -92,22 +92,22 @@ impl Top {
 fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
     if run.screen.format != Format::Table || run.filter.is_some() {
-        return wrong("is for people, and prints no data", "`armctl status --watch -o jsonl` is for programs");
+        return wrong("is interactive and prints no data", "in programs, use `armctl status --watch -o jsonl`");
     }
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
         return wrong(
-            "goes on until `q`, and waits for no condition",
+            "runs until `q` and waits for no condition",
             "`armctl status --until FILTER` waits for one, --count N with --watch ends after so many",
         );
     }
     if run.gate.dry_run {
-        return wrong("sends nothing but reads, over and over", "`armctl status --dry-run` shows some of them");
+        return wrong("has no dry run: it only reads", "see some of its reads: `armctl status --dry-run`");
     }
     if run.trace.is_some() {
-        return wrong("keeps no record of its traffic", "--trace goes with `armctl status --watch`");
+        return wrong("does not record its traffic", "use --trace with `armctl status --watch`");
     }
     if every < LEAST {
-        return wrong("looks every 50ms at most", "--watch 50ms or more");
+        return wrong("polls every 50ms at most", "use --watch 50ms or more");
     }
     Ok(())
 }

@@ -417,9 +417,9 @@ impl Seen {
 fn in_short(kind: Kind) -> &'static str {
     match kind {
         Kind::NoAnswer => "no answer",
-        Kind::Refused => "refuses to tell",
+        Kind::Refused => "refuses to report",
         Kind::Malformed => "answers nonsense",
-        _ => "cannot be asked",
+        _ => "cannot be read",
     }
 }
 

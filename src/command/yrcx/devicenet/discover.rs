@@ -21,7 +21,7 @@ use crate::transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Ask the nodes of DeviceNet behind this adapter: slcan:///dev/ttyACM0, slcan://HOST:PORT, can://can0 (repeatable)
+    /// Find DeviceNet nodes on this adapter: slcan:///dev/ttyACM0, slcan://HOST:PORT, can://can0 (repeatable)
     #[arg(long = "devicenet", value_name = "URL", value_parser = wired)]
     adapters: Vec<(String, Bus)>,
 }

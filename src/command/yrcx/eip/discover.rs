@@ -20,13 +20,13 @@ use crate::transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Ask only these, each by its address
+    /// Ask only these addresses
     #[arg(value_name = "ADDRESS[:PORT]", value_parser = address)]
     targets: Vec<SocketAddrV4>,
-    /// Ask everybody at this broadcast address, 255.255.255.255 unless given (repeatable)
+    /// Broadcast address; 255.255.255.255 by default (repeatable)
     #[arg(long, value_name = "ADDRESS[:PORT]", value_parser = address)]
     broadcast: Vec<SocketAddrV4>,
-    /// Ask from this address of this machine
+    /// Address of this computer to send from
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::UNSPECIFIED, hide_default_value = true)]
     bind: Ipv4Addr,
 }

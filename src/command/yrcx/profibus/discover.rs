@@ -16,7 +16,7 @@ use crate::transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Ask the stations of PROFIBUS behind this adapter, as in /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
+    /// Find PROFIBUS stations on this adapter, such as /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
     #[arg(long, value_name = "PORT[?baud=RATE]", value_parser = port)]
     profibus: Option<String>,
 }

@@ -20,7 +20,7 @@ use crate::transport::profinet::interface::Interface;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Ask all stations of PROFINET behind this Ethernet interface, as in eth0 (repeatable)
+    /// Find all PROFINET stations on this Ethernet interface, such as eth0 (repeatable)
     #[arg(long = "interface", value_name = "IFACE")]
     interfaces: Vec<String>,
 }

@@ -42,7 +42,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, n
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, now: Moment) {
     let Some(sample) = seen.sample() else { return trouble(painter, area, seen) };
     let Some(whole) = &sample.whole else {
-        let why = if model.is_paused() { "not looked at in full before the pause; Space goes on" } else { "looking" };
+        let why = if model.is_paused() { "no details before the pause; press Space to continue" } else { "looking" };
         painter.left(after(line_of(area, 1), 2), why, painter.palette.quiet());
         return;
     };
@@ -84,7 +84,7 @@ fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &Seen) {
         }
         line += 1;
     }
-    painter.left(after(line_of(area, line), 2), "It is asked again and again.", painter.palette.quiet());
+    painter.left(after(line_of(area, line), 2), "armctl keeps trying.", painter.palette.quiet());
 }
 
 /// The indicators, in columns; returns the lines that they took.
@@ -119,7 +119,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let line = &sample.line;
     if sample.alarms.is_empty() {
         let (text, style) = match line.trouble() {
-            Some(what) => (format!(" an {what}; which one is not told here"), bad),
+            Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
         painter.left(line_of(area, 0), &text, style);
@@ -141,7 +141,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
 /// Axes on the left, and the past of the chosen one on the right.
 fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole: &Whole, now: Moment) {
     if whole.axes.is_empty() {
-        let why = whole.not_asked.unwrap_or("the controller does not tell its position");
+        let why = whole.not_asked.unwrap_or("the controller does not report its position");
         for (line, part) in (1..).zip(wrapped(why, usize::from(area.width.saturating_sub(2)))) {
             painter.left(after(line_of(area, line), 1), &part, painter.palette.quiet());
         }

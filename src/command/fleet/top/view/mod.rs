@@ -35,7 +35,7 @@ fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: 
     }
     keys(&mut painter, foot, model);
     if model.has_help {
-        let title = "Nothing here can move a robot or change anything.";
+        let title = "No key can move a robot or change anything.";
         painter.help(area, title, KEYS.iter().map(|(_, key)| key));
     }
     if !palette.is_unicode {
@@ -77,7 +77,7 @@ fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     if model.is_typing {
         let parts = [(" filter: ", accent), (model.filter.as_str(), Style::new()), ("█", accent)];
         let taken = painter.parts(line, &parts);
-        painter.left(after(line, taken + 2), "Enter keeps it, Esc shows all again", quiet);
+        painter.left(after(line, taken + 2), "Enter keeps the filter, Esc shows all again", quiet);
         return;
     }
     let counts = |(list, one): (bool, bool)| if model.is_open { one } else { list };
