@@ -438,7 +438,6 @@ done; done
 "#;
 
 #[cfg(target_os = "linux")]
-#[expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 #[test]
 fn a_yrcx_on_profinet_whose_master_or_client_is_killed_or_frozen_stops() {
     let folder = tempfile::tempdir().unwrap();
