@@ -81,7 +81,7 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
             None => value.clone(),
         })
         .collect();
-    let question = format!("{what} (type to search, Enter takes, Esc leaves): ");
+    let question = format!("{what} (type to search, Enter takes, Esc leaves)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
     let mut at = None;
     on_this_thread(async {
