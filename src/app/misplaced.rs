@@ -414,7 +414,7 @@ mod tests {
             ("armctl yerc select WELD", "the command is `armctl yerc job select`"),
             ("armctl yerc robots list", "the command is `armctl robots`, which is for all families"),
             ("armctl stats", "a similar subcommand exists: 'status'"),
-            ("armctl yerc jop", "a similar subcommand exists: 'job'"),
+            ("armctl yerc jop", "some similar subcommands exist: 'stop', 'job'"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }

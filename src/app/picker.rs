@@ -1,7 +1,6 @@
 //! A name that a line lacks, chosen at the terminal among what completion knows there.
 
 use std::ffi::OsString;
-use std::io::IsTerminal as _;
 use std::time::Duration;
 
 use clap::CommandFactory as _;
@@ -27,7 +26,7 @@ const NO_INPUT: &str = "--no-input";
 /// The line with the value that was chosen for it; `None` where nothing can be listed, or nobody can be asked.
 pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
     let Refusal::Mistake(error) = refusal else { return None };
-    if !can_ask(args) {
+    if !can_choose(args) {
         return None;
     }
     let whole = Cli::command();
@@ -42,14 +41,12 @@ pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsSt
     Some(chosen(args, &what, &found, has_first))
 }
 
-/// Whether a person can be asked: not where a program reads, nor where the line or the environment forbids it.
-fn can_ask(args: &[OsString]) -> bool {
-    let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    std::io::stdin().is_terminal()
-        && std::io::stderr().is_terminal()
-        && !is_set("CI")
-        && !args.iter().any(|word| word == NO_INPUT)
-        && !wants_json(args).unwrap_or_else(super::prepared::wants_json)
+/// Whether a person can choose: not where a program reads, nor where the line or the environment forbids it.
+fn can_choose(args: &[OsString]) -> bool {
+    let is_json = wants_json(args).unwrap_or_else(super::prepared::wants_json);
+    let format = if is_json { Format::Json } else { Format::Table };
+    let screen = Screen::new(format, ColorChoice::Never, false, 0);
+    screen.with_questions(args.iter().all(|word| word != NO_INPUT)).can_choose()
 }
 
 /// What is missing at the end of a line: an argument without a flag, or the value of the flag there.
@@ -84,7 +81,7 @@ fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -
             None => value.clone(),
         })
         .collect();
-    let question = format!("{what} (type to search, Enter takes, Esc leaves): ");
+    let question = format!("{what} (type to search, Enter takes, Esc leaves)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
     let mut at = None;
     on_this_thread(async {

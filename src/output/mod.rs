@@ -64,6 +64,7 @@ pub enum ColorChoice {
 
 /// Where everything is written, and how.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Screen {
     /// How data is written.
     pub format: Format,

@@ -10,7 +10,7 @@ fn found(line: &str) -> Vec<String> {
 fn words_and_flags_are_those_of_the_command() {
     for (line, expected) in [
         ("armctl ye", &["yerc"][..]),
-        ("armctl yerc st", &["status"]),
+        ("armctl yerc st", &["status", "stop"]),
         ("yerc st", &["status"]),
         ("/usr/bin/yerc.exe job se", &["select"]),
         ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),

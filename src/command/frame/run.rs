@@ -233,18 +233,14 @@ impl Run {
         }
         let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
-        match report.failure() {
+        if let Some(failure) = report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
-            Some(failure) => {
-                let told = printed.is_ok() && self.screen.is_json();
-                Err(RunError { failure, envelope: None, told })
-            }
-            None => {
-                printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
-                let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
-                checked.map_err(|failure| RunError::at(robot, command, failure))
-            }
+            let told = printed.is_ok() && self.screen.is_json();
+            return Err(RunError { failure, envelope: None, told });
         }
+        printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+        let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
+        checked.map_err(|failure| RunError::at(robot, command, failure))
     }
 
     /// Whether what `--check` asks for holds.

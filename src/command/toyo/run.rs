@@ -634,7 +634,7 @@ mod tests {
             let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
             bench.left(words, Duration::from_millis(450))
         };
-        assert!(!must_halt(&["run", "sequential", "1"]));
+        assert!(!must_halt(&["run", "sequential", "1", "--wait"]));
         assert!(must_halt(&["jog", "X", "+", "low", "--for", "5s"]));
     }
 

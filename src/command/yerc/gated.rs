@@ -63,6 +63,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("var restore DIR/dump.json", Destroy, Write),
     ("io get 10010", Read, Read),
     ("io watch 10010", Read, Read),
+    ("io list", Read, Read),
     ("io set 27010=on", Write, Write),
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
@@ -72,6 +73,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("servo on", Motion, Motion),
     ("servo off", Motion, Motion),
     ("hold on", Write, Write),
+    ("stop", Write, Write),
     ("hold off", Write, Write),
     ("hlock on", Write, Write),
     ("cycle once", Write, Write),
@@ -124,7 +126,7 @@ fn every_command_passes_the_gate_by_its_risk() {
         let intent = command.intent(Some(&robot));
         assert_eq!(intent.risk, *risk, "{line}");
         assert!(*risk < Destroy || !intent.text.is_empty(), "{line}: what is asked says what will happen");
-        assert_eq!(intent.is_stop, ["hold on", "job stop"].contains(&line.as_str()), "{line}");
+        assert_eq!(intent.is_stop, ["hold on", "stop", "job stop"].contains(&line.as_str()), "{line}");
 
         robot.read_only.value = true;
         let passed = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);

@@ -62,7 +62,9 @@ impl Endpoint<'_> {
                 match (fieldbus.open)(at, purpose).await {
                     Ok(link) => Ok((link, recorder)),
                     Err(error) => {
-                        opening.iter().for_each(|opening| opening.show(screen));
+                        if let Some(opening) = opening {
+                            opening.show(screen);
+                        }
                         // Why it did not open is worth more than what became of the record of it.
                         let _ = recorder.map_or(Ok(()), Recorder::finish);
                         Err(not_open(&robot.label(), bus.scheme, &error))

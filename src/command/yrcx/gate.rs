@@ -69,6 +69,7 @@ const READS: &[&str] = &[
     "position",
     "clock get",
     "io get",
+    "io list",
     "io watch",
     "auto-mode",
     "backup @/new --only info,settings,pallets,shifts,hands,variables",

@@ -60,7 +60,7 @@ async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     }
     let options: Vec<String> = open.iter().map(|info| format!("{}  {}", info.robot, info.target)).collect();
     let screen = run.screen;
-    let question = "session to close (type to search, Enter takes, Esc leaves): ";
+    let question = "session to close (type to search, Enter takes, Esc leaves)";
     catch_interrupts();
     let at = answered(screen, move || screen.ask_one_of(question, &options, false)).await?;
     let robot = open.into_iter().nth(at).map(|info| info.robot);

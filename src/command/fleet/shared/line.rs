@@ -71,7 +71,7 @@ impl AnyCommand for SharedLine {
     }
 
     fn is_endless(&self) -> bool {
-        self.usual(None).is_some_and(|command| command.is_endless())
+        self.usual(None).is_some_and(AnyCommand::is_endless)
     }
 
     fn driver(&self) -> Option<&'static dyn Driver> {

@@ -200,7 +200,8 @@ impl FromStr for Spots {
 fn addresses(text: &str) -> Result<Vec<Spot>, String> {
     let wrong = || format!("'{text}' is not a valid signal such as IN1.3, OUT1.3, INT1.3, or a port such as IN1");
     let (bank, rest) = bank_of(text).ok_or_else(wrong)?;
-    let first = rest.split("..").next().unwrap_or(rest);
+    let ends = rest.split_once("..").or_else(|| rest.split_once('-'));
+    let first = ends.map_or(rest, |(first, _)| first);
     let port_of = |text: &str| typed::unsigned::<u8>(text).filter(|port| *port <= 99);
     // `IN1.3` is port 1, bit 3; the last end of a range may leave out what the first one has said.
     let spot = |text: &str| {
@@ -226,7 +227,7 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
         let (port, bit) = spot(text)?;
         Ok::<_, String>(u16::from(port) * 8 + u16::from(bit.unwrap_or(1)) - 1)
     };
-    let (least, most) = match rest.split_once("..") {
+    let (least, most) = match ends {
         None => (number(rest)?, number(rest)?),
         Some((from, to)) => (number(from)?, number(to)?),
     };
@@ -240,7 +241,8 @@ fn addresses(text: &str) -> Result<Vec<Spot>, String> {
 
 /// A range the other way round.
 fn turned(text: &str) -> String {
-    text.split_once("..").map_or_else(|| text.to_owned(), |(from, to)| format!("{to}..{from}"))
+    let ends = text.split_once("..").or_else(|| text.split_once('-'));
+    ends.map_or_else(|| text.to_owned(), |(from, to)| format!("{to}..{from}"))
 }
 
 fn bank_of(text: &str) -> Option<(PortBank, &str)> {

@@ -153,7 +153,7 @@ mod tests {
         other.store(Kind::P, 5, &[1; 4 * POSITION_WORDS]);
         assert!(load(&mut other, &file));
         assert_eq!(written(&other), file);
-        assert_eq!((other.number(Kind::B, 7), other.element(Kind::P, 5)), (99.0, None), "it has no P005");
+        assert_eq!((other.element(Kind::B, 7), other.element(Kind::P, 5)), (Some(&[99][..]), None), "it has no P005");
     }
 
     #[test]
@@ -164,8 +164,8 @@ mod tests {
         {
             assert!(!load(&mut memory, wrong.as_bytes()), "{wrong:?}");
         }
-        assert_eq!(memory.number(Kind::B, 0), 0.0);
+        assert_eq!(memory.element(Kind::B, 0), Some(&[0][..]));
         assert!(load(&mut memory, b"//VAR\n///SHARE\n////B\n0,0,5"), "a part of it");
-        assert_eq!(memory.number(Kind::B, 2), 5.0);
+        assert_eq!(memory.element(Kind::B, 2), Some(&[5][..]));
     }
 }
