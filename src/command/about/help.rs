@@ -135,11 +135,16 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
 }
 
 fn start_states() -> String {
-    let example =
-        |face: &&dyn Face| format!("
+    let example = |face: &&dyn Face| {
+        format!(
+            "
 Keys of {}:
 
-{}", face.family(), comments_above(face.start_state()));
+{}",
+            face.family(),
+            comments_above(face.start_state())
+        )
+    };
     FAMILIES.iter().map(example).collect()
 }
 
