@@ -257,7 +257,12 @@ impl Client {
         if request.risk() > Risk::Read && !is_stop(request) {
             self.fence().await?;
         }
-        self.plan_all(std::slice::from_ref(request))?;
+        let planned = self.plan_all(std::slice::from_ref(request));
+        if planned.is_err() && request.row().is_order() {
+            // What settles an order follows it.
+            self.plan_fence();
+        }
+        planned?;
         self.transact_fenced(request).await
     }
 
