@@ -9,6 +9,7 @@ mod gate_tests;
 mod misplaced;
 mod named;
 mod parser;
+mod picker;
 mod prepared;
 mod repl;
 mod respelled;
@@ -50,13 +51,26 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
         return ExitCode::SUCCESS;
     }
-    let args = with_family(args);
+    let mut args = with_family(args);
     if let Some(version) = parser::version(&args) {
         let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
         return exit(screen.data(&version).map_err(|failure| tell(&screen, failure.into())));
     }
     let mut parser = Parser::default();
-    let parsed = named::parse(&mut parser, &args, None, false);
+    let parsed = loop {
+        let refusal = match named::parse(&mut parser, &args, None, false) {
+            Err(refusal) => refusal,
+            parsed => break parsed,
+        };
+        match picker::completed(&args, &refusal) {
+            Some(Ok(line)) => args = line,
+            Some(Err(stopped)) => {
+                let screen = Screen::new(Format::Table, ColorChoice::Never, false, 0);
+                return exit(Err(tell(&screen, stopped)));
+            }
+            None => break Err(refusal),
+        }
+    };
     parser.abandon();
     let mut cli = match parsed {
         Ok(cli) => cli,
@@ -144,7 +158,9 @@ fn screen(globals: &Globals) -> Screen {
         None => Format::Table,
     };
     let is_filtered = globals.jq.is_some() && !globals.json && globals.format.is_none();
-    Screen::new(format, globals.color(), globals.quiet, globals.verbose).with_plain_errors(is_filtered)
+    Screen::new(format, globals.color(), globals.quiet, globals.verbose)
+        .with_plain_errors(is_filtered)
+        .with_questions(!globals.no_input)
 }
 
 /// Writes a failure once, in the form that was asked for, and says what kind it was.

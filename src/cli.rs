@@ -165,6 +165,9 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub jq: Option<String>,
+    /// Ask nothing: what would be asked is refused
+    #[arg(long, global = true, hide_short_help = true, help_heading = "Safety")]
+    pub no_input: bool,
     /// Only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
     pub quiet: bool,
@@ -231,6 +234,9 @@ pub struct Globals {
     /// Repeat a read until this holds: idle, NAME=VALUE, or a jq filter over its JSON
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
     pub until: Option<String>,
+    /// Read once, and end with exit code 8 unless this holds: idle, NAME=VALUE, or a jq filter over the JSON
+    #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", conflicts_with_all = ["watch", "count", "until"], help_heading = "Repeat")]
+    pub check: Option<String>,
     /// How long --until waits before it gives up with exit code 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
     pub within: Option<Duration>,
@@ -265,6 +271,7 @@ impl Globals {
             color: if self.color == ColorChoice::Auto { all.color } else { self.color },
             no_pager: self.no_pager || all.no_pager,
             trace: self.trace.or_else(|| all.trace.clone()),
+            no_input: self.no_input || all.no_input,
             yes: self.yes || all.yes,
             dry_run: self.dry_run || all.dry_run,
             on_interrupt: if self.on_interrupt == OnInterrupt::Stop { all.on_interrupt } else { self.on_interrupt },
@@ -275,6 +282,7 @@ impl Globals {
             watch: self.watch,
             count: self.count,
             until: self.until,
+            check: self.check,
             within: self.within,
         }
     }

@@ -4,7 +4,11 @@
 //! reads a pipe from the process that it guards, which writes a byte before a motion is sent, a beat from then on, and a
 //! last byte at its end. The pipe closes with the process, however that ends. A process that does not beat is killed: then
 //! its serial port, its TCP connection and its place in a session are free for the stop.
+//!
+//! The holder of a session has one as well, for what clients move: who holds the link and who moves the robot may end at
+//! the same time.
 
+use std::cell::RefCell;
 use std::ffi::OsString;
 use std::io::{self, Read as _, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -37,6 +41,7 @@ const ENDS: &str = "--guardian=end";
 
 /// What the guarded process writes.
 const MOTION: u8 = b'm';
+const REST: u8 = b'r';
 const ALIVE: u8 = b'.';
 const DONE: u8 = b'q';
 
@@ -84,20 +89,30 @@ fn unstopped(why: &str) -> String {
     format!("the robot may still move, use the pendant or the emergency stop: {why}")
 }
 
+/// Starts a guardian, and has the pipe that it reads.
+fn spawn(robot: &Robot, words: &[&str], first: &str) -> io::Result<(Pipe, Child)> {
+    let mut command = stop_command(robot, words, Some(first))?;
+    #[cfg(not(unix))]
+    command.env(GUARDED, std::process::id().to_string());
+    let mut child = command.stdin(Stdio::piped()).spawn()?;
+    let pipe = Arc::new(Mutex::new(child.stdin.take()));
+    Ok((pipe, child))
+}
+
+type Pipe = Arc<Mutex<Option<ChildStdin>>>;
+
 /// Guards the motion of a command.
 #[derive(Debug)]
 pub struct Guardian {
-    pipe: Arc<Mutex<Option<ChildStdin>>>,
+    pipe: Pipe,
     child: Option<Child>,
 }
 
 impl Guardian {
     /// Starts one. `stops`: it stops the robot itself, because no session and no adapter does.
     pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
-        let spawned = stop_command(robot, words, Some(if stops { STOPS } else { ENDS }))
-            .and_then(|mut command| command.stdin(Stdio::piped()).spawn());
-        let mut child = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
-        let pipe = Arc::new(Mutex::new(child.stdin.take()));
+        let spawned = spawn(robot, words, if stops { STOPS } else { ENDS });
+        let (pipe, child) = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
         Ok(Self { pipe, child: Some(child) })
     }
 
@@ -109,18 +124,23 @@ impl Guardian {
 
     /// Does the work, and beats.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
-        let beat = async {
-            let mut beats = interval(BEAT);
-            beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
-            loop {
-                beats.tick().await;
-                write(&self.pipe, ALIVE);
-            }
-        };
-        tokio::select! {
-            done = work => done,
-            () = beat => unreachable!("it beats without end"),
+        beating(work, || write(&self.pipe, ALIVE)).await
+    }
+}
+
+/// Does the work, and beats.
+async fn beating<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
+    let beats = async {
+        let mut beats = interval(BEAT);
+        beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            beats.tick().await;
+            beat();
         }
+    };
+    tokio::select! {
+        done = work => done,
+        () = beats => unreachable!("it beats without end"),
     }
 }
 
@@ -133,6 +153,51 @@ impl Drop for Guardian {
         if let Some(mut child) = self.child.take() {
             thread::spawn(move || child.wait());
         }
+    }
+}
+
+/// Guards what clients of a session move. It stops the robot when the holder ends, however that comes about, while a client
+/// of another process moves it.
+#[derive(Debug)]
+pub struct HolderGuardian {
+    robot: Robot,
+    words: &'static [&'static str],
+    /// Nothing before the first motion.
+    started: RefCell<Option<(Pipe, Child)>>,
+}
+
+impl HolderGuardian {
+    /// Of the holder of this robot's link.
+    pub fn new(robot: &Robot, words: &'static [&'static str]) -> Self {
+        Self { robot: robot.clone(), words, started: RefCell::default() }
+    }
+
+    /// Is told that a client moves the robot, or that none does any more.
+    ///
+    /// # Errors
+    /// In words, when the first motion has no guardian.
+    pub fn moves(&self, is_moving: bool) -> Result<(), String> {
+        let mut started = self.started.borrow_mut();
+        if started.is_none() && is_moving {
+            let spawned = spawn(&self.robot, self.words, STOPS);
+            *started = Some(spawned.map_err(|error| {
+                format!("the robot is not stopped when this process dies: its guardian could not be started: {error}")
+            })?);
+        }
+        if let Some((pipe, _)) = &*started {
+            write(pipe, if is_moving { MOTION } else { REST });
+        }
+        Ok(())
+    }
+
+    /// Does the work, and beats.
+    pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
+        let beat = || {
+            if let Some((pipe, _)) = &*self.started.borrow() {
+                write(pipe, ALIVE);
+            }
+        };
+        beating(work, beat).await
     }
 }
 
@@ -184,6 +249,7 @@ fn outlives_motion() -> bool {
         };
         match byte {
             Ok(DONE) => return false,
+            Ok(REST) => is_moving = false,
             Ok(byte) => is_moving |= byte == MOTION,
             Err(RecvTimeoutError::Disconnected) => return is_moving,
             Err(RecvTimeoutError::Timeout) => {
@@ -214,13 +280,20 @@ fn kill(guarded: Option<rustix::process::Pid>) -> bool {
     guarded.filter(|_| getppid() == guarded).is_some_and(|guarded| kill_process(guarded, Signal::KILL).is_ok())
 }
 
+/// What tells a guardian whom it guards, where the system does not.
+#[cfg(not(unix))]
+const GUARDED: &str = "ARMCTL_GUARDED";
+
 #[cfg(not(unix))]
 fn guarded() -> Option<u32> {
-    None
+    std::env::var(GUARDED).ok()?.parse().ok()
 }
 
-/// The stop goes out beside the process that hangs.
+/// Kills the guarded process, which lives: its pipe is open.
 #[cfg(not(unix))]
-fn kill(_guarded: Option<u32>) -> bool {
-    false
+fn kill(guarded: Option<u32>) -> bool {
+    let Some(guarded) = guarded else { return false };
+    let mut kill = Command::new("taskkill");
+    kill.args(["/F", "/PID", &guarded.to_string()]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    kill.status().is_ok_and(|status| status.success())
 }

@@ -205,10 +205,10 @@ fn the_batch_backup_goes_by_its_path() {
 #[test]
 fn raw_reaches_a_single_field() {
     for (line, expected) in [
-        ("raw --command 0x72 --instance 1 --attribute 2 --service 0x0E --check", (0x72, 1, 2, GET)),
-        ("raw --command 0x7F --instance 5 --attribute 13 --service 0x10 --data 01000000 --check", (0x7F, 5, 13, SET)),
-        ("raw --command 0x79 --instance 5 --attribute 0 --service 0x02 --data 0100 --check", (0x79, 5, 0, SET_ALL)),
-        ("raw --command 0x30A --instance 1 --attribute 8 --service 0x0E --check", (0x30A, 1, 8, GET)),
+        ("raw --command 0x72 --instance 1 --attribute 2 --service 0x0E --strict", (0x72, 1, 2, GET)),
+        ("raw --command 0x7F --instance 5 --attribute 13 --service 0x10 --data 01000000 --strict", (0x7F, 5, 13, SET)),
+        ("raw --command 0x79 --instance 5 --attribute 0 --service 0x02 --data 0100 --strict", (0x79, 5, 0, SET_ALL)),
+        ("raw --command 0x30A --instance 1 --attribute 8 --service 0x0E --strict", (0x30A, 1, 8, GET)),
     ] {
         let sent = frames(DX200, line);
         let (request, before) = sent.split_last().expect("the request");

@@ -175,10 +175,9 @@ const MOVE: &str = "move pulse joint --pulses 90000,0,0,0,0,0 --speed 10% --yes"
 const HOLD_ON: &[u8] = &[1, 0, 0, 0];
 
 /// Every order, and what its message names as the one that tells the outcome.
-const ORDERS: [(&str, &str); 25] = [
+const ORDERS: [(&str, &str); 24] = [
     ("servo on --yes", "yerc status"),
     ("servo off --yes", "yerc status"),
-    ("hold on", "yerc status"),
     ("hold off", "yerc status"),
     ("hlock on", "yerc status"),
     ("hlock off", "yerc status"),
@@ -378,6 +377,16 @@ fn a_lost_stop_is_sent_again() {
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("stopping the robot") && stderr(&output).contains("HOLD is on"));
     assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 13);
+}
+
+/// Nobody answers: the order is sent for three seconds, and that it is not confirmed is told.
+#[test]
+fn a_hold_that_nobody_confirms_is_sent_again_and_told() {
+    let controller = Controller::new(|_| Reaction::Silence);
+    let output = controller.run("hold on --timeout 60s --retries 0");
+    assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
+    assert!(stderr(&output).contains("nothing tells that the robot is held"), "{}", stderr(&output));
+    assert_eq!(controller.changes().len(), 15);
 }
 
 /// A second Ctrl-C, or TERM, ends the process wherever it is: here, while nobody confirms the stop.

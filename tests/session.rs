@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod orphans;
+mod shared;
 
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::os::unix::fs::PermissionsExt as _;
@@ -120,6 +121,16 @@ impl Running {
         }
     }
 
+    /// The next line that begins like this.
+    fn line(&mut self, beginning: &str) -> String {
+        let mut line = String::new();
+        while !line.starts_with(beginning) {
+            line.clear();
+            assert!(self.stderr.read_line(&mut line).unwrap() > 0, "it never said '{beginning}'");
+        }
+        line
+    }
+
     fn signal(&self, signal: &str) {
         let pid = self.process.id().to_string();
         assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
@@ -148,7 +159,9 @@ fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
 
 /// A simulator that is started like this.
 fn serving(desk: &Desk, words: &str) -> Running {
-    let mut simulator = Running::start(desk.command(&format!("sim {words} --jq .data.target")), true);
+    let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
+    command.stdin(Stdio::piped());
+    let mut simulator = Running::start(command, true);
     if !simulator.first.contains("://") {
         let mut said = String::new();
         simulator.stderr.read_to_string(&mut said).unwrap();
@@ -401,7 +414,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
         let desk = Desk::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
         let session = Running::session(&desk, "cell");
         desk.data("-r cell yrcx io set 20=on");
-        assert_eq!(desk.data("-r cell yrcx io get SI20")["signals"][0]["on"], true, "{target}");
+        assert_eq!(desk.data("-r cell yrcx io get SI20")["items"][0]["value"], true, "{target}");
         assert!(desk.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(), "{target}");
         desk.data("session close cell");
         assert_eq!(session.end().0, Some(0), "{target}");
@@ -515,7 +528,7 @@ fn a_simulator_in_a_session_keeps_its_state() {
     }
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 3);
     desk.data("-r x yrcx io set 20=on");
-    assert_eq!(desk.data("-r x yrcx io get SI20")["signals"][0]["on"], true);
+    assert_eq!(desk.data("-r x yrcx io get SI20")["items"][0]["value"], true);
     desk.data("-r y yerc var set B0=42");
     assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
     desk.data("-r t toyo counter set 7 42");

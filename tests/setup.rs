@@ -31,6 +31,10 @@ impl Desk {
     }
 }
 
+/// Presses of the key for the next entry of a list.
+const SECOND: &str = "\x1b[B";
+const THIRD: &str = "\x1b[B\x1b[B";
+
 /// Answers each question that comes.
 fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
     for (question, answer) in answers {
@@ -45,7 +49,7 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
     let (address, _) = controller.place();
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
-    answer(&mut setup, &[("Which controller is it?", "1")]);
+    answer(&mut setup, &[("Which controller is it?", "")]);
     setup.says("it answers a status request");
     setup.says("dx200, by its software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
@@ -63,7 +67,7 @@ fn an_address_becomes_a_robot_that_is_checked_named_and_read_only() {
 fn a_simulator_is_set_up_as_well_and_a_second_robot_may_become_the_default() {
     let desk = Desk::new();
     let simulator =
-        [("Where is the robot?", "3"), ("Which controller is it?", "2"), ("eip://127.0.0.1:44818]:", "sim:")];
+        [("Where is the robot?", THIRD), ("Which controller is it?", SECOND), ("eip://127.0.0.1:44818]:", "sim:")];
     let mut setup = desk.setup();
     answer(&mut setup, &simulator);
     answer(&mut setup, &[("Name [cell1]:", ""), ("Read-only", "n"), ("Hold", "y"), ("Write this", "y")]);
@@ -82,33 +86,87 @@ fn a_simulator_is_set_up_as_well_and_a_second_robot_may_become_the_default() {
 fn what_is_in_the_way_is_shown_and_asked_about() {
     let desk = Desk::new();
     let mut setup = desk.setup();
-    answer(&mut setup, &[("Where is the robot?", "4"), ("type a number from 1 to 3", "1"), ("a URL:", "robot")]);
+    answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "robot")]);
     setup.says("error:");
-    answer(&mut setup, &[("Where is the robot?", "1"), ("a URL:", "udp://127.0.0.1:1")]);
+    answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "udp://127.0.0.1:1")]);
     setup.says("failed");
     answer(
         &mut setup,
-        &[("What now?", ""), ("What now?", "2"), ("Where is the robot?", "1"), ("a URL:", "tcp://127.0.0.1:1")],
+        &[("What now?", ""), ("What now?", SECOND), ("Where is the robot?", ""), ("a URL:", "tcp://127.0.0.1:1")],
     );
-    answer(&mut setup, &[("What now?", "3"), ("Name", "tray"), ("Read-only", ""), ("Write this", "n")]);
+    answer(&mut setup, &[("What now?", THIRD), ("Name", "tray"), ("Read-only", ""), ("Write this", "n")]);
     setup.says("nothing was written");
     assert_eq!(setup.end().code(), Some(7));
     assert_eq!(desk.inventory(), None);
 }
 
 #[test]
-fn no_answer_and_ctrl_c_write_nothing() {
-    for exit in [7, 130] {
+fn escape_and_signals_write_nothing_and_give_the_terminal_back() {
+    for way in ["escape", "ctrl-c", "INT", "TERM"] {
         let desk = Desk::new();
         let mut setup = desk.setup();
-        setup.says("Number [1]:");
-        if exit == 7 {
-            setup.press("\x04");
-        } else {
-            setup.signal("INT");
+        setup.says("nowhere yet: a simulator");
+        match way {
+            "escape" => setup.press("\x1b"),
+            "ctrl-c" => setup.press("\x03"),
+            signal => setup.signal(signal),
         }
-        assert_eq!(setup.end().code(), Some(exit));
-        assert!(setup.is_as_before());
+        assert_eq!(setup.end().code(), Some(130), "{way}");
+        gives_back(&setup, way);
         assert_eq!(desk.inventory(), None);
+    }
+}
+
+/// The modes are as they were, and the cursor is shown.
+fn gives_back(terminal: &Terminal, way: &str) {
+    assert!(terminal.is_as_before(), "{way}");
+    let written = String::from_utf8_lossy(&terminal.written);
+    assert!(written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l"), "{way}: {written:?}");
+}
+
+/// A line on a terminal, which may lack a name.
+fn line(desk: &Desk, words: &[&str]) -> Terminal {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    command.env_clear().env("HOME", desk.folder.path()).env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
+    command.args(["--config", "robots.toml"]).args(words).current_dir(desk.folder.path());
+    Terminal::start(command, 80, 24).expect("a terminal")
+}
+
+#[test]
+fn a_name_that_is_missing_is_chosen() {
+    let desk = Desk::new();
+    let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
+    select.says("NAME");
+    select.press("WAIT\r");
+    // The terminal is narrower than the line.
+    select.says("the same without a question: armctl --config robots.toml --sim yerc job select");
+    select.says("WAITIN is selected");
+    assert_eq!(select.end().code(), Some(0));
+    gives_back(&select, "chosen");
+    let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
+    std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
+    let mut status = line(&desk, &["status", "-r"]);
+    status.says("cell3");
+    status.press("\r");
+    status.says("armctl --config robots.toml status -r cell3");
+    assert_eq!(status.end().code(), Some(0));
+}
+
+#[test]
+fn what_deletes_is_not_chosen_by_enter_alone() {
+    let desk = Desk::new();
+    let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);
+    delete.says("COUNT.JBI");
+    delete.press("\r\x1b");
+    assert_eq!(delete.end().code(), Some(130), "Enter took nothing, Esc left");
+    gives_back(&delete, "left");
+}
+
+#[test]
+fn nothing_is_asked_where_that_is_not_wanted() {
+    for words in [&["--no-input", "--sim", "yerc", "job", "select"][..], &["--json", "--sim", "yerc", "job", "select"]]
+    {
+        let mut refused = line(&Desk::new(), words);
+        assert_eq!(refused.end().code(), Some(2), "{words:?}");
     }
 }

@@ -233,7 +233,7 @@ fn a_line_that_is_cut_while_an_axis_moves_says_what_to_do() {
 /// From the moment the order is on the line: unanswered, accepted, under way.
 #[test]
 fn ctrl_c_stops_what_runs() {
-    for (words, order) in [("run sequential 1", "@SPST 0001"), ("home", "@HOME")] {
+    for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
         for (is_answered, looks) in [(false, 0), (true, 0), (true, 3)] {
             let mut controller =
                 Controller::new(
@@ -257,7 +257,7 @@ fn ctrl_c_stops_what_runs() {
 #[test]
 fn what_is_to_be_left_is_left() {
     let mut controller = Controller::new(|_| Peculiar::No);
-    let child = controller.command("run sequential 1 --on-interrupt leave").spawn().unwrap();
+    let child = controller.command("run sequential 1 --wait --on-interrupt leave").spawn().unwrap();
     controller.wait_for("@SPST 0001", 1);
     controller.wait_for("@STAS SNO=0", 2);
     signal(&child, "INT");
@@ -274,7 +274,7 @@ fn no_order_leaves_twice() {
     for (words, order) in [
         ("home", "@HOME"),
         ("home --sync 1", "@SORG 1"),
-        ("run sequential 1", "@SPST 0001"),
+        ("run sequential 1 --wait", "@SPST 0001"),
         ("run palletizing --program 2", "@SPLN PR=02"),
         ("run palletizing", "@PPST"),
         ("run easy", "@SESY"),

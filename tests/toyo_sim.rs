@@ -129,13 +129,13 @@ fn the_console_drives_what_no_command_can() {
     assert!(served.said().starts_with("reach it:") && served.said().starts_with("end it:"));
     console.write_all(b"input 0/01/3 on\n").unwrap();
     assert!(served.said().contains("servo on"), "what is now");
-    assert_eq!(served.data(folder.path(), "io in --port 1")["ports"][0]["raw"], "00000100");
+    assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
     console.write_all(b"\ninptu 0/01/3 off\n").unwrap();
     assert!(served.said().contains("inptu"));
     drop(console);
     assert!(served.said().trim().is_empty() && served.said().contains("`help`"), "a hint follows");
     // It serves on after the end of the console.
-    assert_eq!(served.data(folder.path(), "io in --port 1")["ports"][0]["on"][0], 3);
+    assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
 }
 
 #[test]

@@ -193,9 +193,9 @@ fn registers_and_signals_are_read_one_by_one_where_there_is_no_other_way() {
     assert_eq!((exit, &some["data"]["items"][2]["error"]["asked"]), (9, &json!("M12")), "{some}");
     assert!(some["error"]["message"].as_str().unwrap().contains("0x79 (instance 12)"), "{some}");
     let (exit, signals, _) = at(&target, "io get 10010..10027");
-    assert_eq!((exit, &signals["data"]["signals"][0]["on"]), (0, &json!(true)), "{signals}");
+    assert_eq!((exit, &signals["data"]["items"][0]["value"]), (0, &json!(true)), "{signals}");
     let (exit, set, error) = at(&target, "io set 27010=on 27030=on");
-    assert_eq!((exit, &set["data"]["groups"][1]["value"]), (0, &json!(1)), "{set} {error}");
+    assert_eq!((exit, &set["data"]["items"][1]["value"]), (0, &json!(true)), "{set} {error}");
 }
 
 #[test]

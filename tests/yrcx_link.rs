@@ -116,13 +116,13 @@ fn one_owner_at_a_time_and_others_may_listen() {
         "--json",
     ]);
     let heard: Value = serde_json::from_slice(&listener.output().unwrap().stdout).unwrap();
-    assert_eq!(heard["data"]["signals"][0]["on"], true);
+    assert_eq!(heard["data"]["items"][0]["value"], true);
 
     let mut console = &simulator.console;
     writeln!(console, "estop on").unwrap();
     let change: Value = serde_json::from_str(&told.next().unwrap().unwrap()).unwrap();
     assert_eq!(
-        (&change["data"]["signals"][0]["name"], &change["data"]["signals"][0]["on"]),
+        (&change["data"]["items"][0]["name"], &change["data"]["items"][0]["value"]),
         (&"alarm".into(), &true.into())
     );
     for mut child in [watch, owner] {
@@ -156,7 +156,7 @@ fn looking_leaves_the_owner_alone() {
 fn a_board_that_lets_nobody_read_is_listened_to() {
     let output = Simulator::start(&["--mischief", "unreadable"]).run("yrcx io get cpu-ok --json");
     let heard: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(heard["data"]["signals"][0]["on"], true);
+    assert_eq!(heard["data"]["items"][0]["value"], true);
 }
 
 #[test]

@@ -59,6 +59,8 @@ mod tests {
         ("toyo speed-table get", "1", "3"),
         ("toyo timer get", "1", "3"),
         ("toyo torque-table get", "1", "3"),
+        ("io get", "20010", "20012"),
+        ("toyo io get", "IN1", "IN3"),
         ("yerc io get", "20010", "20012"),
         ("yerc register get", "1", "3"),
         ("yerc var get", "B1", "B3"),
@@ -89,7 +91,7 @@ mod tests {
         "toyo counter set 1=0",
         "toyo easy set 1=10,5,20",
         "toyo easy set 1 loop=5",
-        "toyo io set 1.3=on",
+        "toyo io set OUT1.3=on",
         "toyo mvm set 1 origin=5",
         "toyo palletizing set 1 source-p1=100,0,0",
         "toyo param set P01=100,200,0,0",
@@ -114,8 +116,15 @@ mod tests {
 
     /// Verbs that set the one thing they are about, what has numbers and no name, and settings of the inventory, which have a
     /// test of their own.
-    const NO_SETTINGS: [&str; 6] =
-        ["robots set", "toyo coordinate set", "toyo override set", "toyo task set", "yrcx clock set", "yrcx eip set"];
+    const NO_SETTINGS: [&str; 7] = [
+        "names set",
+        "robots set",
+        "toyo coordinate set",
+        "toyo override set",
+        "toyo task set",
+        "yrcx clock set",
+        "yrcx eip set",
+    ];
 
     fn words(line: &str) -> Vec<OsString> {
         shlex::split(&format!("armctl {line}")).unwrap().into_iter().map(Into::into).collect()

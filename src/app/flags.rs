@@ -2,7 +2,6 @@
 
 use super::prepared::Task;
 use crate::cli::Globals;
-use crate::command::Command as _;
 use crate::command::common::Common;
 use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
@@ -37,9 +36,10 @@ impl Uses {
     fn of_common(common: &Common) -> Self {
         match common {
             Common::Backup(backup) if !backup.takes_robot() => NONE,
-            Common::Diff(diff) if !diff.takes_robot() => NONE,
+            Common::Diff(diff) if !diff.may_ask_robots() => NONE,
             Common::Status(_)
             | Common::Alarm(_)
+            | Common::Io(_)
             | Common::Position
             | Common::Stop
             | Common::Wait(_)
@@ -53,7 +53,7 @@ impl Uses {
             #[cfg(feature = "plant")]
             Common::Publish(_) => ALL,
             Common::Session(_) => Self { repeat: false, ..ALL },
-            Common::Robots(Robots::List) => Self { robots: true, ..NONE },
+            Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
             // What settings would be in force; what a check needs.
@@ -83,9 +83,9 @@ type Given = (Option<&'static str>, fn(Uses) -> bool);
 
 /// Each flag, if it was given, with whether it means something. `--for` is not among them: it comes with `--until`, or is
 /// the command's own.
-fn given(globals: &Globals) -> [Given; 16] {
+fn given(globals: &Globals) -> [Given; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
-    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, .. } = globals;
+    let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;
     [
         (sim.then_some("--sim"), |uses| uses.robots),
         (target.as_ref().map(|_| "--target"), |uses| uses.robots),
@@ -100,6 +100,7 @@ fn given(globals: &Globals) -> [Given; 16] {
         (watch.map(|_| "--watch"), |uses| uses.repeat),
         (count.map(|_| "--count"), |uses| uses.repeat),
         (until.as_ref().map(|_| "--until"), |uses| uses.repeat),
+        (check.as_ref().map(|_| "--check"), |uses| uses.repeat),
         (yes.then_some("--yes"), |uses| uses.gate),
         (dry_run.then_some("--dry-run"), |uses| uses.gate),
         ((*on_interrupt != OnInterrupt::Stop).then_some("--on-interrupt"), |uses| uses.gate),

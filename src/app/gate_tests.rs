@@ -25,7 +25,8 @@ use crate::settings::inventory::Inventory;
 use crate::settings::target::Family;
 use crate::settings::{Selection, Sources};
 
-const STOPS: [&str; 6] = ["stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+const STOPS: [&str; 7] =
+    ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
 /// Two robots of each family that are not there; the second ones are read-only.
 const ROBOTS: &str = r#"
@@ -98,7 +99,8 @@ fn seen(line: &str) -> Result<Seen, String> {
             of(&*command, family)
         }
         Invocation::Task(Task::Common(Common::Status(command))) => of(&command, "toyo"),
-        Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command(), "toyo"),
+        Invocation::Task(Task::Common(Common::Alarm(alarm))) => of(&*alarm.command().unwrap(), "toyo"),
+        Invocation::Task(Task::Common(Common::Io(io))) => of(&*io.command().unwrap(), "toyo"),
         Invocation::Task(Task::Common(Common::Wait(_))) => of(&Overview {}, "toyo"),
         Invocation::Task(Task::Common(Common::Position)) => of(&shared::position(), "toyo"),
         Invocation::Task(Task::Common(Common::Stop)) => of(&shared::stop(), "toyo"),

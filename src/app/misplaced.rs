@@ -414,7 +414,7 @@ mod tests {
             ("armctl yerc select WELD", "the command is `armctl yerc job select`"),
             ("armctl yerc robots list", "the command is `armctl robots`, which is for all families"),
             ("armctl stats", "a similar subcommand exists: 'status'"),
-            ("armctl yerc jop", "a similar subcommand exists: 'job'"),
+            ("armctl yerc jop", "some similar subcommands exist: 'stop', 'job'"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
@@ -453,7 +453,7 @@ mod tests {
             let tip = tip(line).unwrap_or_default();
             assert!(!tip.contains("home") && !tip.contains("origin"), "{line}: {tip}");
         }
-        let absent = tip("armctl yerc home").unwrap();
+        let absent = tip("armctl yerc origin").unwrap();
         assert!(
             absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
             "{absent}"
@@ -500,10 +500,10 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
-            ("armctl yerc var dump points.csv P0..P9", "type the range after its flag: --ranges P0..P9"),
-            ("armctl yerc job start --name WELD", "type NAME without --name"),
-            ("armctl toyo io get 1", "use `armctl toyo io in` or `armctl toyo io out`"),
-            ("armctl explain 12.600", "add the family of the code: `armctl explain yrcx 12.600`"),
+            ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
+            ("armctl yerc job start --name WELD", "NAME stands alone, without --name"),
+            ("armctl toyo io in", "the command is `armctl toyo io list`"),
+            ("armctl explain 12.600", "say whose code it is: `armctl explain yrcx 12.600`"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }

@@ -12,7 +12,7 @@ use crate::cli::{Cli, FamilyWord, LONG_VERSION, Top, VERSION, Words};
 use crate::command::about::help;
 use crate::command::about::page::page;
 use crate::command::common::Common;
-use crate::command::families;
+use crate::command::{families, verbs};
 use crate::failure::Failure;
 use crate::settings::target::Family;
 
@@ -54,6 +54,11 @@ impl Refusal {
     fn new(error: clap::Error, args: &[OsString], whole: &Command) -> Self {
         let Typed { mut path, rest, .. } = Typed::new(args, whole);
         let is_long = args.iter().any(|word| word == "--help");
+        if matches!(error.kind(), ErrorKind::InvalidSubcommand | ErrorKind::UnknownArgument)
+            && let Some(failure) = verbs::missing(&path, &rest)
+        {
+            return Self::Failed(failure);
+        }
         match error.kind() {
             ErrorKind::DisplayVersion => Self::Text(error.render()),
             ErrorKind::DisplayHelp => Self::Text(page(whole, &path, is_long)),

@@ -105,7 +105,10 @@ impl PreparedCommand {
             Task::Common(Common::Wait(wait)) => run.repeat = wait.repeat(&run.repeat)?,
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
-            Task::Common(Common::Diff(diff)) => run.sources.selection.simulated = diff.of_family(),
+            Task::Common(Common::Diff(diff)) => match diff.robots(&run.sources.inventory) {
+                Some(robots) => run.sources.choose_all(&robots)?,
+                None => run.sources.selection.simulated = diff.of_family(),
+            },
             Task::Common(_) => {}
         }
         Ok(Self { run, task })
@@ -122,7 +125,8 @@ impl PreparedCommand {
             Task::Family(_, command) => self.run.check_gate(&**command),
             Task::Common(Common::Status(overview)) => self.run.check_gate(overview),
             Task::Common(Common::Wait(_)) => self.run.check_gate(&Overview {}),
-            Task::Common(Common::Alarm(alarm)) => self.run.check_gate(&*alarm.command()),
+            Task::Common(Common::Alarm(alarm)) => self.run.check_gate(&*alarm.command()?),
+            Task::Common(Common::Io(io)) => self.run.check_gate(&*io.command()?),
             Task::Common(Common::Position) => self.run.check_gate(&shared::position()),
             Task::Common(Common::Stop) => self.run.check_gate(&shared::stop()),
             Task::Common(_) => Ok(()),
@@ -181,9 +185,16 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Condition::new).transpose()?;
+    let check = globals.check.as_deref().map(Condition::new).transpose()?;
     let gate = Gate { yes: globals.yes, dry_run: globals.dry_run, on_interrupt: globals.on_interrupt };
-    let repeat =
-        Repeat { every: globals.watch, count: globals.count, until, within: globals.within, ..Repeat::default() };
+    let repeat = Repeat {
+        every: globals.watch,
+        count: globals.count,
+        until,
+        check,
+        within: globals.within,
+        ..Repeat::default()
+    };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })

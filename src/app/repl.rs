@@ -48,6 +48,7 @@ pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     if let Err(Refusal::Text(help)) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help);
     }
+    screen.note(&format!("`armctl {} repl` reads commands from stdin, a line each", prefix.join(" ")));
     RunError { told: true, ..Failure::usage("a command is missing").into() }
 }
 

@@ -3,14 +3,13 @@
 use clap::Subcommand;
 
 use super::about::{completions, help, man, schema};
-use super::fleet::shared::{self, alarm};
+use super::fleet::shared::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
-use super::fleet::{backup, robots, session, setup, tools, top};
+use super::fleet::{backup, names, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
 use super::frame::run::{Run, RunError};
-use crate::command::Command as _;
 
 /// Commands that every family shares.
 #[derive(Debug, Subcommand)]
@@ -19,9 +18,12 @@ pub enum Common {
     Setup(setup::Setup),
     /// Show a one-line status per robot
     Status(Overview),
-    /// Alarms of robots: list, history, reset
+    /// Alarms of robots: list, history, watch, reset
     #[command(subcommand)]
     Alarm(alarm::Alarm),
+    /// Signals of robots: get, list, watch
+    #[command(subcommand)]
+    Io(io::Io),
     /// Show where robots stand
     Position,
     /// Stop robots, whatever moves them
@@ -40,6 +42,9 @@ pub enum Common {
     /// The inventory: list, add, set, edit, and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
+    /// Names of signals, variables and registers: list, set
+    #[command(subcommand)]
+    Names(names::Names),
     /// Keep a connection open for later commands: open, list, close
     #[command(subcommand)]
     Session(session::Session),
@@ -47,7 +52,7 @@ pub enum Common {
     Backup(backup::Backup),
     /// Restore a backup
     Restore(backup::Restore),
-    /// Compare a backup with another one, or with a controller
+    /// Compare a backup with another one or a controller, or two controllers
     Diff(backup::Diff),
     /// Run a simulator as a network or serial server
     Sim(tools::Sim),
@@ -76,17 +81,19 @@ impl Common {
             Self::Setup(_)
             | Self::Status(_)
             | Self::Alarm(_)
+            | Self::Io(_)
             | Self::Position
             | Self::Stop
             | Self::Wait(_)
             | Self::Top(_)
             | Self::Robots(_)
+            | Self::Names(_)
             | Self::Session(_)
             | Self::Restore(_) => true,
             #[cfg(feature = "plant")]
             Self::Serve(_) => true,
             Self::Backup(backup) => backup.takes_robot(),
-            Self::Diff(diff) => diff.takes_robot(),
+            Self::Diff(diff) => diff.may_ask_robots(),
             _ => false,
         }
     }
@@ -94,7 +101,7 @@ impl Common {
     /// Whether it is for all robots of the inventory where none is named, and for the simulators of all families.
     pub fn is_for_all(&self) -> bool {
         match self {
-            Self::Status(_) | Self::Position | Self::Top(_) => true,
+            Self::Status(_) | Self::Io(_) | Self::Position | Self::Top(_) => true,
             Self::Alarm(alarm) => alarm.reads(),
             #[cfg(feature = "plant")]
             Self::Serve(_) | Self::Publish(_) => true,
@@ -118,10 +125,12 @@ impl Common {
             Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
             Self::Status(_)
             | Self::Alarm(_)
+            | Self::Io(_)
             | Self::Position
             | Self::Stop
             | Self::Wait(_)
             | Self::Robots(_)
+            | Self::Names(_)
             | Self::Session(_)
             | Self::Decode(_)
             | Self::Explain(_)
@@ -136,13 +145,14 @@ impl Common {
         match self {
             Self::Setup(setup) => Box::pin(setup.run(run)).await,
             Self::Status(overview) => run.robots(&overview).await,
-            Self::Alarm(alarm) => run.robots(&*alarm.command()).await,
+            Self::Alarm(alarm) => run.robots(&*alarm.command()?).await,
+            Self::Io(io) => run.robots(&*io.command()?).await,
             Self::Position => run.robots(&shared::position()).await,
             Self::Stop => run.robots(&shared::stop()).await,
             Self::Wait(_) => run.robots(&Overview {}).await,
             Self::Backup(backup) => backup.run(run).await,
             Self::Restore(restore) => run.robots(&restore).await,
-            Self::Diff(diff) => run.robots(&diff).await,
+            Self::Diff(diff) => backup::diff(diff, run).await,
             Self::Top(top) => Box::pin(top.run(run)).await,
             #[cfg(feature = "plant")]
             Self::Serve(serve) => Box::pin(serve.run(run)).await,
@@ -151,6 +161,7 @@ impl Common {
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,
+            Self::Names(names) => names.run(run),
             Self::Decode(decode) => decode.run(run).await,
             Self::Explain(explain) => explain.run(run).await,
             Self::Completions(completions) => Ok(completions.run(run)?),

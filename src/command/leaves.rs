@@ -20,12 +20,20 @@ const COMMON: &[Leaf] = &[
     ("alarm list --all -o csv", Read),
     ("alarm history", Read),
     ("alarm history -r cell3", Read),
+    ("alarm watch", Read),
+    ("alarm watch -r cell3 --for 8h", Read),
     ("alarm reset -r cell3", Write),
     ("alarm reset --tag line1", Write),
     ("wait idle -r cell3", Read),
     ("wait servo-on --tag line1 --for 30s", Read),
     ("position", Read),
     ("position -r cell3,cell4 -o csv", Read),
+    ("io get clamp -r cell3", Read),
+    ("io get clamp --tag line1 -o csv", Read),
+    ("io list", Read),
+    ("io list --out", Read),
+    ("io watch clamp", Read),
+    ("io watch clamp -r cell3,cell4", Read),
     ("stop -r cell3", Write),
     ("stop --all", Write),
     ("backup press -r press", Write),
@@ -34,6 +42,7 @@ const COMMON: &[Leaf] = &[
     ("restore press -r press --dry-run", Destroy),
     ("diff press -r press", Write),
     ("diff monday tuesday", Write),
+    ("diff cell3 cell4 --only '*.JBI'", Write),
 ];
 
 /// All lines for robots: of every command the usual ones, and where its words decide what it does, one of each.

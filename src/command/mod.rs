@@ -22,6 +22,7 @@ pub mod leaves;
 pub mod robot;
 pub mod serve;
 pub mod toyo;
+pub mod verbs;
 pub mod yerc;
 pub mod yrcx;
 

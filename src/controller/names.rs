@@ -23,6 +23,10 @@ pub enum Kind {
     Output,
     /// A counter.
     Counter,
+    /// A timer.
+    Timer,
+    /// A row of the coordinate table.
+    Point,
 }
 
 impl Kind {
@@ -36,6 +40,8 @@ impl Kind {
             Self::Input => "input",
             Self::Output => "output",
             Self::Counter => "counter",
+            Self::Timer => "timer",
+            Self::Point => "point",
         }
     }
 }

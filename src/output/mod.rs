@@ -22,6 +22,7 @@ pub mod view;
 mod wrap;
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context as _;
 use serde::Serialize;
@@ -63,6 +64,7 @@ pub enum ColorChoice {
 
 /// Where everything is written, and how.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Screen {
     /// How data is written.
     pub format: Format,
@@ -73,18 +75,25 @@ pub struct Screen {
     color: ColorChoice,
     pager: bool,
     plain_errors: bool,
+    questions: bool,
 }
 
 impl Screen {
     /// Everything as flags and environment want it.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
-        Self { format, quiet, verbosity, color, pager: false, plain_errors: false }
+        Self { format, quiet, verbosity, color, pager: false, plain_errors: false, questions: true }
     }
 
     /// With errors in words, although data is JSON: `--jq` alone.
     #[must_use]
     pub fn with_plain_errors(self, plain_errors: bool) -> Self {
         Self { plain_errors, ..self }
+    }
+
+    /// With questions to a person, or without.
+    #[must_use]
+    pub fn with_questions(self, questions: bool) -> Self {
+        Self { questions, ..self }
     }
 
     /// With a pager for long texts to read, or without.
@@ -103,6 +112,7 @@ impl Screen {
             color: ColorChoice::Never,
             pager: false,
             plain_errors: false,
+            questions: true,
         }
     }
 
@@ -127,9 +137,14 @@ impl Screen {
         io::stdin().is_terminal()
     }
 
+    /// Whether a person can choose what was not named: where a person can be asked, and no program reads.
+    pub fn can_choose(&self) -> bool {
+        self.can_ask() && !self.is_json() && std::env::var_os("CI").is_none_or(|value| value.is_empty())
+    }
+
     /// Whether a person can be asked: stdin and stderr are terminals.
     pub fn can_ask(&self) -> bool {
-        io::stdin().is_terminal() && io::stderr().is_terminal()
+        self.questions && io::stdin().is_terminal() && io::stderr().is_terminal()
     }
 
     /// Whether progress can redraw itself on stderr.
@@ -199,6 +214,15 @@ impl Screen {
     pub fn note(&self, text: &str) {
         if !self.quiet {
             Self::prose(&format!("{}\n", escape::lines(text)));
+        }
+    }
+
+    /// Says on a terminal, once in a process, that what follows is of the simulator.
+    pub fn note_simulator(&self) {
+        static IS_TOLD: AtomicBool = AtomicBool::new(false);
+
+        if self.format == Format::Table && io::stderr().is_terminal() && !IS_TOLD.swap(true, Ordering::Relaxed) {
+            self.note("this is the built-in simulator, not a controller");
         }
     }
 

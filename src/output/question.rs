@@ -1,47 +1,83 @@
-//! Questions with an answer of their own: a line, a number of a list, yes or no. As in `prompt`, the terminal stays as
-//! it is.
+//! Questions with an answer of their own: a line, one of a list, yes or no. Keys are read one by one, so a signal may end
+//! the process while the terminal is set for that: whoever asks calls [`Screen::give_back`] then.
 
-use super::Screen;
-use crate::failure::Failure;
+use std::fmt;
+use std::io;
+
+use dialoguer::console::Term;
+use dialoguer::theme::Theme;
+use dialoguer::{Confirm, Error, FuzzySelect, Input, Select};
+
+use super::{Screen, escape, prompt};
+use crate::failure::{Failure, Kind};
+
+/// Most lines of a list that is chosen from.
+const ROWS: usize = 12;
+
+/// Questions as lines of plain text.
+struct Plain;
+
+impl Theme for Plain {
+    fn format_prompt(&self, f: &mut dyn fmt::Write, prompt: &str) -> fmt::Result {
+        f.write_str(prompt)
+    }
+}
 
 impl Screen {
     /// Asks for a line. An empty one is `usual`; where there is none, it is asked again.
     pub fn ask_line(&self, question: &str, usual: Option<&str>) -> Result<String, Failure> {
-        let shown = usual.map(|usual| format!(" [{usual}]")).unwrap_or_default();
-        loop {
-            let answer = Self::ask(&format!("{question}{shown}:"))?;
-            let answer = String::from_utf8_lossy(&answer).trim().to_owned();
-            match (answer.is_empty(), usual) {
-                (false, _) => return Ok(answer),
-                (true, Some(usual)) => return Ok(usual.to_owned()),
-                (true, None) => {}
-            }
-        }
+        let question = escape::line(question);
+        let input = Input::<String>::with_theme(&Plain).with_prompt(question);
+        let input = match usual {
+            Some(usual) => input.default(usual.to_owned()),
+            None => input,
+        };
+        asked(|term| input.interact_text_on(term)).map(|line| line.trim().to_owned())
     }
 
     /// Asks for one of a list, the first unless another is chosen; its place comes back.
     pub fn ask_choice(&self, question: &str, options: &[String]) -> Result<usize, Failure> {
-        let numbered = options.iter().zip(1..).map(|(option, number)| format!("\n  {number}  {option}"));
-        self.ask_note(&format!("\n{question}{}", numbered.collect::<String>()));
-        loop {
-            let answer = self.ask_line("Number", Some("1"))?;
-            match answer.parse::<usize>().ok().and_then(|number| number.checked_sub(1)) {
-                Some(at) if at < options.len() => return Ok(at),
-                _ => self.ask_note(&format!("type a number from 1 to {}", options.len())),
-            }
-        }
+        let select = Select::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
+        let select = select.default(0).max_length(ROWS);
+        asked(|term| select.interact_on_opt(term))?.ok_or_else(left)
+    }
+
+    /// Asks for one of many, with a text to find it by. Nothing is chosen at first unless `has_first` says so.
+    pub fn ask_one_of(&self, question: &str, options: &[String], has_first: bool) -> Result<usize, Failure> {
+        let select = FuzzySelect::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
+        let select = if has_first { select.default(0) } else { select };
+        asked(|term| select.max_length(ROWS).interact_on_opt(term))?.ok_or_else(left)
     }
 
     /// Asks for yes or no; an empty answer is `usual`.
     pub fn ask_yes(&self, question: &str, usual: bool) -> Result<bool, Failure> {
-        loop {
-            let answer = Self::ask(&format!("{question} [{}]", if usual { "Y/n" } else { "y/N" }))?;
-            match answer.trim_ascii().to_ascii_lowercase().as_slice() {
-                b"" => return Ok(usual),
-                b"y" | b"yes" => return Ok(true),
-                b"n" | b"no" => return Ok(false),
-                _ => self.ask_note("type y or n"),
-            }
-        }
+        let confirm = Confirm::with_theme(&Plain).with_prompt(escape::line(question)).default(usual);
+        asked(|term| confirm.wait_for_newline(true).interact_on_opt(term))?.ok_or_else(left)
     }
+
+    /// Sets the terminal as it was before a question that was broken off.
+    pub fn give_back(&self) {
+        Self::stderr("\x1b[?25h\r\n");
+        prompt::restore();
+    }
+
+    /// Each in a line of its own.
+    fn lines(&self, options: &[String]) -> Vec<String> {
+        let room = usize::from(self.width()).saturating_sub(4);
+        options.iter().map(|option| escape::line(option).chars().take(room).collect()).collect()
+    }
+}
+
+/// Asks on stderr.
+fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
+    prompt::save();
+    ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {
+        io::ErrorKind::Interrupted => left(),
+        _ => Failure::new(Kind::Rejected, "there was no answer").hint("answer the question at a terminal"),
+    })
+}
+
+/// Esc, or Ctrl-C.
+fn left() -> Failure {
+    Failure::new(Kind::Interrupted, "interrupted")
 }

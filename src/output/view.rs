@@ -120,17 +120,28 @@ impl Table {
 }
 
 impl Table {
-    /// Tables of the same columns as one, with what each is of in a first column; `None` if they differ.
+    /// Tables as one, with what each is of in a first column. They have the columns of the widest of them, in its order, or
+    /// some of these; `None` if one has another.
     pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {
-        let (_, first) = tables.first()?;
-        if tables.iter().any(|(_, table)| table.columns != first.columns) {
+        let (_, widest) = tables.iter().rev().max_by_key(|(_, table)| table.columns.len())?;
+        let place = |table: &Self, column: &&str| table.columns.iter().position(|own| own == column);
+        let fits = |table: &Self| {
+            let places: Option<Vec<usize>> = table.columns.iter().map(|column| place(widest, column)).collect();
+            places.is_some_and(|places| places.is_sorted())
+        };
+        if !tables.iter().all(|(_, table)| fits(table)) {
             return None;
         }
-        let columns = std::iter::once(name).chain(first.columns.iter().copied()).collect();
+        let columns = std::iter::once(name).chain(widest.columns.iter().copied()).collect();
         let rows = tables.iter().flat_map(|(of, table)| {
-            table.rows.iter().map(|row| std::iter::once(Cell::from(*of)).chain(row.iter().cloned()).collect())
+            let places: Vec<Option<usize>> = widest.columns.iter().map(|column| place(table, column)).collect();
+            table.rows.iter().map(move |row| {
+                let cells =
+                    places.iter().map(|at| at.and_then(|at| row.get(at)).map_or_else(|| "-".into(), Cell::clone));
+                std::iter::once(Cell::from(*of)).chain(cells).collect()
+            })
         });
-        Some(Self { columns, rows: rows.collect(), empty: first.empty })
+        Some(Self { columns, rows: rows.collect(), empty: widest.empty })
     }
 }
 

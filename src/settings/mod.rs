@@ -287,6 +287,20 @@ impl Sources {
         self.selection.all |= self.selection.names_nobody() && !self.inventory.robots.is_empty();
     }
 
+    /// Takes robots by their names.
+    ///
+    /// # Errors
+    /// A flag names robots, too.
+    pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
+        if self.selection.has_flags() {
+            return Err(
+                Failure::usage(format!("{} and a flag name robots", names.join(" and "))).hint("name them once")
+            );
+        }
+        (self.selection.robots, self.selection.from_environment) = (names.to_vec(), false);
+        Ok(())
+    }
+
     /// Takes a robot by its name, or by its URL.
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
         if self.selection.has_flags() {

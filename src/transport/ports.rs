@@ -58,19 +58,51 @@ pub struct PortUser {
 
 /// Where Linux shows what processes have open.
 const PROCESSES: &str = "/proc";
+/// What `/proc` shows of an open file is some lines.
+const LONGEST_FDINFO: u64 = 64 << 10;
+/// The folder of the pseudo-terminals.
+const PSEUDO_TERMINALS: &str = "/dev/pts";
 
-/// Another process that has a port open, where the system tells: on Linux, of processes of the same user.
+/// How a process has a port open, the one that keeps others away last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Usage {
+    /// It holds the other end of this pseudo-terminal, as a simulator does.
+    OtherEnd,
+    /// It has the port open.
+    Opened,
+    /// It has the port locked.
+    Locked,
+}
+
+/// The process that keeps others away from a port, where the system tells: on Linux, of processes of the same user.
 pub fn user(path: &str) -> Option<PortUser> {
     let port = std::fs::canonicalize(path).ok()?;
-    let has_it = |process: &Path| {
-        let open = std::fs::read_dir(process.join("fd")).into_iter().flatten().flatten();
-        open.map(|file| file.path()).any(|file| std::fs::read_link(file).is_ok_and(|target| target == port))
-    };
     let processes = std::fs::read_dir(PROCESSES).ok()?.flatten();
     let numbered = processes.filter_map(|entry| Some((entry.file_name().to_str()?.parse().ok()?, entry.path())));
-    let (pid, process) = numbered.filter(|(pid, _)| *pid != std::process::id()).find(|(_, process)| has_it(process))?;
+    let others = numbered.filter(|(pid, _)| *pid != std::process::id());
+    let users = others.filter_map(|(pid, process): (u32, PathBuf)| Some((usage(&process, &port)?, pid, process)));
+    let (_, pid, process) = users.max_by_key(|(usage, ..)| *usage)?;
     let name = files::text(&process.join("comm"), files::SETTINGS).ok()?;
     Some(PortUser { pid, name: name.trim().to_owned() })
+}
+
+/// How a process has a port open; nothing if it has not.
+fn usage(process: &Path, port: &Path) -> Option<Usage> {
+    let mut usage = None;
+    let mut has_other_end = false;
+    for file in std::fs::read_dir(process.join("fd")).ok()?.flatten() {
+        let Ok(target) = std::fs::read_link(file.path()) else { continue };
+        let info = || files::text(&process.join("fdinfo").join(file.file_name()), LONGEST_FDINFO).unwrap_or_default();
+        if target == port {
+            let found = if info().contains("\nlock:") { Usage::Locked } else { Usage::Opened };
+            usage = usage.max(Some(found));
+        } else if target.ends_with("ptmx") {
+            let index =
+                info().lines().find_map(|line| line.strip_prefix("tty-index:").map(|index| index.trim().to_owned()));
+            has_other_end |= index.is_some_and(|index| Path::new(PSEUDO_TERMINALS).join(index) == port);
+        }
+    }
+    if has_other_end && usage == Some(Usage::Opened) { Some(Usage::OtherEnd) } else { usage }
 }
 
 /// All serial ports, by name (`ttyUSB2` before `ttyUSB10`).

@@ -3,9 +3,9 @@
 use clap::CommandFactory as _;
 
 /// Every command that the contract names, by family. An entry leaves this list only with a new major version.
-pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", &YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
+pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
-const YERC: [&str; 51] = [
+const YERC: &[&str] = &[
     "status",
     "backup",
     "restore",
@@ -42,7 +42,6 @@ const YERC: [&str; 51] = [
     "register get",
     "register set",
     "names get",
-    "names list",
     "names forget",
     "servo",
     "hold",
@@ -59,7 +58,7 @@ const YERC: [&str; 51] = [
     "raw",
 ];
 
-const TOYO: [&str; 80] = [
+const TOYO: [&str; 81] = [
     "status",
     "home",
     "position",
@@ -105,6 +104,7 @@ const TOYO: [&str; 80] = [
     "program list",
     "program get",
     "program put",
+    "program diff",
     "program edit",
     "program insert",
     "program delete",
@@ -119,9 +119,9 @@ const TOYO: [&str; 80] = [
     "easy set",
     "easy copy",
     "easy progress",
-    "io in",
-    "io out",
-    "io internal",
+    "io get",
+    "io list",
+    "io watch",
     "io set",
     "io direct",
     "counter get",
@@ -166,7 +166,6 @@ const YRCX: &[&str] = &[
     "servo",
     "motor",
     "info version",
-    "info position",
     "info servo",
     "info alarm",
     "alarm list",

@@ -27,6 +27,7 @@ macro_rules! transcripts {
 
 transcripts! {
     alarms
+    alike
     backups
     batch
     captures

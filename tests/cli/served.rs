@@ -11,7 +11,7 @@ use armctl::command::leaves::leaves;
 use crate::support::simulator::Simulator;
 
 /// What has no end of its own, names a robot, or takes seconds, as motions and whole backups do.
-const LEFT_OUT: [&str; 35] = [
+const LEFT_OUT: &[&str] = &[
     "watch",
     "--for",
     "--continuous",
@@ -27,13 +27,24 @@ const LEFT_OUT: [&str; 35] = [
     "toyo robot-type 1 0",
     "toyo run sequential",
     "toyo run sequential 1 --repeat 20 --stats",
-    "toyo run sequential 10",
+    "toyo run sequential 10 --wait",
     "yerc file cmos CMOSBK.BIN",
     "yerc file cmos CMOSBK.BIN --download-only",
     "yerc move joint --x 400 --y 0 --z 300 --rx 180 --ry 0 --rz 0 --speed 10%",
     "yerc move linear --to 400,0,300,180,0,0 --speed 50mm/s",
     "yerc move linear --to 400,0,300,180,0,0 --speed 50mm/s --tool 1",
     "yrcx alarm history 1..50",
+    "yrcx comment list",
+    "yrcx comment dump",
+    "yrcx hand-data list",
+    "yrcx hand-data dump",
+    "yrcx pallet-data list",
+    "yrcx pallet-data dump",
+    "yrcx point list",
+    "yrcx shift-data list",
+    "yrcx shift-data dump",
+    "yrcx var list",
+    "yrcx var dump",
     "yrcx backup press",
     "yrcx backup press --points 0..999",
     "yrcx comment get 0..29",

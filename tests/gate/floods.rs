@@ -1,38 +1,150 @@
-//! Peers that send without end: a command ends with an error, and its memory stays flat.
+//! Peers that send without end, little by little, or something else than what was asked: a command ends with an error, in
+//! its time, and its memory stays flat.
 
-use std::io::Write as _;
-use std::net::TcpListener;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::{TcpListener, UdpSocket};
 use std::process::Command;
+use std::sync::{Arc, Mutex};
 use std::thread;
+use std::time::Duration;
 
-use super::desk::{Desk, came};
+use serialport::{SerialPort as _, TTYPort};
 
-/// A TCP server that sends this without end to each client.
-fn flooding(text: &'static [u8]) -> u16 {
+use super::desk::{Came, Desk, came};
+
+/// How a peer sends.
+#[derive(Debug, Clone, Copy)]
+enum Manner {
+    Floods,
+    /// One byte, or datagram, after the other, each long before the time of a try is over.
+    Trickles,
+}
+
+const MANNERS: [Manner; 2] = [Manner::Floods, Manner::Trickles];
+
+impl Manner {
+    /// Sends this again and again, until nobody takes it any more.
+    fn send(self, text: &[u8], mut send: impl FnMut(&[u8]) -> bool) {
+        match self {
+            Self::Floods => while send(text) {},
+            Self::Trickles => {
+                let mut bytes = text.chunks(1).cycle();
+                while bytes.next().is_some_and(&mut send) {
+                    thread::sleep(Duration::from_millis(30));
+                }
+            }
+        }
+    }
+}
+
+/// A TCP server that sends this to each client.
+fn tcp(text: &'static [u8], manner: Manner) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = listener.local_addr().expect("an address").port();
     thread::spawn(move || {
         for mut client in listener.incoming().map_while(Result::ok) {
-            thread::spawn(move || while client.write_all(&text.repeat(2000)).is_ok() {});
+            thread::spawn(move || manner.send(&text.repeat(2000), |bytes| client.write_all(bytes).is_ok()));
         }
     });
     port
+}
+
+/// A UDP server that sends this to whoever asks.
+fn udp(manner: Manner) -> u16 {
+    let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
+    let port = socket.local_addr().expect("an address").port();
+    thread::spawn(move || {
+        while let Ok((_, asked)) = socket.recv_from(&mut [0; 600]) {
+            let mut left = 100_000;
+            manner.send(b"YERC", |bytes| {
+                left -= 1;
+                left > 0 && socket.send_to(bytes, asked).is_ok()
+            });
+        }
+    });
+    port
+}
+
+/// A serial line on which this comes; it ends with the first one that is returned.
+fn pty(text: &'static [u8], manner: Manner) -> (TTYPort, String) {
+    let (mut master, port) = TTYPort::pair().expect("a pseudo-terminal");
+    let path = port.name().expect("it has a name");
+    master.set_timeout(Duration::from_secs(3600)).expect("it waits for room");
+    thread::spawn(move || manner.send(&text.repeat(20), |bytes| master.write_all(bytes).is_ok()));
+    (port, path)
+}
+
+/// What came of a line, with little memory, and a minute at the most.
+fn run(desk: &Desk, target: &str, line: &str) -> Came {
+    let armctl = env!("CARGO_BIN_EXE_armctl");
+    let line = format!("ulimit -v 900000; exec timeout 60 {armctl} -t '{target}' --timeout 500ms --yes {line}");
+    let mut command = Command::new("sh");
+    command.env_clear().env("PATH", "/usr/bin:/bin").env("HOME", desk.folder.path()).args(["-c", &line]);
+    came(&command.output().expect("it runs"))
 }
 
 #[test]
 fn an_slcan_adapter_that_floods_is_given_up() {
     let desk = Desk::new("");
     for text in [&b"t4058AABBCCDDEEFF0011\r"[..], b"t42b8AABBCCDDEEFF0011\r", b"\r", b"t"] {
-        let port = flooding(text);
+        let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, Manner::Floods));
         for line in ["yrcx devicenet identity", "yrcx status", "yrcx stop"] {
-            let armctl = env!("CARGO_BIN_EXE_armctl");
-            let line = format!(
-                "ulimit -v 600000; exec timeout 60 {armctl} -t 'slcan://127.0.0.1:{port}?mac=5' --timeout 500ms {line}"
-            );
-            let mut command = Command::new("sh");
-            command.env_clear().env("PATH", "/usr/bin:/bin").env("HOME", desk.folder.path()).args(["-c", &line]);
-            let came = came(&command.output().expect("it runs"));
+            let came = run(&desk, &target, line);
             assert!(came.exit == Some(5) && came.stderr.contains("sends without end"), "{line}: {came:?}");
         }
     }
+}
+
+#[test]
+fn who_sends_without_end_or_little_by_little_holds_up_no_command() {
+    let desk = Desk::new("");
+    let check = |target: &str, cases: &[(&str, i32, &str)]| {
+        for (line, exit, part) in cases {
+            let came = run(&desk, target, line);
+            assert!(came.exit == Some(*exit) && came.stderr.contains(part), "{target}: {line}: {came:?}");
+        }
+    };
+    for manner in MANNERS {
+        check(
+            &format!("udp://127.0.0.1:{}", udp(manner)),
+            &[("yerc status", 5, "within 1.8s"), ("yerc hold on", 6, "nothing tells that the robot is held")],
+        );
+        for text in [&b"\0"[..], b"\x6f\0\xff\0"] {
+            let silent = [("yrcx status", 4, "within 500 ms"), ("yrcx stop", 4, "within 500 ms")];
+            check(&format!("eip://127.0.0.1:{}", tcp(text, manner)), &silent);
+        }
+        check(
+            &format!("slcan://127.0.0.1:{}?mac=5", tcp(b"t4058AABBCCDDEEFF0011\r", Manner::Trickles)),
+            &[("yrcx status", 5, "sends without end")],
+        );
+        let (_port, path) = pty(b"\x68\x05\x05", manner);
+        check(&format!("profibus://{path}?station=5"), &[("yrcx status", 4, "within 3000 ms")]);
+        let (_port, path) = pty(b"@OK\r\n", manner);
+        check(
+            &format!("serial://{path}"),
+            &[("toyo position", 5, ""), ("toyo stop", 6, "nothing tells that it stands")],
+        );
+    }
+}
+
+/// A device server behind which something else is: each question has its tries, and the next one is not asked.
+#[test]
+fn what_answers_something_else_is_asked_one_question() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let asked = Arc::new(Mutex::new(Vec::new()));
+    let heard = Arc::clone(&asked);
+    thread::spawn(move || {
+        for mut client in listener.incoming().map_while(Result::ok) {
+            let lines = BufReader::new(client.try_clone().unwrap()).lines();
+            for line in lines.map_while(Result::ok) {
+                heard.lock().unwrap().push(line);
+                client.write_all(b"@OK\r\n").unwrap_or_default();
+            }
+        }
+    });
+    let desk = Desk::new("");
+    let came = run(&desk, &format!("tcp://127.0.0.1:{port}"), "--retries 2 toyo position");
+    assert!(came.exit == Some(5) && came.stderr.contains("it answers something else"), "{came:?}");
+    assert_eq!(*asked.lock().unwrap(), ["@SYSP", "@SYSP", "@SYSP"]);
 }

@@ -88,7 +88,7 @@ fn a_program_is_asked_about_with_its_number_step_place_and_speed() {
         ("run sequential 1", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
         ("run sequential", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
         ("run palletizing", "It is palletizing program 3, at step"),
-        ("run palletizing 4", "It is palletizing program 4."),
+        ("run palletizing 4", "It is palletizing program 4; now the controller is at program 3, step"),
         ("run easy", "It is easy program 2, at step"),
     ] {
         let mut terminal = Terminal::start(desk.command(&format!("-r cell toyo {line}")), 100, 24).unwrap();

@@ -24,7 +24,7 @@ robot "$MAC@pc0?$M&cycle=8ms" '--yes yrcx info servo'
 robot "yrcx-sim@pc0?$M" 'yrcx status'
 robot "yrcx-sim@pc0?$M" '--yes session open --background'
 robot "yrcx-sim@pc0?$M" 'yrcx io get'
-robot "yrcx-sim@pc0?$M" 'yrcx info position'
+robot "yrcx-sim@pc0?$M" 'yrcx position'
 robot "$MAC@pc0?$M" 'yrcx io get servo-on'
 robot "$MAC@pc0?$M" '--yes session open'
 robot "other@pc0?$M" '--yes yrcx info system'
@@ -72,7 +72,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("yrcx status", "3", &["open a session"]),
         ("--yes session open --background", "0", &["held by process"]),
         ("yrcx io get", "0", &["CPU_OK"]),
-        ("yrcx info position", "0", &["mm"]),
+        ("yrcx position", "0", &["mm"]),
         ("yrcx io get servo-on", "0", &["SO(02)"]),
         ("--yes session open", "4", &["a session is open already"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),

@@ -1,20 +1,25 @@
-//! No motion outlives its operator: the process that moves a robot is killed or frozen, directly and through a session, from
-//! a command, a command file and a command for two robots.
+//! No motion outlives its operator: the process that moves a robot is killed or frozen, in every family and on every bus, by
+//! every way to type the motion, directly and through a session, whose holder may end with it.
 
-use super::{Desk, Running, simulator, stderr};
+use std::io::Write as _;
+use std::process::Command;
+
+use super::{Desk, Running, serving, stderr};
+#[cfg(target_os = "linux")]
+use crate::support::namespaces;
+use crate::support::terminal::Terminal;
 
 /// How the process ends.
 const SIGNALS: [&str; 2] = ["KILL", "STOP"];
 
-/// A way to type the motion, and whether a session of another process holds the links.
-const ROUTES: [(&str, bool); 5] =
-    [("direct", false), ("direct", true), ("batch", false), ("batch", true), ("several", false)];
-
 /// A motion that takes a minute.
 struct Motion {
     family: &'static str,
+    /// How its simulator is served, and what its target says besides.
+    serve: &'static str,
+    with: &'static str,
     words: &'static str,
-    /// What `-vv` shows once it moves; empty where the look tells.
+    /// What `-vv` shows once it moves.
     moves: &'static str,
     /// What is read then, and whether it says that the robot stands.
     look: &'static str,
@@ -23,69 +28,188 @@ struct Motion {
 
 const JOG: Motion = Motion {
     family: "toyo",
+    serve: "toyo --bind 127.0.0.1:0",
+    with: "",
     words: "toyo jog X + low --for 60s",
     moves: "",
     look: "toyo status",
     stands: |status| status["running"] == false,
 };
 
+/// A return to origin, on a slow line: a jog shows its frames at its end, and a look beside it needs a session.
+const HOME: Motion = Motion { words: "toyo home", moves: "-> @HOME", ..JOG };
+
+const SERIAL: Motion = Motion { serve: "toyo --pty", ..HOME };
+
 const MOVE: Motion = Motion {
     family: "yerc",
+    serve: "yerc --bind 127.0.0.1:0",
+    with: "",
     words: "yerc move relative --x 200 --speed 4mm/s",
     moves: "answer to 0x8a cartesian move: ok",
     look: "yerc status",
     stands: |status| status["held"] == true,
 };
 
+/// A busy machine is late: nobody shall think that the other is gone. What stands there is seen at the machine.
+const ETHERNET: Motion = Motion {
+    family: "yrcx",
+    serve: "yrcx --bind 127.0.0.1:0",
+    with: "?rpi=5ms&multiplier=512",
+    words: "yrcx move --to 900,0,0,0 --speed-of-max 0.1",
+    moves: "<- WO 0100",
+    look: "",
+    stands: |_| false,
+};
+
+const DEVICENET: Motion = Motion { serve: "yrcx --bus devicenet", with: "", ..ETHERNET };
+
+const PROFIBUS: Motion = Motion { serve: "yrcx --bus profibus", with: "", ..ETHERNET };
+
+/// How a motion is typed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Direct,
+    /// With a second robot.
+    Several,
+    Batch,
+    Prompt,
+}
+
+/// All ways, each with whether a session of another process holds the links.
+const WAYS: [(Way, bool); 7] = [
+    (Way::Direct, false),
+    (Way::Direct, true),
+    (Way::Several, false),
+    (Way::Batch, false),
+    (Way::Batch, true),
+    (Way::Prompt, false),
+    (Way::Prompt, true),
+];
+
 /// The robots `a` and `b`, each behind a simulator of its own.
 fn two(motion: &Motion) -> (Vec<Running>, Desk) {
     let nobody = Desk::new(&[]);
-    let simulators: Vec<_> = (0..2).map(|_| simulator(&nobody, motion.family, "127.0.0.1:0")).collect();
-    let named: Vec<_> = ["a", "b"].iter().zip(&simulators).collect();
-    let robots: Vec<_> = named.iter().map(|(name, of)| (**name, motion.family, of.first.as_str())).collect();
-    let desk = Desk::new(&robots);
+    let simulators: Vec<_> = (0..2).map(|_| serving(&nobody, motion.serve)).collect();
+    let targets: Vec<_> = simulators.iter().map(|simulator| format!("{}{}", simulator.first, motion.with)).collect();
+    let desk = Desk::new(&[("a", motion.family, &targets[0]), ("b", motion.family, &targets[1])]);
     (simulators, desk)
 }
 
-fn starts(desk: &Desk, motion: &Motion, route: &str) -> Running {
-    let file = desk.folder.path().join("lines");
-    std::fs::write(&file, format!("{}\n", motion.words)).unwrap();
-    let words = match route {
-        "direct" => format!("-r a {} --yes -vv", motion.words),
-        "batch" => format!("-r a batch {} --yes -vv", file.display()),
-        _ => format!("-r a -r b {} --yes -vv", motion.words),
-    };
-    let mut moving = Running::start(desk.command(&words), false);
-    if motion.moves.is_empty() {
-        while (motion.stands)(&desk.data(&format!("-r a {}", motion.look))) {}
-    } else {
-        for _ in 0..if route == "several" { 2 } else { 1 } {
-            moving.says(motion.moves);
+/// Waits until the machine itself says that a robot stands, and that its master has gone.
+fn stands_alone(simulator: &mut Running) {
+    loop {
+        writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
+        let now = simulator.line("now ");
+        if !simulator.line("robot 1 ").contains("moving") {
+            assert!(now.contains("alarm 12.5"), "{now}");
+            return;
         }
     }
-    moving
 }
 
-fn stops(motion: &Motion, routes: &[(&str, bool)]) {
-    for signal in SIGNALS {
-        for &(route, in_session) in routes {
-            let (_simulators, desk) = two(motion);
-            let session = in_session.then(|| Running::session(&desk, "a"));
-            let moving = starts(&desk, motion, route);
-            moving.signal(signal);
+/// The process that moves a robot.
+enum Moving {
+    Process(Running),
+    Prompt(Box<Terminal>),
+}
+
+impl Moving {
+    fn starts(desk: &Desk, motion: &Motion, way: Way) -> Self {
+        let file = desk.folder.path().join("lines");
+        std::fs::write(&file, format!("{}\n", motion.words)).unwrap();
+        let words = match way {
+            Way::Direct => format!("-r a {} --yes -vv", motion.words),
+            Way::Several => format!("-r a -r b {} --yes -vv", motion.words),
+            Way::Batch => format!("-r a batch {} --yes -vv", file.display()),
+            Way::Prompt => {
+                let mut command = desk.command("-r a --yes -vv repl");
+                command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
+                let mut prompt = Terminal::start(command, 200, 50).unwrap();
+                prompt.says("leaves.");
+                prompt.press(&format!("{}\r", motion.words));
+                prompt.says(motion.moves);
+                return Self::Prompt(Box::new(prompt));
+            }
+        };
+        let mut moving = Running::start(desk.command(&words), false);
+        if motion.moves.is_empty() {
+            while (motion.stands)(&desk.data(&format!("-r a {}", motion.look))) {}
+        } else {
+            for _ in 0..if way == Way::Several { 2 } else { 1 } {
+                moving.says(motion.moves);
+            }
+        }
+        Self::Process(moving)
+    }
+
+    fn signal(&self, signal: &str) {
+        match self {
+            Self::Process(process) => process.signal(signal),
+            Self::Prompt(prompt) => prompt.signal(signal),
+        }
+    }
+
+    fn pid(&self) -> u32 {
+        match self {
+            Self::Process(process) => process.process.id(),
+            Self::Prompt(prompt) => prompt.child.id(),
+        }
+    }
+
+    /// Waits until it was killed, by whomever, and until nobody is left who would stop the robot but for the guardian of a
+    /// session. What was said.
+    fn ends(self, desk: &Desk, session: Option<&Running>) -> String {
+        let (code, said) = match self {
             // Its guardian has the same stderr: both have ended.
-            let (code, said) = moving.end();
-            assert_eq!(code, None, "{signal} {route}: it was killed: {said}");
-            assert_eq!(signal == "STOP", said.contains("did not respond for 2 s"), "{route}: {said}");
+            Self::Process(process) => process.end(),
+            Self::Prompt(mut prompt) => (prompt.end().code(), String::from_utf8_lossy(&prompt.written).into_owned()),
+        };
+        assert_eq!(code, None, "it was killed: {said}");
+        no_guardian(desk, session);
+        said
+    }
+}
+
+/// Waits until no guardian of this user is left but for that of a session.
+fn no_guardian(desk: &Desk, session: Option<&Running>) {
+    let home = format!("HOME={}", desk.folder.path().display());
+    let parent = session.map_or_else(|| "none".to_owned(), |session| format!("PPid:\t{}\n", session.process.id()));
+    let is_guardian = |process: &std::path::Path| {
+        let has = |file: &str, what: &str| {
+            std::fs::read(process.join(file)).is_ok_and(|text| String::from_utf8_lossy(&text).contains(what))
+        };
+        has("cmdline", "--guardian=") && has("environ", &home) && !has("status", &parent)
+    };
+    while std::fs::read_dir("/proc").unwrap().any(|process| is_guardian(&process.unwrap().path())) {}
+}
+
+fn stops(motion: &Motion, signals: &[&str], ways: &[(Way, bool)]) {
+    for signal in signals {
+        for &(way, in_session) in ways {
+            let (mut simulators, desk) = two(motion);
+            let session = in_session.then(|| Running::session(&desk, "a"));
+            let moving = Moving::starts(&desk, motion, way);
+            moving.signal(signal);
+            let said = moving.ends(&desk, session.as_ref());
+            assert_eq!(*signal == "STOP", said.contains("did not respond for 2 s"), "{way:?}: {said}");
             if let Some(mut session) = session {
                 session.says("it was moving the robot");
                 session.says("the robot was stopped");
+                if motion.family == "yrcx" {
+                    desk.until(|session| session["under_way"] == false);
+                    continue;
+                }
                 // With the session goes the link that it held.
             }
-            let robots: &[_] = if route == "several" { &["a", "b"] } else { &["a"] };
-            for robot in robots {
+            let robots: &[_] = if way == Way::Several { &["a", "b"] } else { &["a"] };
+            for (robot, simulator) in robots.iter().zip(&mut simulators) {
+                if motion.family == "yrcx" {
+                    stands_alone(simulator);
+                    continue;
+                }
                 let state = desk.data(&format!("-r {robot} {}", motion.look));
-                assert!((motion.stands)(&state), "{signal} {route} {in_session}: {robot}: {state}");
+                assert!((motion.stands)(&state), "{signal} {way:?} {in_session}: {robot}: {state}");
             }
         }
     }
@@ -93,41 +217,77 @@ fn stops(motion: &Motion, routes: &[(&str, bool)]) {
 
 #[test]
 fn a_jog_whose_process_is_killed_or_frozen_is_stopped() {
-    // A jog shows its frames at its end, and a look beside it needs a session.
-    stops(&JOG, &[("direct", true)]);
+    stops(&JOG, &SIGNALS, &[(Way::Direct, true)]);
+}
+
+#[test]
+fn a_return_to_origin_whose_process_is_killed_is_stopped() {
+    stops(&HOME, &SIGNALS, &WAYS[..2]);
+    stops(&HOME, &SIGNALS[..1], &WAYS[2..]);
+}
+
+#[test]
+fn a_motion_over_a_serial_port_whose_process_is_killed_or_frozen_is_stopped() {
+    stops(&SERIAL, &SIGNALS, &WAYS[..2]);
+    stops(&SERIAL, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
 fn a_move_whose_process_is_killed_or_frozen_is_stopped() {
-    stops(&MOVE, &ROUTES);
+    stops(&MOVE, &SIGNALS, &WAYS[..2]);
+    stops(&MOVE, &SIGNALS[..1], &WAYS[2..]);
 }
 
 /// A yrcx is not stopped by the guardian outside a session: its adapter misses the master.
 #[test]
-fn a_yrcx_whose_master_is_killed_or_frozen_stops() {
-    for signal in SIGNALS {
-        let nobody = Desk::new(&[]);
-        let simulator = simulator(&nobody, "yrcx", "127.0.0.1:0");
-        let desk = Desk::new(&[("cell", "yrcx", &simulator.first)]);
-        let moving = super::moving(&desk);
-        moving.signal(signal);
-        while desk.data("-r cell yrcx status")["alarm"] != true {}
-        drop(moving);
-    }
+fn a_yrcx_whose_master_or_client_is_killed_or_frozen_stops() {
+    stops(&ETHERNET, &SIGNALS, &WAYS[..2]);
+    stops(&ETHERNET, &SIGNALS[..1], &WAYS[2..]);
 }
 
 #[test]
-fn a_yrcx_motion_whose_client_is_killed_or_frozen_is_stopped_by_the_session() {
-    for signal in SIGNALS {
-        let (_simulator, desk) = super::cell();
-        let mut session = Running::session(&desk, "cell");
-        let moving = super::moving(&desk);
-        moving.signal(signal);
-        session.says("it was moving the robot");
-        session.says("the robot was stopped");
-        desk.until(|session| session["under_way"] == false);
-        assert!(desk.run("-r cell yrcx servo on --yes").status.success(), "the stop input is on again");
-        drop(moving);
+fn a_yrcx_on_devicenet_whose_master_or_client_is_killed_or_frozen_stops() {
+    stops(&DEVICENET, &SIGNALS, &WAYS[..2]);
+    stops(&DEVICENET, &SIGNALS[..1], &WAYS[2..]);
+}
+
+#[test]
+fn a_yrcx_on_profibus_whose_master_or_client_is_killed_or_frozen_stops() {
+    stops(&PROFIBUS, &SIGNALS, &WAYS[..2]);
+    stops(&PROFIBUS, &SIGNALS[..1], &WAYS[2..]);
+}
+
+/// Who holds the link ends, alone or with who moves the robot.
+#[test]
+fn a_motion_is_stopped_when_the_holder_of_its_session_ends() {
+    for motion in [&MOVE, &HOME, &SERIAL] {
+        for (holder, client) in [("KILL", "KILL"), ("KILL", ""), ("STOP", ""), ("TERM", ""), ("STOP", "KILL")] {
+            let (_simulators, desk) = two(motion);
+            let session = Running::session(&desk, "a");
+            let moving = Moving::starts(&desk, motion, Way::Direct);
+            let (session_id, moving_id) = (session.process.id(), moving.pid());
+            // Both at the same time: who is left for a moment ends by itself.
+            let kill = |signal: &str, pids: &[u32]| {
+                let pids = pids.iter().map(u32::to_string);
+                assert!(Command::new("kill").args(["-s", signal]).args(pids).status().unwrap().success());
+            };
+            if holder == client {
+                kill(holder, &[moving_id, session_id]);
+            } else {
+                kill(holder, &[session_id]);
+                if !client.is_empty() {
+                    kill(client, &[moving_id]);
+                }
+            }
+            let (code, said) = session.end();
+            assert_eq!(code, (holder == "TERM").then_some(0), "{said}");
+            let Moving::Process(process) = moving else { unreachable!() };
+            let (code, said) = process.end();
+            assert_ne!(code, Some(0), "{holder} {client}: {said}");
+            no_guardian(&desk, None);
+            let state = desk.data(&format!("-r a --no-session {}", motion.look));
+            assert!((motion.stands)(&state), "{holder} {client}: {}: {state}", motion.words);
+        }
     }
 }
 
@@ -135,9 +295,8 @@ fn a_yrcx_motion_whose_client_is_killed_or_frozen_is_stopped_by_the_session() {
 fn what_came_of_a_stop_is_in_the_log_of_a_session_in_the_background() {
     let (_simulators, desk) = two(&MOVE);
     desk.data("-r a session open --background");
-    let moving = starts(&desk, &MOVE, "direct");
+    let moving = Moving::starts(&desk, &MOVE, Way::Direct);
     moving.signal("KILL");
-    moving.end();
     let log = desk.files("log").remove(0);
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
@@ -151,12 +310,12 @@ fn a_program_that_was_removed_stops_what_it_moves() {
         std::fs::copy(&desk.program, &copy).unwrap();
         let installed = std::mem::replace(&mut desk.program, copy.clone());
         let session = in_session.then(|| Running::session(&desk, "a"));
-        let moving = starts(&desk, &MOVE, "direct");
+        let moving = Moving::starts(&desk, &MOVE, Way::Direct);
         desk.program = installed;
         std::fs::remove_file(copy).unwrap();
         moving.signal("KILL");
-        let (code, said) = moving.end();
-        assert!(code.is_none() && !said.contains("may still move"), "{said}");
+        let said = moving.ends(&desk, session.as_ref());
+        assert!(!said.contains("may still move"), "{said}");
         if let Some(mut session) = session {
             session.says("the robot was stopped");
         }
@@ -199,7 +358,7 @@ fn keys_that_end_or_suspend_a_process_stop_what_it_moves() {
         for motion in [&MOVE, &JOG] {
             let (_simulators, desk) = two(motion);
             let _session = Running::session(&desk, "a");
-            let moving = starts(&desk, motion, "direct");
+            let Moving::Process(moving) = Moving::starts(&desk, motion, Way::Direct) else { unreachable!() };
             moving.signal(signal);
             let (code, said) = moving.end();
             assert_eq!(code, Some(130), "{signal} {}: {said}", motion.words);
@@ -239,5 +398,61 @@ fn a_stop_goes_around_a_session_that_does_not_respond() {
             assert!(stderr(&stopped).contains(&format!("`kill -KILL {pid}`")), "{}", stderr(&stopped));
         }
         session.signal("CONT");
+    }
+}
+
+/// A motion over PROFINET, which takes a network of its own: the machine says that the robot stands, and what is the matter.
+#[cfg(target_os = "linux")]
+const PROFINET: &str = r#"
+export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
+cd "$FOLDER"
+URL='profinet://yrcx-sim@pc0?layout=0:1,0.0x8000:1/0x8000,0.0x8001:1/0x8001,1:0x101:i48,2:0x102:o48&watchdog=1900ms'
+stands() {
+  while :; do
+    SAID=$(grep -c '^robot 1 ' machine)
+    echo robot >&9
+    while [ "$(grep -c '^robot 1 ' machine)" = "$SAID" ]; do :; done
+    grep '^robot 1 ' machine | tail -n 1 | grep -q moving || break
+  done
+  grep '^now ' machine | tail -n 1
+}
+for SIGNAL in KILL STOP; do for WAY in direct session; do
+  rm -f console; mkfifo console
+  $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 --console < console > sim 2> machine & D=$!
+  exec 9> console
+  until grep -q 'profinet://' sim; do kill -0 $D || exit 1; done
+  if [ $WAY = session ]; then
+    "$ARMCTL" -t "$URL" session open > opened 2> session & H=$!
+    until grep -q 'held by' opened; do kill -0 $H || exit 1; done
+  fi
+  "$ARMCTL" -t "$URL" --yes -vv yrcx move --to 900,0,0,0 --speed-of-max 0.1 > /dev/null 2> moves & P=$!
+  until grep -q -e '<- WO 0100' moves; do kill -0 $P || exit 1; done
+  kill -s $SIGNAL $P
+  wait $P
+  if [ $WAY = session ]; then until grep -q 'the robot was stopped' session; do kill -0 $H || exit 1; done; fi
+  echo "$WAY $SIGNAL: $(stands)"
+  if [ $WAY = session ]; then kill $H; wait $H; fi
+  exec 9>&-
+  kill $D; wait $D
+done; done
+"#;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_yrcx_on_profinet_whose_master_or_client_is_killed_or_frozen_stops() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().to_str().unwrap();
+    let variables = [("ARMCTL", env!("CARGO_BIN_EXE_armctl")), ("FOLDER", place)];
+    let Some(said) = namespaces::run(PROFINET, &variables) else {
+        println!("{}", namespaces::SKIPPED);
+        return;
+    };
+    for signal in SIGNALS {
+        assert!(
+            said.lines()
+                .any(|line| line.starts_with(&format!("direct {signal}: now ")) && line.contains("alarm 12.57")),
+            "{said}"
+        );
+        assert!(said.lines().any(|line| line.starts_with(&format!("session {signal}: now "))), "{said}");
     }
 }

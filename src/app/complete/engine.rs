@@ -21,17 +21,18 @@ const BEGUN: &str = "begun";
 /// So that arguments can name their kind: `#[arg(add = ValueKind::Robot)]`.
 impl ArgExt for ValueKind {}
 
-/// What could stand behind `before`, where `current` was typed; `None` where that cannot be told.
+/// What could stand behind `before`, where `current` was typed; `None` where that cannot be told. `is_among` other lines of
+/// this process; `connects` where a robot may be connected to for it.
 pub(super) fn complete(
     mut before: Vec<OsString>,
     current: &OsStr,
-    is_among: bool,
+    (is_among, connects): (bool, bool),
     patience: Duration,
 ) -> Option<Vec<Candidate>> {
     let mut root = Cli::command().ignore_errors(true);
     let matches = root.try_get_matches_from_mut(&before).ok()?;
     let path = path(&matches);
-    let context = Arc::new(Context::new(&matches, is_among, patience));
+    let context = Arc::new(Context::new(&matches, (is_among, connects), patience));
     let mut narrowed = narrow(&root, &path, &context)?;
     if !is_among {
         // It holds some thousand parts, and the process ends.
@@ -101,6 +102,10 @@ fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     let shows = matches!(argument.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::Version);
     let argument = if shows { argument.action(ArgAction::SetTrue) } else { argument };
     let Some(kind) = argument.get::<ValueKind>().copied() else { return argument };
+    // At a prompt any folder may be typed; only who chooses from a list is shown those of backups alone.
+    if matches!(kind, ValueKind::Backup) && !context.connects() {
+        return argument;
+    }
     let context = Arc::clone(context);
     argument.add(ArgValueCompleter::new(move |current: &OsStr| {
         let found = current.to_str().map_or_else(Vec::new, |current| values::of(kind, current, &context));

@@ -17,7 +17,7 @@ use crate::app::parser::Parser;
 use crate::app::prepared::{Invocation, Task};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::kind::{Ask, Question};
-use crate::command::{Access, AnyContext, Candidate};
+use crate::command::{Access, AnyContext, Candidate, Entry};
 use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
@@ -26,8 +26,13 @@ use crate::settings::{Robot, Sessions, Setting, Sources};
 pub(super) const PATIENCE: Duration = Duration::from_millis(300);
 
 /// What the robot of the line answers in time.
-pub(super) fn values(family: Family, ask: Question, sources: &Sources, patience: Duration) -> Vec<Candidate> {
-    let Some(robot) = robot(family, sources, patience) else { return Vec::new() };
+pub(super) fn values(
+    family: Family,
+    ask: Question,
+    sources: &Sources,
+    (patience, connects): (Duration, bool),
+) -> Vec<Candidate> {
+    let Some(robot) = robot(family, sources, patience, connects) else { return Vec::new() };
     let until = Instant::now() + patience;
     let (found, arrived) = mpsc::channel();
     // A thread of its own: the line editor may ask from within anything, and nothing is waited for longer than this.
@@ -52,10 +57,11 @@ pub(super) fn values(family: Family, ask: Question, sources: &Sources, patience:
 }
 
 /// The robot that the line is for, if it is one, reached by no other way than a session.
-fn robot(family: Family, sources: &Sources, patience: Duration) -> Option<Robot> {
+fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) -> Option<Robot> {
     let [robot] = <[Robot; 1]>::try_from(sources.robots(Some(family)).ok()?).ok()?;
     let sessions = match (robot.target.value.is_simulated(), robot.sessions) {
         (true, sessions) => sessions,
+        (false, sessions) if connects => sessions,
         (false, Sessions::None) => return None,
         (false, _) => Sessions::Only,
     };
@@ -87,6 +93,10 @@ impl Asker {
         };
         let typed = Some(Arc::from("completion of a command line"));
         let robot = &self.robot;
+        // Where a connection would stop the controller at its end, only a session is asked.
+        if robot.sessions != Sessions::Only && command.entry(robot) != Entry::Harmless {
+            return None;
+        }
         let access = Access { typed, ..Access::reading(command.connect_mode(robot)) };
         let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let mut connection = command.connect(robot, access, &screen).await.ok()?;

@@ -30,17 +30,24 @@ use crate::command::Candidate;
 /// What could stand at `words[index]`, best first; `is_among` other lines of this process, as at the prompt, where
 /// simulators live on from one line to the next.
 pub fn complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate> {
-    complete_within(words, index, is_among, live::PATIENCE)
+    complete_within(words, index, is_among, live::PATIENCE, false)
 }
 
-fn complete_within(words: &[OsString], index: usize, is_among: bool, patience: Duration) -> Vec<Candidate> {
+/// The same within a time; where it `connects`, a robot is asked although no session holds its link.
+pub fn complete_within(
+    words: &[OsString],
+    index: usize,
+    is_among: bool,
+    patience: Duration,
+    connects: bool,
+) -> Vec<Candidate> {
     let before: Vec<OsString> = words.iter().take(index).cloned().collect();
     let current = words.get(index).cloned().unwrap_or_default();
     if before.is_empty() {
         return Vec::new();
     }
     let before = with_family(before);
-    engine::complete(before, &current, is_among, patience).unwrap_or_default()
+    engine::complete(before, &current, (is_among, connects), patience).unwrap_or_default()
 }
 
 #[cfg(test)]

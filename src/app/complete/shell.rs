@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(bash("yerc job se", "se", None), "+select\n");
         assert_eq!(bash("armctl --output=js", "js", None), "+json\n+jsonl\n");
         assert_eq!(bash("armctl -t si", "si", None), "-sim:\n");
-        assert_eq!(bash("armctl -t sim: yerc st", "st", None), "+status\n");
+        assert_eq!(bash("armctl -t sim: yerc sta", "sta", None), "+status\n");
         assert_eq!(bash("armctl explain y", "y", Some(80)).lines().count(), 2);
         assert!(bash("armctl explain toyo 2", "2", Some(40)).lines().all(|line| line.chars().count() <= 40));
         assert_eq!(escaped("A B(1)"), r"A\ B\(1\)");

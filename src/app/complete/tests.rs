@@ -10,7 +10,7 @@ fn found(line: &str) -> Vec<String> {
 fn words_and_flags_are_those_of_the_command() {
     for (line, expected) in [
         ("armctl ye", &["yerc"][..]),
-        ("armctl yerc st", &["status"]),
+        ("armctl yerc st", &["status", "stop"]),
         ("yerc st", &["status"]),
         ("/usr/bin/yerc.exe job se", &["select"]),
         ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),
@@ -113,7 +113,7 @@ fn every_line_has_an_answer() {
 /// The same with the help of each; a busy machine has time to answer.
 fn asked(line: &str) -> Vec<(String, String)> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
-    let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60));
+    let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60), false);
     found.into_iter().map(|found| (found.value, found.help.unwrap_or_default())).collect()
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::parser::ValueSource;
@@ -11,6 +12,7 @@ use super::live;
 use crate::app::prepared::{Need, sources};
 use crate::cli::Globals;
 use crate::command::about::{help, schema};
+use crate::command::backup::manifest;
 use crate::command::families::{self, FAMILIES};
 use crate::command::frame::kind::Named;
 use crate::command::frame::names;
@@ -25,13 +27,15 @@ pub(super) struct Context {
     globals: Option<Globals>,
     /// Whether it is a line among others of this process.
     is_among: bool,
+    /// Whether a controller may be connected to, also without a session.
+    connects: bool,
     /// How long a controller may take.
     patience: Duration,
 }
 
 impl Context {
     /// From what could be parsed of a line. Flags of one command with a mistake leave those of every command as they are.
-    pub fn new(matches: &ArgMatches, is_among: bool, patience: Duration) -> Self {
+    pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let given = command.get_arguments().flat_map(|argument| {
             let id = argument.get_id().as_str();
@@ -51,7 +55,12 @@ impl Context {
         let words: Vec<_> = std::iter::once("armctl".into()).chain(given).collect();
         let parsed = command.try_get_matches_from(words);
         let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
-        Self { globals, is_among, patience }
+        Self { globals, is_among, connects, patience }
+    }
+
+    /// Whether a controller may be connected to.
+    pub fn connects(&self) -> bool {
+        self.connects
     }
 
     fn sources(&self) -> Option<Sources> {
@@ -94,6 +103,7 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
             families::of(family).codes().into_iter().map(|(code, name)| Candidate::new(code, name)).collect()
         }
         ValueKind::Session => sessions(),
+        ValueKind::Backup => backups(),
         ValueKind::Listed(candidates) => candidates(),
         ValueKind::Named(family, Named { kinds, endings, listed }) => {
             let robots = context.sources().and_then(|sources| sources.robots(Some(family)).ok()).unwrap_or_default();
@@ -101,7 +111,8 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
             named.chain(listed()).collect()
         }
         ValueKind::Asked(family, ask) => {
-            context.sources().map_or_else(Vec::new, |sources| live::values(family, ask, &sources, context.patience))
+            let (patience, connects) = (context.patience, context.connects);
+            context.sources().map_or_else(Vec::new, |sources| live::values(family, ask, &sources, (patience, connects)))
         }
     }
 }
@@ -127,6 +138,13 @@ fn urls() -> Vec<Candidate> {
     let simulator = ("sim:".to_owned(), "the built-in simulator");
     let urls = FAMILIES.iter().flat_map(|face| face.urls());
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
+}
+
+/// Folders here that hold a backup.
+fn backups() -> Vec<Candidate> {
+    let folders = manifest::folders_in(Path::new("."));
+    let name = |folder: &PathBuf| Some(folder.file_name()?.to_str()?.to_owned());
+    folders.iter().filter_map(name).map(|name| Candidate::new(name, "")).collect()
 }
 
 /// Whose link is held by a session.

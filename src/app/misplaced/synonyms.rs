@@ -60,17 +60,16 @@ pub const LINES: &[(&str, &[&str])] = &[
 /// What a family has not, though others have: the words before it, the words for it, and what there is instead.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
-    ("yerc", &["home", "homing", "origin"],
-        "the protocol has no return to origin. Start a job that moves there (see `armctl yerc job -h`). Set the mechanical \
-         origin at the pendant"),
-    ("yrcx", &["hold"], "a YRCX has no hold. To stop the robot program, use `armctl yrcx stop`"),
-    ("toyo", &["hold"], "the protocol has no hold. To stop the robot, use `armctl toyo stop`"),
-    ("yrcx", &["job", "jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
-    ("toyo", &["job", "jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
-    ("yrcx program", &["list", "get", "put", "ls"],
-        "the fieldbus has no names or texts of programs. `armctl yrcx program show` shows the program of each task"),
-    ("yrcx run", &["point"], "to move to a point, use `armctl yrcx move`: see its -h"),
-    ("toyo io", &["get", "list", "read"], "use `armctl toyo io in` or `armctl toyo io out`"),
+    ("yerc", &["homing", "origin"],
+        "the protocol has no return to origin; a job that leads there has it (see `armctl yerc job -h`), and the mechanical \
+         origin is set at the pendant"),
+    ("yrcx", &["jobs"], "a YRCX has programs: see `armctl yrcx program -h`"),
+    ("toyo", &["jobs"], "a Toyo controller has programs: `armctl toyo program list`"),
+    ("yrcx run", &["point"], "a YRCX moves to a point with `armctl yrcx move`: see its -h"),
+    ("toyo io", &["in", "out", "internal"], "the command is `armctl toyo io list`"),
+    ("robots", &["names"], "the command is `armctl names list -r ROBOT`"),
+    ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
+    ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
         "a point has its own speed (`armctl toyo point get`). `armctl toyo override` scales all speeds"),
 ];

@@ -159,7 +159,7 @@ impl Client {
     }
 
     /// A line that is still out of order shows in what follows; a no to an order that had a yes shows only here.
-    async fn fence_at_end(&mut self) -> Result<(), Error> {
+    pub(super) async fn fence_at_end(&mut self) -> Result<(), Error> {
         match self.fence().await {
             Err(Error::NotSent(cause)) if matches!(*cause, Error::OutcomeUnknown(_)) => Err(*cause),
             _ => Ok(()),

@@ -97,11 +97,12 @@ pub fn letters_request() -> Request {
     Request::read_parameter(parameter, None).expect("E01 has no rows")
 }
 
-/// A refusal, and an answer that makes no sense, tell no letters.
+/// A refusal, and an answer that makes no sense, tell no letters. A line on which something else comes than answers has
+/// been asked often enough: there is no second question.
 fn unless_malformed(asked: Result<Result<Record, Refusal>, Error>) -> Result<Option<Record>, Error> {
     match asked {
         Ok(answer) => Ok(answer.ok()),
-        Err(error) if error.is_malformed() => Ok(None),
+        Err(Error::Malformed { .. }) => Ok(None),
         Err(error) => Err(error),
     }
 }

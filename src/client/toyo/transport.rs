@@ -164,6 +164,11 @@ impl Transport {
         }
     }
 
+    /// Whether something was noted in a dry run.
+    pub(super) fn has_notes(&self) -> bool {
+        matches!(self, Self::Notes(plan) if !plan.frames.is_empty())
+    }
+
     /// Whether a session holds the line, and others may use it at the same time.
     pub(super) fn is_shared(&self) -> bool {
         matches!(self, Self::Line(line) if matches!(**line, Stream::Session(_)))

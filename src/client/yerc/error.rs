@@ -53,6 +53,12 @@ pub enum Error {
         /// What was seen meanwhile.
         counters: Counters,
     },
+    /// Nobody confirmed the stop, however often it was sent.
+    #[error("the stop was sent again and again, no answer within {waited:?}: nothing tells that the robot is held")]
+    Unconfirmed {
+        /// How long was waited.
+        waited: Duration,
+    },
     /// The line went away after a request that changes something was sent, and before it was answered.
     #[error("{cause}; it was sent, and may or may not have been done")]
     CutShort {

@@ -28,7 +28,7 @@ use armctl_controller::yerc::wire::Division;
 use armctl_controller::{Risk, Session, Step};
 use armctl_transport::session::client::{Attached, SessionBusy};
 use armctl_transport::tap::Direction;
-use tokio::time::Instant;
+use tokio::time::{Instant, sleep, timeout_at};
 
 pub use self::axes::Fitted;
 pub use self::each::{Denied, Outcome, Round};
@@ -39,7 +39,7 @@ pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, Watcher};
+use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, STOP_WITHIN, Watcher};
 
 /// A connection to one controller.
 ///
@@ -225,6 +225,9 @@ impl Client {
 
     /// Stops the robot: HOLD on, whatever was granted. It is the one order that is repeated after silence, whatever the
     /// options say of timeout and retries: HOLD twice is HOLD once, and a lost one lets the robot move on.
+    ///
+    /// # Errors
+    /// [`Error::Unconfirmed`] if nobody has answered within 3 s.
     pub async fn stop(&mut self) -> Result<(), Error> {
         let request = Hold(true).request();
         if self.is_dry() {
@@ -232,7 +235,23 @@ impl Client {
         }
         let usual = self.policy;
         self.policy = Policy { timeout: STOP_EVERY, attempt: STOP_EVERY, doubles: false, retries: STOP_TRIES - 1 };
-        let reply = self.transact(&request, true).await;
+        let mut lost = None;
+        let until = Instant::now() + STOP_WITHIN;
+        let trying = async {
+            loop {
+                match self.transact(&request, true).await {
+                    Err(error @ Error::Io { .. }) => lost = Some(error),
+                    reply => return reply,
+                }
+                // A network that is gone may be back in a moment.
+                sleep(STOP_EVERY).await;
+            }
+        };
+        let reply = match timeout_at(until, trying).await {
+            Ok(Err(Error::NoAnswer { .. } | Error::Garbage { .. })) => Err(Error::Unconfirmed { waited: STOP_WITHIN }),
+            Ok(reply) => reply,
+            Err(_) => Err(lost.unwrap_or(Error::Unconfirmed { waited: STOP_WITHIN })),
+        };
         self.policy = usual;
         match reply?.status {
             status if status.is_ok() => Ok(()),

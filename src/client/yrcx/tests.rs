@@ -121,7 +121,7 @@ async fn attached(spot: &Spot) -> Client {
 async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
     let folder = tempfile::tempdir().unwrap();
     let spot = Spot::at(folder.path().join("cell"));
-    let info = Info { pid: 1, robot: "cell".to_owned(), family: "yrcx".to_owned(), target: "sim:".to_owned() };
+    let info = Info { pid: 1, ..Info::own("cell", "yrcx", "sim:", "armctl session open") };
     let claim = spot.claim(&info).unwrap().unwrap();
     let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
     let held = Held::Images(hold(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
@@ -137,7 +137,7 @@ async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
         }
     };
     tokio::select! {
-        () = host.serve() => panic!("nobody closed it"),
+        _ = host.serve() => panic!("nobody closed it"),
         () = work => {}
     }
 }

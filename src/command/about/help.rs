@@ -15,7 +15,7 @@ use crate::failure::{Failure, Kind};
 #[derive(Debug, Args)]
 pub struct Help {
     /// A topic (options, exit-codes, environment, targets, inventory, output, safety, scripting, sessions, repl, batch,
-    /// completion, simulator, toyo-setup, yerc-setup, yrcx-setup), or a command
+    /// completion, simulator, toyo-setup, toyo-instructions, yerc-setup, yrcx-setup), or a command
     #[arg(add = ValueKind::HelpWord)]
     words: Vec<String>,
 }
@@ -65,7 +65,13 @@ pub fn topics() -> impl Iterator<Item = (String, &'static str)> {
     ];
     let made = made.into_iter().map(|(name, about)| (name.to_owned(), about));
     let texts = TOPICS.iter().map(|(name, about, _)| ((*name).to_owned(), *about));
-    made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about)))
+    let more = more().into_iter().map(|(name, about, _)| (name.to_owned(), about));
+    made.chain(texts).chain(setups().into_iter().map(|(name, about, _)| (name, about))).chain(more)
+}
+
+/// Further topics of the families.
+fn more() -> Vec<(&'static str, &'static str, String)> {
+    FAMILIES.iter().flat_map(|face| face.topics()).collect()
 }
 
 /// The topics of the families.
@@ -93,6 +99,9 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
         }
         if let Some((.., text)) = setups().iter().find(|(name, ..)| name == word) {
             return Ok((*text).to_owned());
+        }
+        if let Some((.., text)) = more().into_iter().find(|(name, ..)| name == word) {
+            return Ok(text);
         }
     }
     let mut root = root();
@@ -126,8 +135,29 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
 }
 
 fn start_states() -> String {
-    let example = |face: &&dyn Face| format!("\nKeys of {}:\n\n{}", face.family(), face.start_state());
+    let example = |face: &&dyn Face| {
+        format!(
+            "
+Keys of {}:
+
+{}",
+            face.family(),
+            comments_above(face.start_state())
+        )
+    };
     FAMILIES.iter().map(example).collect()
+}
+
+/// Columns that a topic has.
+const COLUMNS: usize = 80;
+
+/// The comment of a line that is too long stands above it.
+fn comments_above(toml: &str) -> String {
+    let fitted = |line: &str| match line.rsplit_once("  # ") {
+        Some((code, comment)) if line.chars().count() > COLUMNS => format!("# {comment}\n{}\n", code.trim_end()),
+        _ => format!("{line}\n"),
+    };
+    toml.lines().map(fitted).collect()
 }
 
 fn exit_codes() -> String {
@@ -136,15 +166,20 @@ fn exit_codes() -> String {
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory as _;
+
     use super::*;
+    use crate::cli::Cli;
 
     #[test]
     fn topics_fit_80_columns() {
-        let texts = TOPICS.iter().map(|(name, _, text)| ((*name).to_owned(), *text));
-        let texts = texts.chain(setups().into_iter().map(|(name, _, text)| (name, text)));
-        for (name, text) in texts {
-            let wide: Vec<&str> = text.lines().filter(|line| line.chars().count() > 80).collect();
-            assert_eq!(wide, [""; 0], "{name}");
+        for (name, _) in topics().filter(|(name, _)| name != OPTIONS) {
+            let text = text(std::slice::from_ref(&name), false, Cli::command).unwrap();
+            // A table of TOML stands in one line.
+            let may_be_long = |line: &&str| line.contains(" = ") && !line.contains("  # ");
+            let long = text.lines().filter(|line| line.chars().count() > COLUMNS && !may_be_long(line));
+            let long: Vec<&str> = long.collect();
+            assert!(long.is_empty(), "{name}: {long:#?}");
         }
     }
 }

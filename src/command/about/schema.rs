@@ -10,7 +10,7 @@ use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use crate::command::fleet::{robots, session, shared, tools};
+use crate::command::fleet::{names, robots, session, shared, tools};
 use crate::command::frame::background::Opened;
 use crate::command::frame::dry_run::DryRun;
 use crate::command::frame::run::Run;
@@ -54,6 +54,7 @@ pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
     all.extend(shared::schemas());
+    all.extend(names::schemas());
     all.extend(Backup::<Fleet>::schemas());
     all.extend(Restore::<Fleet>::schemas());
     all.extend(Diff::<Fleet>::schemas());
@@ -74,7 +75,6 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::entry::Renamed>("robots.rename"),
         SchemaEntry::of::<robots::entry::WasSet>("robots.set"),
         SchemaEntry::of::<robots::Shown>("robots.show"),
-        SchemaEntry::of::<crate::command::frame::names::Listing>("robots.names"),
         #[cfg(feature = "plant")]
         SchemaEntry::of::<metrics::Listening>("serve.metrics"),
         SchemaEntry::of::<session::Closed>("session.close"),

@@ -1,4 +1,4 @@
-//! `armctl backup --check`: whether the files of a backup are still what was saved.
+//! `armctl backup --verify`: whether the files of a backup are still what was saved.
 
 use std::path::Path;
 

@@ -180,11 +180,12 @@ impl Of {
         Self { folder, robot: manifest.robot.clone(), taken_at: manifest.taken_at.to_string() }
     }
 
-    /// A file of it, as the head of a diff.
-    fn of(&self, file: &str) -> String {
-        match &self.folder {
-            Some(folder) => Path::new(folder).join(file).display().to_string(),
-            None => format!("{file} (controller)"),
+    /// A file of it, as the head of a diff with another.
+    fn of(&self, file: &str, other: &Self) -> String {
+        match (&self.folder, &other.folder) {
+            (Some(folder), _) => Path::new(folder).join(file).display().to_string(),
+            (None, Some(_)) => format!("{file} (controller)"),
+            (None, None) => format!("{file} ({})", self.robot),
         }
     }
 }
@@ -315,8 +316,10 @@ impl FileDifference {
     }
 
     fn result(&self, old: &Of, new: &Of) -> Cell {
+        let are_robots = old.folder.is_none() && new.folder.is_none();
         let only = |of: &Of| match &of.folder {
             Some(folder) => Cell::from(format!("only in {folder}")).tone(Tone::Warning),
+            None if are_robots => Cell::from(format!("only on {}", of.robot)).tone(Tone::Warning),
             None => Cell::from("only on the controller").tone(Tone::Warning),
         };
         let count = |change| {
@@ -349,11 +352,12 @@ impl Report for Differences {
         let mut view = View::default();
         for file in &self.files {
             let Some(hunks) = file.hunks.as_ref().filter(|_| !file.only_line_endings) else { continue };
-            let named = |of: &Of| match &*file.file {
+            let named = |of: &Of, other: &Of| match &*file.file {
                 "" => format!("{of}: {}", file.name),
-                own => of.of(own),
+                own => of.of(own, other),
             };
-            view = view.and(Section::Lines(unified(&named(&self.old), &named(&self.new), hunks)));
+            let (old, new) = (named(&self.old, &self.new), named(&self.new, &self.old));
+            view = view.and(Section::Lines(unified(&old, &new, hunks)));
         }
         let mut table = Table::new(&["name", "result"], "");
         for file in self.files.iter().filter(|file| file.state != State::Same) {

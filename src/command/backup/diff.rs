@@ -1,6 +1,6 @@
 //! What two backups, or a backup and a controller, are compared by. A controller is read into a folder for a while.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use clap::Args;
@@ -19,7 +19,7 @@ use crate::settings::Robot;
 pub struct DiffOptions {
     /// Folder of a backup
     #[arg(value_name = "FOLDER")]
-    pub(super) old: PathBuf,
+    pub(super) old: Option<PathBuf>,
     /// Folder of another one; without it, the controller
     #[arg(value_name = "OTHER")]
     pub(super) new: Option<PathBuf>,
@@ -35,10 +35,38 @@ pub struct DiffOptions {
 }
 
 impl DiffOptions {
+    /// The folder that is compared.
+    pub fn folder(&self) -> Result<&Path, Failure> {
+        self.old.as_deref().ok_or_else(|| {
+            Failure::usage("no backup to compare with was named")
+                .hint("name the folder of one, or two robots: `armctl diff ROBOT ROBOT`")
+        })
+    }
+
+    /// Whether one of the names is that of a folder, or of a file.
+    pub fn names_folder(&self) -> bool {
+        [&self.old, &self.new].into_iter().flatten().any(|path| path.exists())
+    }
+
     /// Compares the folders.
     pub fn two_folders(&self) -> Result<Differences, Failure> {
-        let new = self.new.as_ref().unwrap_or(&self.old);
-        self.compare(&side(self.old.clone())?, &side(new.clone())?)
+        let old = self.folder()?;
+        let new = self.new.as_deref().unwrap_or(old);
+        self.compare(&side(old.to_owned())?, &side(new.to_owned())?)
+    }
+
+    /// Compares two controllers, each of which was read into a folder.
+    pub fn two_controllers(&self, folders: [PathBuf; 2]) -> Result<Differences, Failure> {
+        let read = |folder: PathBuf| {
+            Ok::<_, Failure>(Side { manifest: manifest::existing(&folder)?, folder, is_controller: true })
+        };
+        let [old, new] = folders;
+        self.compare(&read(old)?, &read(new)?)
+    }
+
+    /// What is read of two controllers.
+    pub fn scope_of_controllers(&self) -> Vec<String> {
+        Only(self.only.clone()).scope().collect()
     }
 
     /// Compares a folder with what `read` saves of a controller.

@@ -191,6 +191,8 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     struct Head {
         format: String,
         version: u32,
+        #[serde(default)]
+        family: Option<String>,
     }
 
     let path = folder.join(MANIFEST);
@@ -208,6 +210,11 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         }
         Head { version, .. } if version > VERSION => {
             return Err(wrong(format!("it has version {version}, and this program reads up to {VERSION}")));
+        }
+        Head { family: Some(family), .. } if C::FAMILY.is_some_and(|own| own.name() != family) => {
+            let own = C::FAMILY.map_or("this", Family::name);
+            let message = format!("{} is a backup of a {family} controller, not of a {own} one", folder.display());
+            return Err(Failure::usage(message).hint(format!("name a backup of a {own} controller")));
         }
         Head { .. } => {}
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{Making, Only, Restoring};
+use crate::command::ValueKind;
 
 /// What is saved, and where.
 #[derive(Debug, Args)]
@@ -46,6 +47,7 @@ impl BackupOptions {
 #[group(skip)]
 pub struct RestoreOptions {
     /// Folder of the backup
+    #[arg(add = ValueKind::Backup)]
     folder: PathBuf,
     /// Files or parts whose names fit, such as '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]

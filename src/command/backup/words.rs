@@ -16,6 +16,7 @@ use crate::command::{Command, Context, Family};
 use crate::controller::Risk;
 use crate::failure::Failure;
 use crate::gate::Confirmation;
+use crate::settings::inventory::Inventory;
 use crate::settings::{Robot, target};
 
 /// A family whose robots can be backed up.
@@ -123,8 +124,9 @@ impl<F: Backups> Command for Restore<F> {
 #[group(skip)]
 #[command(
     after_help = "With two folders no robot is asked. With one, the controller is read as far as the backup goes, and what \
-                  is shown is what changed since: - is the backup, + the controller. Texts are compared by lines, other \
-                  files by their hashes.\n\nPositions (points, shifts, hands, positions of jobs) that are no further apart than \
+                  is shown is what changed since: - is the backup, + the controller. `armctl diff ROBOT ROBOT` reads and \
+                  compares two controllers of a family; where a folder has such a name, name them with -r. Texts are \
+                  compared by lines, other files by their hashes.\n\nPositions (points, shifts, hands, positions of jobs) that are no further apart than \
                   the tolerance are the same: 0.001 mm, 0.001 degrees and 1 pulse, unless --tolerance says otherwise; \
                   such files are named. So are jobs that differ in the line ///DATE alone, which \
                   controllers rewrite: it is ignored. --exact compares every byte. Exit code 0: the same; 8: different."
@@ -139,7 +141,27 @@ pub struct Diff<F: Backups> {
 impl<F: Backups> Diff<F> {
     /// The family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
-        family_of(&self.options.old)
+        family_of(self.options.old.as_deref()?)
+    }
+
+    /// What is compared, and how exactly.
+    pub fn options(&self) -> &DiffOptions {
+        &self.options
+    }
+
+    /// Whether robots may be asked: not where two folders are compared.
+    pub fn may_ask_robots(&self) -> bool {
+        self.options.new.is_none() || !self.options.names_folder()
+    }
+
+    /// The two robots that are named in place of folders.
+    pub fn robots(&self, inventory: &Inventory) -> Option<[String; 2]> {
+        let named = |path: &Option<PathBuf>| {
+            let name = path.as_ref()?.to_str()?;
+            inventory.robots.iter().find(|robot| robot.name == name).map(|robot| robot.name.clone())
+        };
+        let robots = [named(&self.options.old)?, named(&self.options.new)?];
+        (!self.options.names_folder()).then_some(robots)
     }
 }
 
@@ -163,7 +185,7 @@ impl<F: Backups> Command for Diff<F> {
 
     async fn run(&self, context: Context<'_, F>) -> Result<Differences, Failure> {
         let robot = context.robot;
-        let folder = place(&self.options.old, robot, context.several);
+        let folder = place(self.options.folder()?, robot, context.several);
         self.options.with_controller(folder, robot, |making| F::back_up(context, making)).await
     }
 }

@@ -78,6 +78,10 @@ pub trait Declaration: Backups {
     fn urls() -> Vec<(String, &'static str)>;
     /// See [`Face::codes`].
     fn codes() -> Vec<(String, String)>;
+    /// See [`Face::topics`].
+    fn topics() -> Vec<(&'static str, &'static str, String)> {
+        Vec::new()
+    }
 
     /// What can stand between its word and a command.
     fn arguments(command: clap::Command) -> clap::Command {
@@ -144,6 +148,10 @@ impl<F: Declaration> Face for Declared<F> {
 
     fn setup(&self) -> (&'static str, &'static str) {
         F::SETUP
+    }
+
+    fn topics(&self) -> Vec<(&'static str, &'static str, String)> {
+        F::topics()
     }
 
     fn simulator(&self) -> &'static str {

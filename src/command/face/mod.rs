@@ -38,10 +38,12 @@ pub trait Face: Sync {
     fn title(&self) -> &'static str;
     /// How its target URLs begin, with what follows.
     fn urls(&self) -> Vec<(String, &'static str)>;
-    /// Codes that `explain` explains, with their names.
+    /// Codes and words that `explain` explains, with their names.
     fn codes(&self) -> Vec<(String, String)>;
     /// The topic `NAME-setup` of `help`: a line about it, and its text.
     fn setup(&self) -> (&'static str, &'static str);
+    /// Further topics of `help`: the name, a line about it, and its text.
+    fn topics(&self) -> Vec<(&'static str, &'static str, String)>;
     /// The URL of the simulator that `sim` serves without arguments.
     fn simulator(&self) -> &'static str;
     /// The start state of a simulator, as an example.

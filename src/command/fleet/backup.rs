@@ -1,5 +1,8 @@
 //! `armctl backup`, `restore` and `diff`: the same for robots of any family, whose own commands do the work.
 
+use std::path::PathBuf;
+
+use anyhow::Context as _;
 use clap::Args;
 
 use crate::command::backup::check::Checked;
@@ -8,10 +11,11 @@ use crate::command::backup::{BackedUp, Making, Restored, Restoring};
 use crate::command::face::Face;
 use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
+use crate::command::frame::local::own_folder;
 use crate::command::frame::run::{Run, RunError};
-use crate::command::{AnyContext, Context};
+use crate::command::{AnyContext, Command, Context};
 use crate::controller::Risk;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
 
 /// `armctl restore`.
@@ -26,13 +30,13 @@ pub struct Backup {
     making: words::Backup<Fleet>,
     /// Talk to nobody: compare the files in the folder with their hashes
     #[arg(long, conflicts_with_all = ["resume", "force", "only"])]
-    check: bool,
+    verify: bool,
 }
 
 impl Backup {
     /// Whether it takes a robot.
     pub fn takes_robot(&self) -> bool {
-        !self.check
+        !self.verify
     }
 
     /// What makes a backup.
@@ -42,10 +46,74 @@ impl Backup {
 
     /// Does it.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
-        if self.check {
+        if self.verify {
             return run.local("backup.check", &Checked::of(self.making.folder())?);
         }
         run.robots(&self.making).await
+    }
+}
+
+/// `armctl diff`: of folders, of a folder and a robot, or of two robots.
+pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
+    let are_robots = diff.robots(&run.sources.inventory).is_some();
+    let is_plural = run.sources.selection.is_plural() && diff.options().folder().is_err();
+    if !are_robots && !is_plural {
+        return run.robots(&diff).await;
+    }
+    let folder = tempfile::tempdir().context("a temporary folder")?;
+    let reading = Reading { folder: folder.path().to_owned(), scope: diff.options().scope_of_controllers() };
+    if run.gate.dry_run {
+        return run.robots(&reading).await;
+    }
+    let robots = run.ready(&reading).await?;
+    let [old, new] = &robots[..] else {
+        let failure = Failure::usage(format!("two robots are compared, not {}", robots.len()));
+        return Err(failure.hint("`armctl diff ROBOT ROBOT`").into());
+    };
+    if old.family != new.family {
+        let message = format!("{} is a {} controller, {} a {} one", old.name, old.family, new.name, new.family);
+        return Err(Failure::usage(message).hint("compare robots of one family").into());
+    }
+    for (robot, outcome) in robots.iter().zip(run.gather(&reading, &robots).await) {
+        let failure = match outcome {
+            // What a controller refuses to tell is a difference.
+            Ok(report) => report.failure().filter(|failure| failure.kind != Kind::Refused),
+            Err(failure) => Some(failure),
+        };
+        if let Some(failure) = failure {
+            let message = format!("nothing was compared: {}", failure.message);
+            return Err(RunError::at(robot, &reading, Failure { message, ..failure }));
+        }
+    }
+    run.local("diff", &diff.options().two_controllers([reading.place(old), reading.place(new)])?)
+}
+
+/// Reads robots into folders, to compare them.
+struct Reading {
+    folder: PathBuf,
+    scope: Vec<String>,
+}
+
+impl Reading {
+    fn place(&self, robot: &Robot) -> PathBuf {
+        own_folder(&self.folder, &robot.name, true)
+    }
+}
+
+impl Command for Reading {
+    type Family = Fleet;
+    type Report = BackedUp;
+    const ID: &'static str = "diff";
+    const RISK: Risk = Fleet::BACKUP_RISK;
+
+    fn risk_on(&self, robot: &Robot) -> Risk {
+        Fleet::backup_risk(robot)
+    }
+
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<BackedUp, Failure> {
+        let folder = self.place(context.robot);
+        let making = Making { folder, scope: Some(self.scope.clone()), resume: false, force: false };
+        Fleet::back_up(context, making).await
     }
 }
 

@@ -3,11 +3,11 @@
 pub mod backup;
 #[cfg(feature = "plant")]
 pub mod metrics;
+pub mod names;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
 #[cfg(feature = "plant")]
-mod repeats;
 pub mod robots;
 #[cfg(feature = "plant")]
 pub mod serve;

@@ -15,7 +15,6 @@ use serde::Serialize;
 use self::entry::known;
 use crate::command::Report;
 use crate::command::ValueKind;
-use crate::command::frame::names::list;
 use crate::command::frame::run::{Run, RunError};
 use crate::failure::Failure;
 use crate::output::view::{Table, View};
@@ -30,9 +29,7 @@ pub enum Robots {
     List,
     /// Show the effective settings of a robot
     Show(Show),
-    /// List the names of a robot's signals, variables and registers
-    Names(Names),
-    /// Add a robot; `armctl setup` does it step by step
+    /// Add a robot; `armctl setup` asks for all of it
     Add(entry::Add),
     /// Change settings of a robot
     Set(entry::Set),
@@ -63,27 +60,6 @@ pub struct Show {
     origin: bool,
 }
 
-/// Arguments of `robots names`.
-#[derive(Debug, Args)]
-#[command(
-    after_help = "The names are in [robot.names] of the robot: `armctl robots set cell3 names.clamp=27010` writes one. `yerc \
-    names get` reads the names of a yerc controller."
-)]
-pub struct Names {
-    /// Name of the robot
-    #[arg(add = ValueKind::Robot)]
-    name: String,
-    /// Only names with this text in name, kind, address or origin
-    filter: Option<String>,
-}
-
-impl Names {
-    fn run(&self, run: &Run) -> Result<(), RunError> {
-        let robot = run.sources.resolved(known(&run.sources.inventory, &self.name)?, None)?;
-        run.local("robots.names", &list(&robot, self.filter.as_deref())?)
-    }
-}
-
 impl Robots {
     /// Whether it makes the file where there is none.
     pub fn makes_inventory(&self) -> bool {
@@ -104,7 +80,6 @@ impl Robots {
         match self {
             Self::List => run.local("robots.list", &List::of(run)?),
             Self::Show(show) => show.run(run),
-            Self::Names(names) => names.run(run),
             Self::Add(add) => add.run(run),
             Self::Set(set) => set.run(run),
             Self::Rename(rename) => rename.run(run),

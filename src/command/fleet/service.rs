@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
-use super::repeats::{Line, Repeats};
+use crate::command::frame::repeats::{Line, Repeats};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::log::Level;
@@ -115,17 +115,19 @@ impl Log {
 
     fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         if self.screen.wants(level) {
-            let line = Line::new(level, text, fields);
-            if self.repeats.borrow_mut().admits(&line, Instant::now()) {
-                self.print(level, text, fields);
-            }
+            let lines = self.repeats.borrow_mut().lines(Line::new(level, text, fields), Instant::now());
+            self.print_all(lines);
         }
     }
 
     /// Prints how often lines were repeated.
     fn summarize(&self, is_end: bool) {
         let due = self.repeats.borrow_mut().due(Instant::now(), is_end);
-        for Line { level, text, fields } in due {
+        self.print_all(due);
+    }
+
+    fn print_all(&self, lines: Vec<Line>) {
+        for Line { level, text, fields } in lines {
             let fields: Vec<_> = fields.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
             self.print(level, &text, &fields);
         }

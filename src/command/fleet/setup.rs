@@ -7,6 +7,7 @@ use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
 use crate::command::face::layers;
 use crate::command::families::{self, FAMILIES};
+use crate::command::frame::asking::answered;
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
@@ -67,27 +68,19 @@ fn unanswered(failure: Failure) -> Failure {
     }
 }
 
-/// Asks on a thread of its own, so that Ctrl-C is heard meanwhile.
-async fn asked<T: Send + 'static>(
-    question: impl FnOnce() -> Result<T, Failure> + Send + 'static,
-) -> Result<T, Failure> {
-    let asked = interruptible(tokio::task::spawn_blocking(question)).await?;
-    asked.map_err(|error| Failure::local(format!("the question failed: {error}")))?
-}
-
 async fn line(run: &Run, question: impl Into<String>, usual: Option<&str>) -> Result<String, Failure> {
     let (screen, question, usual) = (run.screen, question.into(), usual.map(ToOwned::to_owned));
-    asked(move || screen.ask_line(&question, usual.as_deref())).await
+    answered(screen, move || screen.ask_line(&question, usual.as_deref())).await
 }
 
 async fn choice(run: &Run, question: &'static str, options: Vec<String>) -> Result<usize, Failure> {
     let screen = run.screen;
-    asked(move || screen.ask_choice(question, &options)).await
+    answered(screen, move || screen.ask_choice(question, &options)).await
 }
 
 async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool, Failure> {
     let (screen, question) = (run.screen, question.into());
-    asked(move || screen.ask_yes(&question, usual)).await
+    answered(screen, move || screen.ask_yes(&question, usual)).await
 }
 
 /// An address whose check is good enough for whoever sits there.

@@ -34,6 +34,6 @@ impl Wait {
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
         let until = Some(Condition::new(&self.condition)?);
         let every = given.every.or(Some(EVERY));
-        Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true })
+        Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true, ..Repeat::default() })
     }
 }

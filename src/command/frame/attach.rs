@@ -13,7 +13,7 @@ use crate::output::Screen;
 use crate::settings::target::{self, Address, Family, Target};
 use crate::settings::{Robot, Sessions, Sources};
 use crate::transport::session::client::{self, AttachError, Attached, Found, SessionBusy};
-use crate::transport::session::place::{Place, PlaceError, Spot, key};
+use crate::transport::session::place::{self, Claim, Place, PlaceError, Spot, key};
 use crate::transport::session::process;
 use crate::transport::session::wire::{Info, Peer, Purpose};
 
@@ -25,6 +25,50 @@ pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<O
         return Err(failure.hint("`armctl session open` opens one"));
     }
     Ok(attached)
+}
+
+/// How a controller is reached that takes one client.
+pub enum Turn {
+    /// Through the session that holds its link.
+    Session(Box<Attached>),
+    /// By a link of this command's own; nobody else on this machine opens one as long as it has the claim.
+    Own(Option<Claim>),
+}
+
+/// The session that holds a link which takes one client, or the turn to open it. Another command that has it is waited for,
+/// but not for long.
+pub async fn turn(robot: &Robot, access: &Access, screen: &Screen) -> Result<Turn, Failure> {
+    loop {
+        if let Some(attached) = attach(robot, access, screen).await? {
+            return Ok(Turn::Session(attached));
+        }
+        // A stop waits for nobody, and a simulator in this process is nobody else's.
+        let is_alone = robot.target.value.is_simulated() || robot.sessions == Sessions::None || access.is_stop;
+        // Where there is no place for sessions, nobody knows of each other.
+        let Some(place) = (if is_alone { None } else { Place::make().ok() }) else { return Ok(Turn::Own(None)) };
+        let spot = place.spot(&key_of(robot));
+        match spot.turn(&info(robot, access)).await {
+            Ok(place::Turn::Mine(claim)) => return Ok(Turn::Own(Some(claim))),
+            Ok(place::Turn::Session) => {}
+            Ok(place::Turn::Taken) => return Err(in_use(robot, &spot)),
+            Err(_) => return Ok(Turn::Own(None)),
+        }
+    }
+}
+
+/// What this process says of itself where it has the link to a robot to itself.
+pub fn info(robot: &Robot, access: &Access) -> Info {
+    Info::own(&robot.name, robot.family.name(), robot.target.value.url(), &command_line(access))
+}
+
+/// A command has the link, which takes one client, and keeps it.
+pub fn in_use(robot: &Robot, spot: &Spot) -> Failure {
+    let who = spot.owner().map_or_else(
+        || "another process".to_owned(),
+        |Info { pid, command, .. }| format!("process {pid} (`{command}`)"),
+    );
+    Failure::new(Kind::NoAnswer, format!("{}: its link takes one client, and {who} has it", robot.label()))
+        .hint("wait for its end; with `armctl session open` before, commands share the link")
 }
 
 async fn attach_if_there(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {

@@ -239,7 +239,9 @@ impl<C: Command> AnyCommand for C {
 
     fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
         async move {
-            let report = Command::run(self, context.of()?).await?;
+            let Context { robot, link, screen, several, authority } = context.of::<C::Family>()?;
+            let report = Command::run(self, Context { robot, link: &mut *link, screen, several, authority }).await?;
+            C::Family::settle(link).await?;
             Ok(Box::new(report) as Box<_>)
         }
         .boxed_local()

@@ -133,9 +133,19 @@ pub trait Family: Sized + 'static {
     /// What a dry run would have sent, in the order of sending.
     fn planned(link: &mut Self::Link) -> Plan;
 
+    /// Makes sure, before a command reports, that the answers it took were those to what it sent.
+    async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// What a connection of this kind does to the controller by being opened, and closed at the end.
     fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
         Entry::Harmless
+    }
+
+    /// Whether only one client at a time can reach the controller of a robot, so that those on this machine share its link.
+    fn takes_one_client(_robot: &Robot) -> bool {
+        false
     }
 
     /// All addresses of a robot, asked of its network where each robot there has several; without them, none.
@@ -169,6 +179,8 @@ pub trait Driver: Sync {
     fn stop(&self) -> &'static [&'static str];
     /// See [`Family::entry`].
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// See [`Family::takes_one_client`].
+    fn takes_one_client(&self, robot: &Robot) -> bool;
     /// See [`Family::addresses`].
     fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure>;
     /// See [`Family::connect`].
@@ -198,6 +210,10 @@ impl<F: Family> Driver for Drives<F> {
 
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
         F::entry(robot, mode)
+    }
+
+    fn takes_one_client(&self, robot: &Robot) -> bool {
+        F::takes_one_client(robot)
     }
 
     fn addresses(&self, robot: &Robot) -> Result<Vec<target::Address>, Failure> {

@@ -15,6 +15,8 @@ pub enum ValueKind {
     RobotOrUrl,
     /// A robot whose link a session holds.
     Session,
+    /// The folder of a backup.
+    Backup,
     /// A tag of the inventory.
     Tag,
     /// A target URL.

@@ -4,6 +4,7 @@
 //! [`CommandSet`]s, and a line in the family's `commands!` list makes them part of the tool: command line, help, man page,
 //! completion and schema follow from it.
 
+pub mod asking;
 pub mod attach;
 pub mod authority;
 pub mod background;
@@ -15,6 +16,7 @@ pub mod connection;
 pub mod cycle;
 pub mod dry_run;
 pub mod edited;
+pub mod ending;
 pub mod interrupt;
 pub mod items;
 pub mod kind;
@@ -22,12 +24,14 @@ pub mod local;
 pub mod names;
 pub mod orders;
 pub mod plot;
+pub mod repeats;
 pub mod repl;
 pub mod report;
 pub mod run;
 pub mod script_line;
 pub mod session_manager;
 pub mod setting;
+pub mod share;
 pub mod sheet;
 pub mod store;
 pub mod teach;

@@ -143,27 +143,6 @@ impl<T> Written<T> {
     }
 }
 
-/// Several things that one command set.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct AllDone {
-    items: Vec<Done>,
-    #[serde(skip)]
-    words: String,
-}
-
-impl AllDone {
-    /// What was set; all of it in words.
-    pub fn new(items: Vec<Done>, words: impl Into<String>) -> Self {
-        Self { items, words: words.into() }
-    }
-}
-
-impl Report for AllDone {
-    fn view(&self) -> View {
-        View::text(self.words.clone())
-    }
-}
-
 /// A value as a person reads it.
 fn shown(value: &Value) -> String {
     match value {

@@ -2,6 +2,7 @@
 
 mod print;
 mod rounds;
+mod silences;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -9,12 +10,14 @@ use std::time::Duration;
 use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
+use serde::Serialize;
 use tokio::time::timeout_at;
 
 pub use self::print::as_value;
-use self::print::{ReportPosition, enveloped_all, timed};
+use self::print::{ReportPosition, enveloped_all, named, timed};
 pub use self::rounds::Repeat;
 use self::rounds::Rounds;
+use self::silences::Silences;
 use super::attach::{identify, is_held_by_another};
 use super::authority::{self, Authority};
 use super::background;
@@ -24,6 +27,7 @@ use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{UnderWay, catch_interrupts, interruptible};
 use super::report::Outcome;
 use super::script_line::Line;
+use super::share::shared;
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
@@ -81,7 +85,8 @@ impl From<anyhow::Error> for RunError {
 }
 
 impl RunError {
-    fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
+    /// The failure of a command on a robot.
+    pub fn at(robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Self {
         let envelope = Some(Box::new(Envelope::of(robot, command.id(), Err(failure.clone()))));
         Self { failure, envelope, told: false }
     }
@@ -102,6 +107,18 @@ impl Run {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
         }
+        let robots = self.ready(command).await?;
+        if robots.iter().any(|robot| robot.target.value.is_simulated()) && self.line.is_none() {
+            self.screen.note_simulator();
+        }
+        match &robots[..] {
+            [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
+            robots => self.many(command, robots).await,
+        }
+    }
+
+    /// The robots that a command is for, once it may run on all of them.
+    pub async fn ready(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
         let mut robots = self.chosen(command)?;
         let asks = |robot: &Robot| {
             let intent = self.intent(command, robot);
@@ -125,16 +142,18 @@ impl Run {
             robot.sessions = Sessions::Only;
         }
         self.begin_trace()?;
-        match &robots[..] {
-            [robot] if !self.sources.selection.is_plural() => self.one(command, robot).await,
-            robots => self.many(command, robots).await,
-        }
+        Ok(robots)
+    }
+
+    /// Runs a command once on robots that are [`ready`](Self::ready), and reports nothing.
+    pub async fn gather(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
+        at_a_time(robots.iter().map(|robot| self.once(command, robot))).await
     }
 
     /// The robots that a command is for, if it can be for these.
     fn chosen(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
-        if command.intent(None).risk > Risk::Read && self.repeat.is_wanted() {
-            return Err(Failure::usage("--watch, --count and --until repeat commands that only read")
+        if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
+            return Err(Failure::usage("--watch, --count, --until and --check are for commands that only read")
                 .hint("run this command once, and watch `status` or `position`"));
         }
         if command.moves_until_stopped() && !self.gate.dry_run && !self.screen.can_interrupt() {
@@ -149,8 +168,9 @@ impl Run {
                 robot.sessions = Sessions::Only;
             }
         }
-        if command.is_endless() && robots.len() > 1 {
-            return Err(Failure::usage("this watches one robot at a time").hint("name one with -r"));
+        if command.is_endless() && robots.len() > PARALLEL {
+            return Err(Failure::usage(format!("this watches {PARALLEL} robots at a time, not {}", robots.len()))
+                .hint("choose some with -r or --tag"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
         Gate::pass_many(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
@@ -209,18 +229,32 @@ impl Run {
 
     async fn one(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
         if (self.repeat.is_wanted() || command.is_endless()) && !self.gate.dry_run {
-            return self.watch(command, robot).await;
+            return self.watch(command, robot, None).await;
         }
         let report = self.once(command, robot).await.map_err(|failure| RunError::at(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
-        match report.failure() {
+        if let Some(failure) = report.failure() {
             // A reader that went away, or a full disk behind stdout, does not turn a failure into something else.
-            Some(failure) => {
-                let told = printed.is_ok() && self.screen.is_json();
-                Err(RunError { failure, envelope: None, told })
-            }
-            None => Ok(printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?),
+            let told = printed.is_ok() && self.screen.is_json();
+            return Err(RunError { failure, envelope: None, told });
         }
+        printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+        let checked = self.check(&Envelope::of(robot, command.id(), report.data()));
+        checked.map_err(|failure| RunError::at(robot, command, failure))
+    }
+
+    /// Whether what `--check` asks for holds.
+    fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
+        let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
+        let envelopes = as_value(envelopes)?;
+        if check.holds(&envelopes)? {
+            return Ok(());
+        }
+        let failure = Failure::new(Kind::ConditionNotMet, format!("the condition '{check}' is not met"));
+        Err(match check.never(&envelopes) {
+            Some(why) => failure.hint(why),
+            None => failure,
+        })
     }
 
     /// A failure to report what was done: nobody should do it again for that.
@@ -231,11 +265,16 @@ impl Run {
         after_a_change(failure)
     }
 
-    /// Repeats a reading command over one connection.
-    async fn watch(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), RunError> {
+    /// Repeats a reading command over one connection; `among` stands where other robots are watched beside this one.
+    async fn watch(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        among: Option<ReportPosition<'_>>,
+    ) -> Result<(), RunError> {
         let stopped = |failure| RunError::at(robot, command, failure);
         let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
-        let watched = self.watch_over(command, robot, &mut *link).await;
+        let watched = self.watch_over(command, robot, &mut *link, among).await;
         let closed = link.close(&self.screen).await;
         watched?;
         closed.map_err(stopped)
@@ -246,8 +285,10 @@ impl Run {
         command: &dyn AnyCommand,
         robot: &Robot,
         link: &mut dyn Connection,
+        among: Option<ReportPosition<'_>>,
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::at(robot, command, failure);
+        let mut silences = Silences::new(self, robot);
         let mut rounds = Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { EVERY });
         loop {
             let grant = Grant::of(Risk::Read);
@@ -259,7 +300,8 @@ impl Run {
             let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
             let silence = match outcome {
                 Ok(report) => {
-                    let place = self.round(rounds.is_first(), command.is_endless());
+                    silences.end();
+                    let place = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
                     if !self.repeat.is_quiet {
                         self.print(robot, command.id(), &*report, place)?;
                     }
@@ -277,8 +319,7 @@ impl Run {
                     if self.repeat.is_quiet {
                         // It is told at the end, if it is silent then.
                     } else if self.is_for_people() {
-                        self.screen.failure(&failure);
-                        self.redraw.forget();
+                        silences.say(&failure);
                     } else {
                         self.emit(timed(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
@@ -296,6 +337,27 @@ impl Run {
         }
     }
 
+    /// Watches several robots side by side, each over its own connection, until all watches have ended.
+    async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+        let watches = robots.iter().map(|robot| async move {
+            let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
+            let Err(stopped) = watched else { return Ok(()) };
+            if stopped.failure.kind != Kind::Interrupted && !stopped.told {
+                if self.is_for_people() {
+                    self.screen.failure(&named(robot, stopped.failure.clone()));
+                } else {
+                    self.emit(timed(Envelope::of(robot, command.id(), Err(stopped.failure.clone()))))?;
+                }
+            }
+            Err(stopped.failure)
+        });
+        let failures: Vec<Failure> = at_a_time(watches).await.into_iter().filter_map(Result::err).collect();
+        if let Some(interrupted) = failures.iter().find(|failure| failure.kind == Kind::Interrupted) {
+            return Err(interrupted.clone().into());
+        }
+        self.failed(&failures, robots.len())
+    }
+
     /// A failure that ends a watch: in a stream for programs it stands in its place on stdout.
     fn broken_off(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
         if self.is_for_people() || failure.kind == Kind::Interrupted {
@@ -307,11 +369,15 @@ impl Run {
 
     /// Runs on several robots at a time, over a connection each, and reports in the order they were named.
     async fn many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
+        if command.is_endless() && !self.gate.dry_run {
+            return self.watch_each(command, robots).await;
+        }
         if self.gate.dry_run || !self.repeat.is_wanted() {
-            let outcomes = at_a_time(robots.iter().map(|robot| self.once(command, robot))).await;
+            let outcomes = self.gather(command, robots).await;
             let printed = self.print_many(command, robots, &outcomes, ReportPosition::First);
-            printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
-            return self.verdict(&outcomes);
+            let printed = printed.map_err(|failure| self.unprinted(command.intent(None).risk, failure))?;
+            self.verdict(&outcomes)?;
+            return Ok(self.check(&printed)?);
         }
         let mut links = at_a_time(robots.iter().map(|robot| self.connect(command, robot))).await;
         let verdict = self.many_over(command, robots, &mut links).await;
@@ -364,11 +430,16 @@ impl Run {
             .iter()
             .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |r| r.failure()))
             .collect();
+        self.failed(&failures, outcomes.len())
+    }
+
+    /// What these failures, told already, come to among so many robots.
+    fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
         let Some(first) = failures.first() else { return Ok(()) };
-        let failure = if failures.len() == outcomes.len() && failures.iter().all(|failure| failure.kind == first.kind) {
+        let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
             Failure::new(first.kind, "all robots failed")
         } else {
-            Failure::new(Kind::Mixed, format!("{} of {} robots failed", failures.len(), outcomes.len()))
+            Failure::new(Kind::Mixed, format!("{} of {robots} robots failed", failures.len()))
         };
         Err(RunError { failure, envelope: None, told: !self.is_for_people() })
     }
@@ -393,6 +464,11 @@ impl Run {
         let access = match &self.line {
             Some(line) => line.connecting(robot, access, &self.screen).await?,
             None => access,
+        };
+        let goes_on = self.repeat.is_wanted() || command.is_endless();
+        let robot = &match command.driver().filter(|_| goes_on) {
+            Some(driver) => shared(driver, robot).await?,
+            None => robot.clone(),
         };
         let link = interruptible(command.connect(robot, access, &self.screen)).await??;
         Ok((link, grant))

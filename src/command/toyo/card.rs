@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::link::Toyo;
 use super::waiting::{Accepted, Work};
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::ending::MotionEnd;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
 use crate::controller::toyo::request::Request;
@@ -27,17 +28,15 @@ commands! {
 /// Reads everything from the memory card, and waits until it is done (TO 2-3).
 #[derive(Debug, Args)]
 pub struct Read {
-    /// Return as soon as the controller has accepted it
-    #[arg(long)]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
 }
 
 /// Writes everything to the memory card, over what is on it, and waits until it is done (TO 2-3).
 #[derive(Debug, Args)]
 pub struct Write {
-    /// Return as soon as the controller has accepted it
-    #[arg(long)]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
 }
 
 impl Command for Read {
@@ -55,7 +54,7 @@ impl Command for Read {
             done: "reading the card was accepted",
             doing: "reading the card",
         };
-        transfer(context, work, self.no_wait).await
+        transfer(context, work, self.end.no_wait()).await
     }
 }
 
@@ -73,7 +72,7 @@ impl Command for Write {
             done: "writing the card was accepted",
             doing: "writing the card",
         };
-        transfer(context, work, self.no_wait).await
+        transfer(context, work, self.end.no_wait()).await
     }
 }
 

@@ -50,6 +50,7 @@ commands! {
         Offset(offset::Offset),
         "Programs":
         /// Sequential programs
+        #[command(alias = "job")]
         Program(Subcommands<program::Program>),
         /// Palletizing programs
         Palletizing(Subcommands<palletizing::Palletizing>),

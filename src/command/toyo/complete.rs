@@ -10,8 +10,15 @@ use crate::settings::target::Family;
 
 /// A bit of an output port by its name, with the state to set.
 pub const OUTPUT_STATE: ValueKind = named(&[Kind::Output], &["=on", "=off"]);
+/// A signal by its name.
+pub const SIGNAL: ValueKind = named(&[Kind::Input, Kind::Output], &[""]);
 /// A counter by its name.
 pub const COUNTER: ValueKind = named(&[Kind::Counter], &[""]);
+
+/// A timer by its name.
+pub const TIMER: ValueKind = named(&[Kind::Timer], &[""]);
+/// A point by its name.
+pub const POINT: ValueKind = named(&[Kind::Point], &[""]);
 
 const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
     ValueKind::Named(Family::Toyo, Named { kinds, endings, listed: Vec::new })

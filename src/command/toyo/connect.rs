@@ -1,14 +1,15 @@
 //! The ways to a controller that a robot's target names: a serial port, a device server, the simulator, a session that
 //! holds one of them.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use super::failure::failure;
 use super::link::Toyo;
 use super::overview::overview;
 use super::simulated;
 use crate::client::toyo::{Client, Endpoint, Error, Line, Options};
-use crate::command::frame::attach::attach;
+use crate::command::frame::attach::{Turn, turn};
+use crate::command::frame::trace::locked;
 use crate::command::{Access, Family as _};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -17,6 +18,7 @@ use crate::settings::{Robot, Sessions};
 use crate::transport::fault::LineFaultSpec;
 use crate::transport::serial;
 use crate::transport::session::host::held;
+use crate::transport::session::place::Claim;
 use crate::transport::stream::Stream;
 
 /// What a robot's target names.
@@ -60,24 +62,39 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
         return Ok(Client::dry_run(options));
     }
     let endpoint = endpoint(robot)?;
-    let line = Box::pin(open_line(&endpoint, robot, access, screen)).await?;
-    let mut client = Client::over(line, endpoint.character(), options);
-    let way = Arc::new((endpoint, robot.clone(), access.clone(), *screen));
+    let character = endpoint.character();
+    let way = Way { endpoint, robot: robot.clone(), access: access.clone(), screen: *screen, claim: Mutex::default() };
+    let line = Box::pin(way.open()).await?;
+    let mut client = Client::over(line, character, options);
+    let way = Arc::new(way);
     client.reopen_by(move || {
         let way = Arc::clone(&way);
-        Box::pin(async move {
-            let (endpoint, robot, access, screen) = &*way;
-            open_line(endpoint, robot, access, screen).await.map_err(|failure| Error::Opener(Arc::new(failure)))
-        })
+        Box::pin(async move { way.open().await.map_err(|failure| Error::Opener(Arc::new(failure))) })
     });
     Ok(client)
 }
 
-/// Opens it, or joins the session that holds it.
-async fn open_line(endpoint: &Endpoint, robot: &Robot, access: &Access, screen: &Screen) -> Result<Line, Failure> {
-    match attach(robot, access, screen).await? {
-        Some(attached) => Ok(Stream::Session(attached)),
-        None => endpoint.open(robot.timeout.value).await.map_err(|error| failure(&robot.label(), error)),
+/// The way of one client, which may have to go it again.
+struct Way {
+    endpoint: Endpoint,
+    robot: Robot,
+    access: Access,
+    screen: Screen,
+    /// What keeps others on this machine from opening the line, as long as this client has it.
+    claim: Mutex<Option<Claim>>,
+}
+
+impl Way {
+    /// Opens the line, or joins the session that holds it.
+    async fn open(&self) -> Result<Line, Failure> {
+        let Self { endpoint, robot, access, screen, claim } = self;
+        if locked(claim).is_none() {
+            match turn(robot, access, screen).await? {
+                Turn::Session(attached) => return Ok(Stream::Session(attached)),
+                Turn::Own(own) => *locked(claim) = own,
+            }
+        }
+        endpoint.open(robot.timeout.value).await.map_err(|error| failure(&robot.label(), error))
     }
 }
 

@@ -36,7 +36,7 @@ pub struct Set {
     #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
     task: Value,
     /// Row of the speed table, 1 to 10; 0 for the speed that the step names
-    #[arg(long, value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
+    #[arg(long = "speed-row", value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
     speed: Value,
 }
 
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn the_order_is_in_form_and_in_range() {
-        let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed", "5"];
+        let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed-row", "5"];
         assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
         assert_eq!(
             intent(&line),
@@ -121,7 +121,7 @@ mod tests {
         assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
         assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
         assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("has too many decimals"));
-        assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed", "11"]).contains("0 to 10"));
+        assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed-row", "11"]).contains("0 to 10"));
     }
 
     #[test]

@@ -48,9 +48,10 @@ fn fields() -> &'static [field::Field] {
     table::Command::Mcst.row().requests[0].fields
 }
 
-/// The number of `CN05`.
-fn bare(text: &str) -> &str {
-    text.strip_prefix("CN").or_else(|| text.strip_prefix("cn")).unwrap_or(text)
+/// The number of `CN05`, with or without its letters.
+fn bare<'t>(letters: &str, text: &'t str) -> &'t str {
+    let has_letters = text.get(..letters.len()).is_some_and(|front| front.eq_ignore_ascii_case(letters));
+    if has_letters { &text[letters.len()..] } else { text }
 }
 
 impl Store for Counters {
@@ -72,7 +73,7 @@ impl Store for Counters {
     const COMPLETE: ValueKind = complete::COUNTER;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[Numbers::parse(&fields()[0], bare(text))?], &fields()[0]))
+        Ok(Numbers::of(&[Numbers::parse(&fields()[0], bare("CN", text))?], &fields()[0]))
     }
 
     fn all() -> Vec<i32> {
@@ -176,14 +177,16 @@ impl Store for Timers {
     const WORDS: Words = Words {
         nouns: ["timer", "timers"],
         placeholder: "N",
-        range: "Timers, 1 to 9: 5, 1-3",
+        range: "Timers, 1 to 9: 5, TN5 or 1-3, or a name",
         reading: Some("Values are in seconds."),
         writing: None,
     };
     const IDS: Ids = ids!("toyo.timer");
+    const LABELS: Option<Kind> = Some(Kind::Timer);
+    const COMPLETE: ValueKind = complete::TIMER;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[Numbers::parse(timer(), text)?], timer()))
+        Ok(Numbers::of(&[Numbers::parse(timer(), bare("TN", text))?], timer()))
     }
 
     fn all() -> Vec<i32> {
@@ -191,7 +194,7 @@ impl Store for Timers {
     }
 
     fn name(number: i32) -> String {
-        number.to_string()
+        names_of::timer(u8::try_from(number).unwrap_or(u8::MAX))
     }
 
     fn fields() -> Vec<Field> {
@@ -233,7 +236,7 @@ mod tests {
             ["@MCNT CN=01", "@MCNT CN=98", "@MCNT CN=99"]
         );
         assert_eq!(all_blocks(&["counter", "get"]).unwrap().len(), 99);
-        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCST CN01=0001", "@MCNT CN=01"]);
+        assert_eq!(blocks(&["counter", "set", "1", "1"]).unwrap(), ["@MCNT CN=01", "@MCST CN01=0001", "@MCNT CN=01"]);
     }
 
     #[test]
@@ -244,7 +247,7 @@ mod tests {
             |block: &str, _| if block == "@MCNT CN=05" { Fault::Answered("@MCNT CN05=0008") } else { Fault::None };
         let failure = Bench::with_faults("", other).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the controller accepted @MCST CN05=0007, but it stands at 8");
+        assert_eq!(failure.message, "CN05: the controller accepted @MCST CN05=0007, but it stands at 8");
         let silent = |block: &str, count| if block == "@MCNT CN=05" && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["counter", "set", "5", "7"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
@@ -289,7 +292,7 @@ mod tests {
     #[test]
     fn ranges_are_checked() {
         assert!(objection(&["counter", "get", "0"]).contains("1 to 99"));
-        assert!(objection(&["counter", "set", "1", "10000"]).contains("0 to 9999"));
+        assert!(blocks(&["counter", "set", "1", "10000"]).unwrap_err().message.contains("0 to 9999"));
         assert!(objection(&["counter", "set", "1"]).contains("VALUE"));
     }
 

@@ -1,48 +1,98 @@
-//! `armctl explain toyo`: error codes in words.
+//! `armctl explain toyo`: error codes and instructions of programs in words.
 
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::command::ValueKind;
+use super::instructions::InstructionHelp;
 use crate::command::face::explain::{self as face, Codes, Known};
 use crate::command::robot::alarm::{Alarm, Besides, Kind, Source};
+use crate::command::{Report, ValueKind};
+use crate::controller::nearest::nearest;
 use crate::controller::toyo::errors;
+use crate::controller::toyo::table::Instruction;
+use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::typed;
 use crate::failure::Failure;
+use crate::output::csv::RowsOf;
+use crate::output::view::View;
 use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target::Family;
 
-/// Error code of a Toyo controller
+/// Error code of a Toyo controller, or an instruction of its programs
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// The code in hexadecimal, as in 28 or 0xA1
-    #[arg(value_parser = code, add = ValueKind::Code(Family::Toyo))]
-    code: u8,
+    /// The code in hexadecimal, as in 28 or 0xA1; or an instruction, as in MOVP
+    #[arg(value_name = "CODE|INSTRUCTION", value_parser = subject, add = ValueKind::Code(Family::Toyo))]
+    subject: Subject,
 }
 
-/// Two hexadecimal digits.
-fn code(text: &str) -> Result<u8, String> {
-    typed::code(text).ok_or_else(|| "a code is two hexadecimal digits, as in 28; `toyo status` shows it".to_owned())
+/// What is to be explained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Subject {
+    Code(u8),
+    Instruction(&'static Instruction),
+}
+
+/// Two hexadecimal digits, or the word of an instruction.
+fn subject(text: &str) -> Result<Subject, String> {
+    let instruction = || INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(text)).map(Subject::Instruction);
+    typed::code(text).map(Subject::Code).or_else(instruction).ok_or_else(|| {
+        let near = nearest(text, INSTRUCTIONS.iter().map(|row| row.word));
+        let near = near.map(|near| format!("; did you mean {near}?")).unwrap_or_default();
+        format!("a code is two hexadecimal digits, as in 28 (`toyo status` shows it), an instruction is a word such as MOVP{near}")
+    })
+}
+
+/// What is known of a code or an instruction.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Explanation {
+    #[serde(flatten)]
+    codes: Codes<Axis>,
+    /// The instruction that was asked for; not there for a code.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    instructions: Vec<InstructionHelp>,
+}
+
+impl Report for Explanation {
+    fn view(&self) -> View {
+        let instructions = self.instructions.iter().flat_map(InstructionHelp::sections);
+        instructions.fold(self.codes.view(), View::and)
+    }
+
+    fn rows(&self) -> RowsOf {
+        if self.instructions.is_empty() { self.codes.rows() } else { RowsOf::List("instructions") }
+    }
 }
 
 impl face::Explain for Explain {
-    type Report = Codes<Axis>;
+    type Report = Explanation;
     const ID: &'static str = "explain.toyo";
 
-    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Axis>, Failure> {
-        let found = errors::explain(self.code);
+    fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Explanation, Failure> {
+        let code = match self.subject {
+            Subject::Code(code) => code,
+            Subject::Instruction(row) => {
+                let codes = Codes { codes: Vec::new() };
+                return Ok(Explanation { codes, instructions: vec![InstructionHelp::new(row)] });
+            }
+        };
+        let found = errors::explain(code);
         let none = Alarm { text: Some("no error".to_owned()), ..told(errors::NONE) };
-        let (known, alarm, [cause, remedy]) = match self.code {
+        let (known, alarm, [cause, remedy]) = match code {
             errors::NONE => (true, none, ["nothing is wrong", "nothing is to be done"]),
             code => (found.known, told(code), [found.cause, found.remedy]),
         };
         let site = alarms.find(origin, alarm.code.as_deref().unwrap_or_default())?;
-        Ok(Codes { codes: vec![Known::new(known, alarm, [&[cause], &[remedy]], site, Axis { axis: found.axis })] })
+        let known = Known::new(known, alarm, [&[cause], &[remedy]], site, Axis { axis: found.axis });
+        Ok(Explanation { codes: Codes { codes: vec![known] }, instructions: Vec::new() })
     }
 
     fn alarm(&self) -> Option<String> {
-        (self.code != errors::NONE).then(|| format!("{:02X}", self.code))
+        match self.subject {
+            Subject::Code(errors::NONE) | Subject::Instruction(_) => None,
+            Subject::Code(code) => Some(format!("{code:02X}")),
+        }
     }
 }
 
@@ -79,10 +129,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_code_is_two_digits() {
-        assert_eq!((code("28"), code("0xa1"), code("5")), (Ok(0x28), Ok(0xA1), Ok(5)));
-        for wrong in ["", "0x", "100", "+5", "G1", "2060"] {
-            assert!(code(wrong).is_err(), "{wrong}");
+    fn a_code_is_two_digits_and_an_instruction_a_word() {
+        for (text, code) in [("28", 0x28), ("0xa1", 0xA1), ("5", 5)] {
+            assert_eq!(subject(text), Ok(Subject::Code(code)));
         }
+        for wrong in ["", "0x", "100", "+5", "G1", "2060", "MOVE"] {
+            assert!(subject(wrong).is_err(), "{wrong}");
+        }
+        assert!(matches!(subject("movp"), Ok(Subject::Instruction(row)) if row.word == "MOVP"));
+        assert!(subject("MOVQ").unwrap_err().contains("did you mean MOV"));
     }
 }

@@ -5,6 +5,7 @@ use super::backup::{back_up, restore};
 use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
+use super::instructions;
 use super::link::{Link, Toyo};
 use super::orders::Stop;
 use super::serve::Serve;
@@ -21,6 +22,7 @@ use crate::command::face::sample::Traffic;
 use crate::command::robot::alarm::Alarm;
 use crate::command::{Access, Context};
 use crate::controller::Risk;
+use crate::controller::toyo::table::instructions::INSTRUCTIONS;
 use crate::controller::toyo::{errors, passing, simulator};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -59,7 +61,12 @@ impl Declaration for Toyo {
     }
 
     fn codes() -> Vec<(String, String)> {
-        errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string())).collect()
+        let codes = errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string()));
+        codes.chain(INSTRUCTIONS.iter().map(|row| (row.word.to_owned(), row.about.to_owned()))).collect()
+    }
+
+    fn topics() -> Vec<(&'static str, &'static str, String)> {
+        vec![instructions::topic()]
     }
 
     fn stop_command() -> Self::Stop {

@@ -27,22 +27,28 @@ const LINES: &[(&str, Risk)] = &[
     ("param restore FOLDER/parameters.toml", Destroy),
     ("point get 1", Read), ("point list", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
     ("point set --from FOLDER/points.csv --task 2", Destroy),
-    ("speed-table get 1", Read), ("speed-table set 1 77", Destroy),
-    ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy),
-    ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy),
+    ("speed-table get 1", Read), ("speed-table set 1 77", Destroy), ("speed-table list", Read), ("speed-table dump FOLDER/speed.csv", Read),
+    ("speed-table copy 2 3", Destroy), ("speed-table restore FOLDER/rows.csv", Destroy),
+    ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy), ("accel-table list", Read), ("accel-table dump FOLDER/accel.csv", Read),
+    ("accel-table copy 2 1", Destroy), ("accel-table restore FOLDER/times.csv", Destroy),
+    ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy), ("torque-table list", Read), ("torque-table dump FOLDER/torque.csv", Read),
+    ("torque-table copy 1 2", Destroy), ("torque-table restore FOLDER/limits.csv", Destroy),
     ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy),
-    ("program list", Read), ("program get", Read), ("program show", Read), ("program search 5", Write),
+    ("program list", Read), ("program get", Read), ("program diff FOLDER/program.txt", Read), ("program show", Read), ("program search 5", Write),
     ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
     ("program insert 1 HOME --task 2", Destroy), ("program delete 1", Destroy), ("program delete 1 --to 2", Destroy),
     ("program copy 1 2 --at 3", Destroy), ("program copy 1 2 --at 3 --from-task 1 --to-task 2", Destroy),
     ("palletizing get 1", Read), ("palletizing set 1 end 7", Destroy), ("palletizing set 1 start tag=7", Destroy),
     ("palletizing copy 2 1", Destroy), ("palletizing select 1", Write), ("palletizing progress", Read),
     ("easy get 1", Read), ("easy set 1 1 2 3", Destroy), ("easy set 1 loop=9", Destroy), ("easy copy 2 1", Destroy),
+    ("easy list", Read), ("easy dump FOLDER/easy.csv", Read), ("easy restore FOLDER/programs.csv", Destroy),
     ("easy select 1", Write), ("easy progress", Read),
     ("backup FOLDER/new", Write), ("restore FOLDER/backup --only easy,palletizing-1 --force", Destroy),
     ("restore FOLDER/backup --only points-1 --force", Destroy), ("diff FOLDER/backup", Write),
-    ("io in", Read), ("io out", Read), ("io internal", Read), ("io watch", Read), ("io set 1.1=on", Write), ("io direct 1", Write),
-    ("counter get 1", Read), ("counter watch 1", Read), ("counter set 1 5", Write), ("timer get 1", Read),
+    ("io get IN1.1", Read), ("io list", Read), ("io watch", Read), ("io set OUT1.1=on", Write), ("io direct 1", Write),
+    ("counter get 1", Read), ("counter watch 1", Read), ("counter set 1 5", Write), ("counter list", Read),
+    ("counter dump FOLDER/counter.csv", Read), ("counter copy 1 2", Write), ("counter restore FOLDER/counts.csv", Write),
+    ("timer get 1", Read), ("timer list", Read), ("timer watch 1", Read),
     ("override get", Read), ("override set 50", Write), ("task get", Read), ("task set 1", Write),
     ("offset", Read), ("coordinate set 0 0 0 0", Motion), ("bus", Read), ("card read", Destroy), ("card write", Destroy),
     ("init points", Destroy), ("robot-type 1 0", Destroy), ("info", Read),
@@ -70,6 +76,11 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
     write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
+    write("rows.csv", "name,speed_mm_s\n1,77\n");
+    write("times.csv", "name,time_s\n1,0.77\n");
+    write("limits.csv", "name,load\n1,1\n");
+    write("programs.csv", "name,loops\n1,9\n");
+    write("counts.csv", "name,count\nCN01,5\n");
     write("program.txt", "TAG TAG=005\nSPD V=05\nEND\n");
     let (mut bench, heard) = Bench::with_faults(STATE, |_, _| Fault::None);
     if line.starts_with("restore") || line.starts_with("diff") {
@@ -253,8 +264,8 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     for (line, question) in [
         ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2=1000.00 mm -> ax2=150.00 mm)"),
         ("point set 1 z=5", "overwrite a point of task 1 (point 1: z=9.00 mm -> z=5.00 mm)"),
-        ("speed-table set 1 77", "overwrite a row of the speed-table (row 1: speed=10.0 mm/s -> speed=77.0 mm/s)"),
-        ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
+        ("speed-table set 1 77", "overwrite a speed-table row (speed-table row 1: 10.0 mm/s -> 77.0 mm/s)"),
+        ("easy set 1 loop=9", "overwrite an easy program (easy program 1: loops=6 -> loops=9)"),
         ("palletizing set 1 end 7", "overwrite a record of palletizing program 1 (end: 5 -> 7)"),
         (
             "program insert 1 HOME",

@@ -8,6 +8,7 @@ use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::waiting::{Accepted, Work};
 use crate::client::toyo::Letters;
+use crate::command::frame::ending::MotionEnd;
 use crate::command::robot::motion::Motion;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
@@ -21,9 +22,8 @@ use crate::output::view::{Cell, Tone, View};
 /// Returns all axes to their origin, and waits until they are there (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Home {
-    /// Return as soon as the controller has accepted it
-    #[arg(long)]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
     /// Search the origin of synchronized axes instead, with this drive axis, 1 to 3 (KCA-20-M00 and -M01)
     #[arg(long, value_name = "AXIS", value_parser = clap::value_parser!(i32).range(1..=3))]
     sync: Option<i32>,
@@ -69,7 +69,7 @@ impl Command for Home {
         let change = if authority.asks() { from_where(link, change, letters).await? } else { change };
         authority.confirm(&change).await?;
         link.ask(&order).await?;
-        if self.no_wait {
+        if self.end.no_wait() {
             return Ok(HomeReport { motion: Motion { accepted: true, ..Motion::default() } });
         }
         let end = accepted.wait(link, screen, letters).await?;

@@ -208,10 +208,10 @@ mod tests {
     fn one_refusal_hides_nothing_and_names_its_block() {
         for (words, name, block) in [
             (["counter", "get", "1-3"], "CN02", "MCNT CN=02"),
-            (["timer", "get", "1-3"], "timer 2", "MTMR TN=2"),
-            (["speed-table", "get", "1-3"], "row 2", "RPAR T2 V02"),
-            (["accel-table", "get", "1-3"], "row 2", "RPAR T3 A02"),
-            (["torque-table", "get", "1-3"], "row 2", "RPAR T5 LIM02"),
+            (["timer", "get", "1-3"], "TN2", "MTMR TN=2"),
+            (["speed-table", "get", "1-3"], "speed-table row 2", "RPAR T2 V02"),
+            (["accel-table", "get", "1-3"], "accel-table row 2", "RPAR T3 A02"),
+            (["torque-table", "get", "1-3"], "torque-table row 2", "RPAR T5 LIM02"),
             (["easy", "get", "1-3"], "easy program 2", "RESY PNO=02 ST=000"),
             (["mvm", "get", "1-3"], "group 2", "RPAR T4 S3 GRP=02"),
             (["point", "get", "1-3"], "point 2", "RPAR T1 PT=002"),
@@ -229,7 +229,8 @@ mod tests {
             assert_eq!((&error["asked"], &items[1]["value"]), (&name.into(), &serde_json::Value::Null));
             let failure = failure.unwrap();
             assert_eq!(failure.kind, Kind::Mixed);
-            let expected = format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
+            let expected =
+                format!("1 of 3 failed: {name}: the controller refused {block} (@NG): the status does not tell why");
             assert_eq!(failure.message, expected);
         }
     }

@@ -14,6 +14,7 @@ use super::debts::{Debts, Left};
 use super::failure::failure;
 pub use super::failure::{misuse, wrong};
 use super::position::Coordinates;
+use super::program::kept::Sources;
 use super::refusal;
 use super::trace::Trace;
 use super::write_log::WriteLog;
@@ -28,6 +29,7 @@ use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::{Answer, Request};
 use crate::controller::toyo::session::Counters;
 use crate::controller::toyo::status::Status;
+use crate::controller::toyo::table::Command;
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
@@ -51,6 +53,8 @@ pub struct Link {
     left: Vec<Left>,
     /// Writes to the EEPROM.
     pub(super) write_log: WriteLog,
+    /// Texts of the programs that were put.
+    pub(super) sources: Sources,
 }
 
 impl Family for Toyo {
@@ -77,8 +81,18 @@ impl Family for Toyo {
         link.moving() == Some(Moving::Jog)
     }
 
+    /// A serial port has one line, and so has a device server.
+    fn takes_one_client(robot: &Robot) -> bool {
+        matches!(robot.target.value.place, target::Place::Serial(_) | target::Place::Tcp(_))
+    }
+
     fn planned(link: &mut Link) -> Plan {
         link.take_plan()
+    }
+
+    async fn settle(link: &mut Link) -> Result<(), Failure> {
+        let settled = link.client.settle().await;
+        settled.map_err(|error| link.failure(error))
     }
 
     async fn close(mut link: Link, screen: &Screen) -> Result<(), Failure> {
@@ -135,7 +149,8 @@ impl Link {
         let onlooker = Onlooker { trace, debts, chosen, told, screen, label: label.clone() };
         let onlooker = Arc::new(Mutex::new(onlooker));
         client.watch(Watching(Arc::clone(&onlooker)));
-        Ok(Self { client, onlooker, screen, label, left, write_log })
+        let sources = if access.dry_run { Sources::default() } else { Sources::of(robot) };
+        Ok(Self { client, onlooker, screen, label, left, write_log, sources })
     }
 
     /// The line, for somebody else to use; `None` in a dry run.
@@ -154,7 +169,17 @@ impl Link {
     /// Asks one question or gives one order; a refusal is an answer.
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
         self.tell_what_is_left().await;
+        self.before_steps_change(request);
         self.client.try_ask(request).await.map_err(|error| self.failure(error))
+    }
+
+    /// What changes steps otherwise than a whole `put` leaves it open what is behind a program.
+    fn before_steps_change(&mut self, request: &Request) {
+        let changes =
+            [Command::Wstx, Command::Istx, Command::Dstx, Command::Dstl, Command::Cpss, Command::Mint, Command::Rmca];
+        if changes.contains(&request.command()) {
+            self.sources.doubt();
+        }
     }
 
     /// Sends a request as it is, and returns the whole answer, good or bad.
@@ -162,12 +187,14 @@ impl Link {
         if !is_stop(request) {
             self.tell_what_is_left().await;
         }
+        self.before_steps_change(request);
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
 
     /// Sends a block that is in no table, and returns what came back.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
         self.tell_what_is_left().await;
+        self.sources.doubt();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
     }
 
@@ -208,11 +235,6 @@ impl Link {
     pub async fn letters(&mut self) -> Result<Letters, Failure> {
         self.tell_what_is_left().await;
         self.client.letters().await.map_err(|error| self.failure(error))
-    }
-
-    /// Waits, where nobody looks at what an order does, until no contradiction to its yes can come any more.
-    pub async fn settle(&mut self) -> Result<(), Failure> {
-        self.client.settle().await.map_err(|error| self.failure(error))
     }
 
     /// Where the axes are by a record, for a report. What has happened is told in any case: where the letters cannot be

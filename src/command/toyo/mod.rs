@@ -28,6 +28,7 @@ mod home;
 mod host;
 mod info;
 mod init;
+mod instructions;
 mod io;
 mod items;
 mod jog;

@@ -2,8 +2,11 @@
 
 use super::link::Link;
 use super::refusal;
+use crate::command::frame::names;
+use crate::controller::names::Kind as NameKind;
 use crate::controller::toyo::field::{Field, Form, Value};
 use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::controller::typed;
 use crate::failure::{Failure, Kind};
@@ -43,6 +46,16 @@ pub fn number(field: &Field, text: &str) -> Result<i32, String> {
         Ok(_) => Err(format!("{} is not a number", field.name)),
         Err(error) => Err(error.to_string()),
     }
+}
+
+/// Reads an argument that is a number, an address such as `TN1`, or a name of such a thing.
+pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
+    let any = names_of::address_of(kind, 1).unwrap_or_default();
+    names::read(&[kind], &any, text, |text| {
+        let prefix = any.trim_end_matches(|c: char| c.is_ascii_digit());
+        let front = text.get(..prefix.len()).filter(|front| front.eq_ignore_ascii_case(prefix));
+        parse(if front.is_some() { &text[prefix.len()..] } else { text })
+    })
 }
 
 /// A number that came in an answer as small as its field says; what is beyond that reads as the greatest.

@@ -14,9 +14,14 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     if row.risk == Risk::Read {
         return of_question(request);
     }
-    // That it was refused is known, whatever becomes of the question why.
-    let Ok(status) = link.status().await else {
-        return refused(request, "the status, which may tell why, could not be read", "`toyo status` may tell why");
+    let status = match link.status().await {
+        Ok(status) => status,
+        // It was answered with yes as well.
+        Err(failure) if failure.kind == Kind::OutcomeUnknown => return failure,
+        // That it was refused is known, whatever becomes of the question why.
+        Err(_) => {
+            return refused(request, "the status, which may tell why, could not be read", "`toyo status` may tell why");
+        }
     };
     match reason(status, row) {
         Some((why, hint)) => refused(request, &why, &hint),
@@ -153,7 +158,7 @@ pub fn verification_hint(command: Command) -> &'static str {
         }
         Command::Wplt | Command::Cppl => "`toyo palletizing get` tells what is stored",
         Command::Wesy | Command::Cesy => "`toyo easy get` tells what is stored",
-        Command::Dout => "`toyo io out` tells",
+        Command::Dout => "`toyo io list --out` reads them",
         Command::Wovr => "`toyo override get` tells",
         Command::Mcst => "`toyo counter get` tells",
         Command::Ctsk => "`toyo task get` tells",

@@ -281,7 +281,8 @@ impl TableOf for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
-    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
+    const WORDS: Words =
+        words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[number("speed_mm_s", "speed (mm/s)")];
 
     fn value(record: &Record) -> f64 {
@@ -293,7 +294,8 @@ impl TableOf for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
-    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
+    const WORDS: Words =
+        words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
     const FIELDS: &'static [Field] = &[number("time_s", "time (s)")];
 
     fn value(record: &Record) -> f64 {
@@ -305,7 +307,8 @@ impl TableOf for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");
-    const WORDS: Words = words(["row", "rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
+    const WORDS: Words =
+        words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
     const FIELDS: &'static [Field] = &[number("limit", "limit"), number("load", "load")];
 
     fn value(record: &Record) -> TorqueRow {
@@ -353,7 +356,7 @@ mod tests {
         assert_eq!(blocks(&["torque-table", "set", "3", "load=2"]).unwrap()[1], "@WPAR T5 LIM03 T=? L=2.00");
         assert_eq!(
             blocks(&["speed-table", "set", "5", "0.5"]).unwrap_err().message,
-            "row 5: speed: 0.5 is out of range (a number, 1.0 to 9999.9 mm/s)"
+            "speed-table row 5: speed: 0.5 is out of range (a number, 1.0 to 9999.9 mm/s)"
         );
     }
 
@@ -367,7 +370,7 @@ mod tests {
         assert_eq!(bench.data(&["torque-table", "set", "2", "load=1"])["items"][0]["written"], false);
         let read = bench.data(&["torque-table", "get", "2"]);
         let item = json!({
-            "name": "2", "label": null, "kind": "row", "in_manual": true, "raw": null, "ok": true,
+            "name": "2", "label": null, "kind": "torque-table row", "in_manual": true, "raw": null, "ok": true,
             "value": { "limit": 1.5, "load": 1.0 },
         });
         assert_eq!(read, json!({ "items": [item] }));

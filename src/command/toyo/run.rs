@@ -1,11 +1,15 @@
 //! `toyo run`: programs, and moves to a point.
 
+use std::time::Duration;
+
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
+use super::point::parse_point;
 use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
 use super::tasks;
@@ -13,6 +17,7 @@ use super::waiting::{Accepted, End, Work, step};
 use crate::client::toyo::Letters;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, Reason, unknown};
+use crate::command::frame::ending::{MotionEnd, ProgramEnd};
 use crate::command::robot::position::Position;
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::Risk;
@@ -25,6 +30,7 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
 use crate::output::view::{Cell, Section, Tone, View};
+use crate::settings::duration;
 
 commands! {
     /// Programs, and moves to a point.
@@ -40,7 +46,7 @@ commands! {
     }
 }
 
-/// Starts the sequential program, and waits for its end (TO 2-7).
+/// Starts the sequential program (TO 2-7).
 #[derive(Debug, Args)]
 #[command(after_help = "Without STEP the program goes on at the current step: where a stop left it, \
     or at its beginning after `toyo reset`. `toyo status` shows whether mode, servo and origin are as a program needs \
@@ -49,9 +55,8 @@ pub struct Sequential {
     /// The step to start at; without it, the current one
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
     step: Option<i32>,
-    /// Return as soon as the controller has accepted the start
-    #[arg(long, conflicts_with = "repeat")]
-    no_wait: bool,
+    #[command(flatten)]
+    end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
 }
@@ -77,11 +82,11 @@ impl Command for Sequential {
         }
         ask_first(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
-        go(context, &start, self.no_wait, self.repeat).await
+        go(context, &start, self.end.limit(), self.repeat).await
     }
 }
 
-/// Starts palletizing, or lets it go on after a stop, and waits for its end (TO 2-7).
+/// Starts palletizing, or lets it go on after a stop (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Palletizing {
     /// Choose this program first; without it, the one chosen before
@@ -90,9 +95,8 @@ pub struct Palletizing {
     /// The same as a flag
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
-    /// Return as soon as the controller has accepted the start
-    #[arg(long, conflicts_with = "repeat")]
-    no_wait: bool,
+    #[command(flatten)]
+    end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
 }
@@ -112,11 +116,11 @@ impl Command for Palletizing {
         let program = self.number.or(self.program);
         ask_first(&mut context, Change::new(self.intent()), Program::Palletizing(program)).await?;
         choose(context.link, table::Command::Spln, program).await?;
-        go(context, &Request::bare(table::Command::Ppst), self.no_wait, self.repeat).await
+        go(context, &Request::bare(table::Command::Ppst), self.end.limit(), self.repeat).await
     }
 }
 
-/// Starts the easy program, or lets it go on after a stop, and waits for its end (TO 2-7).
+/// Starts the easy program, or lets it go on after a stop (TO 2-7).
 #[derive(Debug, Args)]
 #[command(after_help = "Parameter M10 chooses easy mode: `toyo param set M10 E`.")]
 pub struct Easy {
@@ -126,9 +130,8 @@ pub struct Easy {
     /// The same as a flag
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
-    /// Return as soon as the controller has accepted the start
-    #[arg(long, conflicts_with = "repeat")]
-    no_wait: bool,
+    #[command(flatten)]
+    end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
 }
@@ -148,7 +151,7 @@ impl Command for Easy {
         let program = self.number.or(self.program);
         ask_first(&mut context, Change::new(self.intent()), Program::Easy(program)).await?;
         choose(context.link, table::Command::Sesn, program).await?;
-        go(context, &Request::bare(table::Command::Sesy), self.no_wait, self.repeat).await
+        go(context, &Request::bare(table::Command::Sesy), self.end.limit(), self.repeat).await
     }
 }
 
@@ -156,12 +159,11 @@ impl Command for Easy {
 #[derive(Debug, Args)]
 #[command(after_help = "Parameter M10 chooses external point mode: `toyo param set M10 P`.")]
 pub struct Point {
-    /// Row of the coordinate table
-    #[arg(value_name = "N", value_parser = clap::value_parser!(i32).range(1..=999))]
+    /// Row of the coordinate table, 1 to 999, or a name
+    #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]
     point: i32,
-    /// Return as soon as the controller has accepted the start
-    #[arg(long)]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
 }
 
 impl Command for Point {
@@ -190,7 +192,7 @@ impl Command for Point {
         }
         let context = Context { link, authority, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
-        go(context, &start, self.no_wait, Repeat::once()).await
+        go(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await
     }
 }
 
@@ -248,22 +250,29 @@ impl Program {
                     Err(_) => format!("It is the program of task {task}; the step was not told."),
                 })
             }
-            Self::Palletizing(Some(number)) => Ok(format!("It is palletizing program {number}.")),
-            Self::Easy(Some(number)) => Ok(format!("It is easy program {number}.")),
-            Self::Palletizing(None) => {
-                let at = link.ask(&Request::bare(table::Command::Rpld)).await?;
-                Ok(format!(
-                    "It is palletizing program {}, at step {}.",
-                    small(&at, "program"),
-                    at.number("step").unwrap_or(0)
-                ))
-            }
-            Self::Easy(None) => {
-                let at = link.ask(&Request::bare(table::Command::Resd)).await?;
-                Ok(format!("It is easy program {}, at step {}.", small(&at, "program"), at.number("step").unwrap_or(0)))
-            }
+            Self::Palletizing(wanted) => progress(link, table::Command::Rpld, ("palletizing", *wanted)).await,
+            Self::Easy(wanted) => progress(link, table::Command::Resd, ("easy", *wanted)).await,
         }
     }
+}
+
+/// Which program starts, and its step: the one that the controller is at, or `wanted`.
+async fn progress(
+    link: &mut Link,
+    question: table::Command,
+    (kind, wanted): (&str, Option<i32>),
+) -> Result<String, Failure> {
+    let Ok(at) = link.try_ask(&Request::bare(question)).await? else {
+        let number = wanted.map(|number| format!(" {number}")).unwrap_or_default();
+        return Ok(format!("It is {kind} program{number}; the controller did not report the step."));
+    };
+    let (number, step) = (at.number("program").unwrap_or(0), at.number("step").unwrap_or(0));
+    Ok(match wanted.filter(|wanted| *wanted != number) {
+        None => format!("It is {kind} program {number}, at step {step}."),
+        Some(wanted) => {
+            format!("It is {kind} program {wanted}; now the controller is at program {number}, step {step}.")
+        }
+    })
 }
 
 /// Asks before a program runs, with its number and step, each axis, and the speed.
@@ -295,19 +304,25 @@ async fn choose(link: &mut Link, command: table::Command, program: Option<i32>) 
     }
 }
 
-/// Starts, and unless told otherwise waits for the end. Another run begins only after an end that was seen.
-async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: Repeat) -> Result<Ran, Failure> {
+/// Starts, and waits for the end where that is wanted, at most a time. Another run begins only after an end that was seen.
+#[expect(clippy::option_option, reason = "absent, without a limit, with one")]
+async fn go(
+    context: Context<'_, Toyo>,
+    start: &Request,
+    limit: Option<Option<Duration>>,
+    repeat: Repeat,
+) -> Result<Ran, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
     // Not after the start: a look at it must not wait for that.
-    let letters = if no_wait { Letters::UNKNOWN } else { link.letters().await? };
+    let limit = limit.or(repeat.repeat.map(|_| None));
+    let letters = if limit.is_none() { Letters::UNKNOWN } else { link.letters().await? };
     loop {
         link.ask(start).await.map_err(|failure| runs.early(failure))?;
-        if no_wait {
-            link.settle().await?;
+        let Some(limit) = limit else {
             return Ok(Ran { accepted: true, ..Ran::default() });
-        }
-        let ran = wait(link, screen, start.command(), letters).await;
+        };
+        let ran = within(limit, wait(link, screen, start.command(), letters)).await;
         let ran = ran.map_err(|failure| if link.is_dry() { failure } else { runs.early(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(ran);
@@ -323,6 +338,15 @@ async fn go(context: Context<'_, Toyo>, start: &Request, no_wait: bool, repeat: 
             return Ok(Ran { cycle: runs.cycle(), ..ran });
         }
     }
+}
+
+/// Waits for the end at most so long; what runs goes on.
+async fn within(limit: Option<Duration>, end: impl Future<Output = Result<Ran, Failure>>) -> Result<Ran, Failure> {
+    let Some(limit) = limit else { return end.await };
+    tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
+        let message = format!("{DONE}, and it still runs after {}", duration::display(limit));
+        Err(Failure::new(Kind::ConditionNotMet, message).hint("it goes on; `toyo status` shows whether it runs"))
+    })
 }
 
 async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: Letters) -> Result<Ran, Failure> {
@@ -424,7 +448,6 @@ impl Report for Ran {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
 
     use super::*;
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
@@ -436,7 +459,7 @@ mod tests {
     #[test]
     fn dry_runs_show_the_start_and_what_is_asked_meanwhile() {
         assert_eq!(
-            all_blocks(&["run", "sequential", "12"]).unwrap(),
+            all_blocks(&["run", "sequential", "12", "--wait"]).unwrap(),
             [
                 "@SYSP",
                 "@RPAR E01",
@@ -455,20 +478,20 @@ mod tests {
                 "@HSOF"
             ]
         );
-        assert_eq!(blocks(&["run", "sequential", "--no-wait"]).unwrap(), ["@SPST 0000"]);
+        assert_eq!(blocks(&["run", "sequential"]).unwrap(), ["@SPST 0000"]);
         assert_eq!(blocks(&["run", "palletizing", "--program", "3", "--no-wait"]).unwrap(), ["@SPLN PR=03", "@PPST"]);
         assert_eq!(blocks(&["run", "palletizing", "--no-wait"]).unwrap(), ["@PPST"]);
         assert_eq!(blocks(&["run", "easy", "--program", "8", "--no-wait"]).unwrap(), ["@SESN PR=08", "@SESY"]);
         assert_eq!(blocks(&["run", "point", "7", "--no-wait"]).unwrap(), ["@EXTP PT=007"]);
         assert_eq!(intent(&["run", "easy", "--program", "8"]), "run easy program 8");
         assert!(objection(&["run", "sequential", "5001"]).contains("1..=5000"));
-        assert!(objection(&["run", "point", "0"]).contains("1..=999"));
+        assert!(objection(&["run", "point", "0"]).contains("1 to 999"));
     }
 
     #[test]
     fn a_program_is_waited_for() {
         let (mut bench, heard) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
-        let data = bench.data(&["run", "sequential", "1"]);
+        let data = bench.data(&["run", "sequential", "1", "--wait"]);
         assert_eq!((&data["stopped"], &data["position"]["x_mm"]), (&false.into(), &100.0.into()));
         let elapsed = data["elapsed_ms"].as_u64().unwrap();
         assert!((1600..2000).contains(&elapsed), "{elapsed}");
@@ -478,7 +501,8 @@ mod tests {
     #[test]
     fn a_program_that_was_never_seen_to_run_has_not_ended() {
         let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-        let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential"]).unwrap_err();
+        let failure =
+            Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(failure.message.contains("it was not seen to run"), "{}", failure.message);
     }
@@ -488,9 +512,9 @@ mod tests {
         let state = "origin = true\nsteps = { 1 = [\"NOP\", \"STOP\", \"NOP\", \"TIM TM=010.0\", \"END\"] }\n\
             [[event]]\nat_ms = 3000\ndo = \"stop\"\n";
         let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
-        let data = bench.data(&["run", "sequential", "1"]);
+        let data = bench.data(&["run", "sequential", "1", "--wait"]);
         assert_eq!((&data["stopped"], &data["step"]), (&true.into(), &3.into()));
-        let failure = bench.run(&["run", "sequential"]).unwrap_err();
+        let failure = bench.run(&["run", "sequential", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert!(failure.message.contains("somebody stopped it at step 4 (TIM TM=010.0)"), "{}", failure.message);
     }
@@ -499,13 +523,14 @@ mod tests {
     fn in_step_mode_every_step_is_an_end() {
         let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
         bench.data(&["mode", "step"]);
-        assert_eq!(bench.data(&["run", "sequential", "1"])["stopped"], true);
+        assert_eq!(bench.data(&["run", "sequential", "1", "--wait"])["stopped"], true);
     }
 
     #[test]
     fn an_error_that_comes_up_is_a_failure() {
         let state = format!("{PROGRAM}[[event]]\nat_ms = 1000\ndo = \"estop\"\n");
-        let failure = Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1"]).unwrap_err();
+        let failure =
+            Bench::with_faults(&state, |_, _| Fault::None).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("13")));
         assert!(
             failure
@@ -521,7 +546,7 @@ mod tests {
     fn what_a_run_needs_is_told_and_not_changed() {
         let refused = |state: &str| {
             let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
-            let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
+            let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
             assert_eq!(failure.kind, Kind::Refused);
             let changes = ["@MAUT", "@SVON", "@HOME", "@CERR", "@MSEQ"];
             assert!(!heard.borrow().iter().any(|block| changes.contains(&block.as_str())), "{heard:?}");
@@ -541,7 +566,7 @@ mod tests {
                     PROGRAM,
                     move |block, _| if block.starts_with("@SPST") { fate } else { Fault::None },
                 );
-            let failure = bench.run(&["run", "sequential", "1"]).unwrap_err();
+            let failure = bench.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
             assert_eq!(failure.kind, Kind::OutcomeUnknown, "{fate:?}");
             assert!(failure.hint.unwrap().contains("`toyo status`"));
             assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@SPST")).count(), 1);
@@ -551,7 +576,7 @@ mod tests {
     #[test]
     fn a_lost_contact_leaves_the_outcome_open() {
         let lost = |block: &str, count| if block == "@STAS SNO=0" && count > 2 { Fault::Lost } else { Fault::None };
-        let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1"]).unwrap_err();
+        let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
         assert!(
             failure.message.starts_with("the start was accepted, but its end was not seen: "),
@@ -566,13 +591,16 @@ mod tests {
         let busy = |block: &str, count| {
             if block == "@STAS SNO=0" && count % 2 == 0 { Fault::Answered("@NG") } else { Fault::None }
         };
-        assert_eq!(Bench::with_faults(PROGRAM, busy).0.data(&["run", "sequential", "1"])["position"]["x_mm"], 100.0);
+        assert_eq!(
+            Bench::with_faults(PROGRAM, busy).0.data(&["run", "sequential", "1", "--wait"])["position"]["x_mm"],
+            100.0
+        );
     }
 
     #[test]
     fn ctrl_c_stops_what_runs() {
         for (words, state) in
-            [(&["run", "sequential", "1"][..], PROGRAM), (&["home"], "position = [300.0, 0.0, 0.0, 0.0]\n")]
+            [(&["run", "sequential", "1", "--wait"][..], PROGRAM), (&["home"], "position = [300.0, 0.0, 0.0, 0.0]\n")]
         {
             for ms in (200..1400).step_by(170) {
                 let (mut bench, heard) = Bench::with_faults(state, |_, _| Fault::None);
@@ -595,7 +623,7 @@ mod tests {
             "@STOP" if count == 1 => Fault::Lost,
             _ => Fault::None,
         });
-        bench.interrupted(&["run", "sequential", "1"], Duration::from_millis(250)).unwrap();
+        bench.interrupted(&["run", "sequential", "1", "--wait"], Duration::from_millis(250)).unwrap();
         assert!(heard.borrow().iter().filter(|block| *block == "@STOP").count() >= 2);
         assert_eq!(bench.data(&["status"])["running"], false);
     }
@@ -606,7 +634,7 @@ mod tests {
             let (mut bench, _) = Bench::with_faults(PROGRAM, |_, _| Fault::None);
             bench.left(words, Duration::from_millis(450))
         };
-        assert!(!must_halt(&["run", "sequential", "1"]));
+        assert!(!must_halt(&["run", "sequential", "1", "--wait"]));
         assert!(must_halt(&["jog", "X", "+", "low", "--for", "5s"]));
     }
 

@@ -2,7 +2,7 @@
 //! first ports on a screen. The protocol has no torque.
 
 use super::explain::told;
-use super::io::{Bank as Ports, INPUTS, OUTPUTS, ports_of};
+use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Coordinates;
@@ -83,10 +83,10 @@ impl Poller {
     }
 
     /// The first screen of ports of the controller itself.
-    async fn bank(&mut self, name: &'static str, ports: Ports) -> Result<Bank, Failure> {
+    async fn bank(&mut self, name: &'static str, ports: PortBank) -> Result<Bank, Failure> {
         let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => {
-                ports_of(&record).iter().map(|port| SignalByte::falling(port.name.clone(), port.byte())).collect()
+                ports_of(&record).iter().map(|port| SignalByte::falling(port.name.clone(), port.byte)).collect()
             }
             Err(_) => Vec::new(),
         };

@@ -30,6 +30,8 @@ commands! {
         "Power and operation":
         /// Switch servo power
         Servo(orders::Servo),
+        /// Stop the running job and all that moves: HOLD on
+        Stop(job::Halt),
         /// Apply (on) or release (off) HOLD
         Hold(orders::Hold),
         /// Lock or unlock the pendant and the operation signals
@@ -43,6 +45,7 @@ commands! {
         Move(Subcommands<moves::Move>),
         "Programs":
         /// Jobs
+        #[command(alias = "program")]
         Job(Subcommands<job::Job>),
         /// Files
         File(Subcommands<file::File>),

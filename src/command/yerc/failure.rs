@@ -29,6 +29,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
             let what = format!("sent once, no answer within {waited:?}{seen}: it may or may not have been done");
             about(Kind::OutcomeUnknown, what).hint(format!("ask before you repeat it: {}", verification_hint(&request)))
         }
+        Error::Unconfirmed { .. } => about(Kind::OutcomeUnknown, error_text)
+            .hint("use the pendant or the emergency stop if it must not move; `yerc status` tells whether it is held"),
         Error::CutShort { request, cause } => {
             let cause = failure(label, *cause).message;
             let message = format!("{cause}; it was sent, and may or may not have been done");

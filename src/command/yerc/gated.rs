@@ -16,7 +16,7 @@ use crate::failure::Kind;
 use crate::gate::Gate;
 
 /// What sends nothing.
-const AT_HOME: [&str; 2] = ["names list", "names forget"];
+const AT_HOME: [&str; 1] = ["names forget"];
 
 /// A line for each command, with files in `DIR`; its risk, and the most that a frame of it may be.
 const LINES: &[(&str, Risk, Risk)] = &[
@@ -63,15 +63,17 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("var restore DIR/dump.json", Destroy, Write),
     ("io get 10010", Read, Read),
     ("io watch 10010", Read, Read),
+    ("io list", Read, Read),
     ("io set 27010=on", Write, Write),
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
+    ("register watch 1", Read, Read),
     ("names get", Read, Read),
-    ("names list", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
     ("servo off", Motion, Motion),
     ("hold on", Write, Write),
+    ("stop", Write, Write),
     ("hold off", Write, Write),
     ("hlock on", Write, Write),
     ("cycle once", Write, Write),
@@ -124,7 +126,7 @@ fn every_command_passes_the_gate_by_its_risk() {
         let intent = command.intent(Some(&robot));
         assert_eq!(intent.risk, *risk, "{line}");
         assert!(*risk < Destroy || !intent.text.is_empty(), "{line}: what is asked says what will happen");
-        assert_eq!(intent.is_stop, ["hold on", "job stop"].contains(&line.as_str()), "{line}");
+        assert_eq!(intent.is_stop, ["hold on", "stop", "job stop"].contains(&line.as_str()), "{line}");
 
         robot.read_only.value = true;
         let passed = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);

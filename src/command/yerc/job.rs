@@ -12,6 +12,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::source::Source;
+pub use self::stop::Halt;
 use super::each::{Denied, Outcome};
 use super::file::Edit;
 use super::link::{Link, Yerc};

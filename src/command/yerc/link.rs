@@ -78,7 +78,7 @@ impl Family for Yerc {
             return Ok("nothing was sent that moves the robot".to_owned());
         }
         link.screen.note("stopping the robot: HOLD on");
-        link.client.stop().await.map_err(|error| link.failure(error))?;
+        link.stop().await?;
         Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
     }
 
@@ -148,6 +148,11 @@ impl Link {
     /// Asks one question or gives one order; a refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
         self.try_ask(query).await?.map_err(|refusal| refused(refusal, query.risk()))
+    }
+
+    /// Holds the robot, as soon as one of several tries has its answer.
+    pub async fn stop(&mut self) -> Result<(), Failure> {
+        self.client.stop().await.map_err(|error| self.failure(error))
     }
 
     /// Asks one question or gives one order; a refusal is an answer.

@@ -58,12 +58,12 @@ impl StandstillCause {
 
     /// The failure that tells it: what had been `done` before, and where the robot stands.
     pub(super) async fn failure(self, link: &mut Link, done: &str, place: Option<&str>) -> Failure {
-        let what = match self {
+        let (what, code) = match self {
             Self::Alarm => present_alarm(link).await,
-            Self::Error => "an error came up".to_owned(),
-            Self::Hold(by) => format!("hold by {by} came on"),
-            Self::ServoOff => "servo power went off".to_owned(),
-            Self::Teach => "the mode was switched to teach".to_owned(),
+            Self::Error => ("an error came up".to_owned(), None),
+            Self::Hold(by) => (format!("hold by {by} came on"), None),
+            Self::ServoOff => ("servo power went off".to_owned(), None),
+            Self::Teach => ("the mode was switched to teach".to_owned(), None),
         };
         let place = place.map(|place| format!("; it stands at {place}")).unwrap_or_default();
         let hint = match self {
@@ -76,22 +76,24 @@ impl StandstillCause {
             Self::ServoOff => "look for a stop or an open door before `yerc servo on`".to_owned(),
             Self::Teach => "somebody is at the pendant; ask before going on".to_owned(),
         };
-        Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint)
+        let failure = Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint);
+        Failure { code, ..failure }
     }
 }
 
-/// The latest alarm; that there is one must be told even if it cannot be read.
-async fn present_alarm(link: &mut Link) -> String {
+/// The latest alarm in words, and its code; that there is one must be told even if it cannot be read.
+async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     let question = match ReadAlarm::new(1, false).map_err(usage) {
         Ok(question) => question,
-        Err(failure) => return format!("an alarm came up ({failure})"),
+        Err(failure) => return (format!("an alarm came up ({failure})"), None),
     };
     match link.ask(&question).await {
         Ok(alarm) if !alarm.is_none() => {
-            format!("{} came up", alarm::in_a_line(&alarm, link.encoding, link.model_to_show()))
+            let words = alarm::in_a_line(&alarm, link.encoding, link.model_to_show());
+            (format!("{words} came up"), Some(alarm.code.to_string()))
         }
-        Ok(_) => "an alarm came up and is gone again".to_owned(),
-        Err(failure) => format!("an alarm came up, which could not be read: {failure}"),
+        Ok(_) => ("an alarm came up and is gone again".to_owned(), None),
+        Err(failure) => (format!("an alarm came up, which could not be read: {failure}"), None),
     }
 }
 

@@ -146,7 +146,7 @@ impl Target {
             }
         };
         let order = link.by_model(|model| MoveCartesian::new(model, kind, order)).await?;
-        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
+        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
     }
 }
 
@@ -324,7 +324,7 @@ impl Distance {
                 .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
         }
         let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
-        Ok(Going { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.no_wait })
+        Ok(Going { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.end.no_wait() })
     }
 }
 
@@ -396,7 +396,7 @@ impl PulseTarget {
         };
         let order = link.by_model(|model| MovePulse::new(model, kind, order)).await?;
         let goal = Goal::Pulses(target.0.clone());
-        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.no_wait })
+        Ok(Going { order, group: mover.group, goal, unnamed, no_wait: mover.end.no_wait() })
     }
 }
 

@@ -9,7 +9,6 @@ use super::check::software;
 use super::file::{FileReading, read_files};
 use super::link::{Link, Yerc};
 use crate::command::frame::items::{self, ItemError};
-use crate::command::frame::names::{Listing, list};
 use crate::command::{Command, Context, Report, commands};
 use crate::controller::yerc::names::{FILES, FileNames, read};
 use crate::failure::{Failure, Kind};
@@ -21,8 +20,6 @@ commands! {
     pub enum Names {
         /// Read the names on the controller and keep them
         Get(Get),
-        /// List the names that are known, with number and origin
-        List(List),
         /// Remove the names that were kept
         Forget(Forget),
     }
@@ -34,16 +31,9 @@ commands! {
     after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; one that the controller does not have \
                   has no names. A name can then be typed in place of its number: `io get`, `io set`, `var get`, `var set`, \
                   `register get`, `teach`, `move --to`. Names of the robot's entry in robots.toml come before them \
-                  (`armctl help inventory`). Names that are changed on the controller are read again by this command."
+                  (`armctl help inventory`). `armctl names list` shows them. Names that are changed on the controller are read again by this command."
 )]
 pub struct Get {}
-
-/// Lists the names of signals, variables and registers.
-#[derive(Debug, Args)]
-pub struct List {
-    /// Only names with this text in name, kind, address or origin
-    filter: Option<String>,
-}
 
 /// Removes the names that were kept for the controller; those of robots.toml stay.
 #[derive(Debug, Args)]
@@ -169,16 +159,6 @@ impl Report for Fetched {
 
     fn failure(&self) -> Option<Failure> {
         items::verdict(self.files.len(), self.files.iter().filter_map(|file| file.error.as_ref()))
-    }
-}
-
-impl Command for List {
-    type Family = Yerc;
-    type Report = Listing;
-    const ID: &'static str = "yerc.names.list";
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
-        list(context.robot, self.filter.as_deref())
     }
 }
 

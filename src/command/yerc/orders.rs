@@ -68,7 +68,11 @@ macro_rules! order {
                 if !self.is_stop() {
                     authority.confirm(&new.question(self.intent(), &old)).await?;
                 }
-                link.ask(&$query).await?;
+                if self.is_stop() {
+                    link.stop().await?;
+                } else {
+                    link.ask(&$query).await?;
+                }
                 Ok(new.replaces(old))
             }
         }

@@ -32,7 +32,7 @@ use crate::output::view::{Cell, View};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with \
-                        a warning, or refused with --check; what armctl does not know counts as a motion, so it asks \
+                        a warning, or refused with --strict; what armctl does not know counts as a motion, so it asks \
                         before it sends. List (0x32) and save (0x16) show all blocks of the transfer as one; a \
                         file is sent by `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
 )]
@@ -57,7 +57,7 @@ pub struct Raw {
     file: bool,
     /// Refuse here what the manuals do not list for this model
     #[arg(long)]
-    check: bool,
+    strict: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -141,8 +141,8 @@ impl Command for Raw {
         };
         let doubt = doubt.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
-            if self.check {
-                return Err(Failure::usage(doubt.clone()).hint("without --check it is sent all the same"));
+            if self.strict {
+                return Err(Failure::usage(doubt.clone()).hint("without --strict it is sent all the same"));
             }
             screen.note(&format!("warning: {doubt}"));
         }

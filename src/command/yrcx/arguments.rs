@@ -4,6 +4,7 @@
 use clap::{Args, ValueEnum};
 
 use super::position::Unit;
+use crate::command::frame::ending::MotionEnd;
 use crate::controller::typed;
 use crate::controller::yrcx::order::Draft;
 use crate::controller::yrcx::table::Command;
@@ -372,9 +373,8 @@ pub struct Ending {
     /// Report the position at the end, in this unit
     #[arg(long, value_name = "UNIT")]
     pub report: Option<Unit>,
-    /// Do not wait for the end
-    #[arg(long)]
-    pub no_wait: bool,
+    #[command(flatten)]
+    pub end: MotionEnd,
 }
 
 impl Ending {

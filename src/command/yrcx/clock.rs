@@ -329,8 +329,8 @@ mod tests {
         assert_eq!(words(&both).unwrap(), [example("4.8.2-set"), example("4.8.1-set")]);
         let done = read_in_turn(&["4.8.2-set", "4.8.1-set"], &both);
         let items = json!([
-            {"name": "date", "old": null, "new": "2014-02-02"},
-            {"name": "time", "old": null, "new": "08:45:00"},
+            {"name": "date", "old": null, "new": "2014-02-02", "written": true},
+            {"name": "time", "old": null, "new": "08:45:00", "written": true},
         ]);
         assert_eq!(done, json!({"date": "2014-02-02", "time": "08:45:00", "items": items, "errors": []}));
     }

@@ -80,6 +80,7 @@ commands! {
         TorqueLimit(orders::TorqueLimit),
         "Programs":
         /// Programs and their tasks
+        #[command(alias = "job")]
         Program(Subcommands<program::Program>),
         "Data":
         /// Teach: store the current position as a point

@@ -6,7 +6,7 @@ use super::buses::{self, BUSES};
 use super::fieldbus::{At, Board, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
-use super::trace::Recorder;
+use super::trace::{Opening, Recorder};
 use crate::command::{Access, ConnectMode};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -57,10 +57,14 @@ impl Endpoint<'_> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
-                let at = At { robot, bus, tap: tap.unwrap_or_default() };
+                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
+                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
                 match (fieldbus.open)(at, purpose).await {
                     Ok(link) => Ok((link, recorder)),
                     Err(error) => {
+                        if let Some(opening) = opening {
+                            opening.show(screen);
+                        }
                         // Why it did not open is worth more than what became of the record of it.
                         let _ = recorder.map_or(Ok(()), Recorder::finish);
                         Err(not_open(&robot.label(), bus.scheme, &error))
@@ -88,7 +92,12 @@ impl Endpoint<'_> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
-                let opened = (fieldbus.board)(At { robot, bus, tap: tap.unwrap_or_default() }).await;
+                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
+                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
+                let opened = (fieldbus.board)(at).await;
+                if let (Err(_), Some(opening)) = (&opened, &opening) {
+                    opening.show(screen);
+                }
                 let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((board, None), recorder))
             }

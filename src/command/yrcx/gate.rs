@@ -31,10 +31,21 @@ const READS: &[&str] = &[
     "point get 0..3",
     "point dump @/new.csv 0..3",
     "comment get 50",
+    "comment list 0..3",
+    "comment dump @/comments.csv 0..3",
+    "point list 0..3",
     "pallet-data get 10",
+    "pallet-data list 0..3",
+    "pallet-data dump @/pallets.csv 0..3",
     "shift-data get 4,5",
+    "shift-data list 0..3",
+    "shift-data dump @/shifts.csv 0..3",
     "hand-data get 1",
+    "hand-data list 0..3",
+    "hand-data dump @/hands.csv 0..3",
     "var get SGI1",
+    "var list SGI0..SGI3",
+    "var dump @/vars.csv SGI0..SGI3",
     "var watch SGI1",
     "port watch DO2",
     "param get WEIGHT",
@@ -43,7 +54,6 @@ const READS: &[&str] = &[
     "info version",
     "info system",
     "info servo",
-    "info position",
     "info tasks",
     "info line",
     "info alarm",
@@ -59,6 +69,7 @@ const READS: &[&str] = &[
     "position",
     "clock get",
     "io get",
+    "io list",
     "io watch",
     "auto-mode",
     "backup @/new --only info,settings,pallets,shifts,hands,variables",
@@ -84,6 +95,8 @@ const WRITES: &[&str] = &[
     "arm select right",
     "torque-limit --axis 1 50",
     "var set SGI1 1",
+    "var copy SGI1 SGI2",
+    "var restore @/variables.csv",
     "var add SGI1 1",
     "var sub SGI1 1",
     "var mul SGI1 1",
@@ -126,6 +139,15 @@ const DESTROYS: &[(&str, &str)] = &[
     ("point set 7 --mm 9,9,9,9", "raw --wi 0x100,1,7,0,1"),
     ("pallet-data set 10 --nx 3 --ny 3 --first-point 1", "restore @/saved"),
     ("point set 7 --mm 9,9,9,9", "point restore @/points.csv"),
+    ("point set 7 --mm 9,9,9,9", "point copy 1 7"),
+    ("comment set 7 OLD", "comment copy 50 7"),
+    ("comment set 7 OLD", "comment restore @/comments-7.csv"),
+    ("pallet-data set 7 --nx 2 --ny 2 --first-point 1", "pallet-data copy 10 7"),
+    ("pallet-data set 7 --nx 2 --ny 2 --first-point 1", "pallet-data restore @/pallets-7.csv"),
+    ("shift-data set 7 --mm 1,2,3,4", "shift-data copy 5 7"),
+    ("shift-data set 7 --mm 1,2,3,4", "shift-data restore @/shifts-7.csv"),
+    ("hand-data set 7 --data-1 1 --data-2 2 --data-3 3", "hand-data copy 1 7"),
+    ("hand-data set 7 --data-1 1 --data-2 2 --data-3 3", "hand-data restore @/hands-7.csv"),
 ];
 
 const MOTIONS: &[&str] = &[
@@ -170,7 +192,16 @@ impl Desk {
         let desk = Self(tempfile::tempdir().unwrap());
         let mut bench = Bench::new();
         bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
-        std::fs::write(desk.0.path().join("points.csv"), "point;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n").unwrap();
+        for (name, text) in [
+            ("points.csv", "point;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n"),
+            ("comments-7.csv", "name,comment\n7,NEW\n"),
+            ("pallets-7.csv", "name,nx\n7,3\n"),
+            ("shifts-7.csv", "name,axis_4_mm\n7,5\n"),
+            ("hands-7.csv", "name,data_3_mm\n7,4\n"),
+            ("variables.csv", "name,value\nSGI1,1\n"),
+        ] {
+            std::fs::write(desk.0.path().join(name), text).unwrap();
+        }
         desk
     }
 

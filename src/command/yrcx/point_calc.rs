@@ -151,17 +151,18 @@ mod tests {
 
     #[test]
     fn the_examples_of_the_manual() {
-        for (id, line, (set, number)) in [
-            ("4.4.3-assign-point", "copy 100 --to 1", ("point", 1)),
-            ("4.4.3-add-point", "add 100 --to 1", ("point", 1)),
-            ("4.4.3-assign-pallet-point", "pallet 2 --place 133 --to 100", ("point", 100)),
-            ("4.4.4-point-element", "element 1 --element 4 --mm 1.000", ("point", 1)),
-            ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", ("shift", 1)),
+        for (id, line, (kind, number)) in [
+            ("4.4.3-assign-point", "copy 100 --to 1", ("point", "1")),
+            ("4.4.3-add-point", "add 100 --to 1", ("point", "1")),
+            ("4.4.3-assign-pallet-point", "pallet 2 --place 133 --to 100", ("point", "100")),
+            ("4.4.4-point-element", "element 1 --element 4 --mm 1.000", ("point", "1")),
+            ("4.4.4-shift-element", "shift-element 1 --element 2 --mm 1", ("shift", "1")),
         ] {
             let line: Vec<&str> = ["point-calc"].into_iter().chain(line.split(' ')).collect();
             assert_eq!(written(&line).unwrap(), [example(id)], "{id}");
             let done = read_example(id, &line);
-            assert_eq!((&done["set"], &done[set]), (&set.into(), &number.into()));
+            let item = &done["items"][0];
+            assert_eq!((&item["kind"], &item["name"]), (&kind.into(), &number.into()));
         }
     }
 

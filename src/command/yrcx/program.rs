@@ -23,6 +23,7 @@ commands! {
         /// Register a program in a task
         Select(Select),
         /// Run a program, or all of them
+        #[command(alias = "start")]
         Run(run::Run),
         /// Step into: run one line, also of a subroutine
         Step(Step),

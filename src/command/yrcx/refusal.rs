@@ -12,7 +12,12 @@ use crate::failure::{Failure, Kind};
 /// Words that the manual does not allow to be sent are a mistake of the command line.
 impl From<WordError> for Failure {
     fn from(error: WordError) -> Self {
-        let failure = Self::usage(error.to_string());
+        // The field is what was typed; its word is for whoever sends words.
+        let message = match error.place.key {
+            Some(key) => format!("{key}: {}", error.problem),
+            None => error.to_string(),
+        };
+        let failure = Self::usage(message);
         match error.alarm {
             Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
             None => failure.hint("`--help` tells what may be given"),
@@ -131,7 +136,7 @@ mod tests {
         let error = Command::MovePtp.order().with(Key::Point, 30_000).build().unwrap_err();
         let failure = Failure::from(WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
-        assert_eq!(failure.message, "WI4 point: 30000 is out of range; allowed: 0 to 29999");
+        assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
         assert_eq!(failure.hint.unwrap(), "the controller would refuse it with alarm 4.202, input format error");
     }
 }

@@ -1,9 +1,10 @@
 //! Images in the record of the traffic: as text when they change, as packets whenever they pass.
 
+use std::collections::VecDeque;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, SyncSender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -72,6 +73,51 @@ impl Trace {
                 self.text.line(direction, &change.line(self.text.level() > 1));
             }
         }
+    }
+}
+
+/// The packets that passed before a link was open, for `-vvv`: where it did not open, they tell why.
+#[derive(Debug)]
+pub struct Opening {
+    passed: Arc<Mutex<VecDeque<String>>>,
+}
+
+/// The last packets before a failure that are shown.
+const MOST_SHOWN: usize = 64;
+
+impl Opening {
+    /// Keeps what passes the tap, if bytes are wanted.
+    pub fn watch(screen: &Screen) -> Option<(Self, Tap)> {
+        /// `-vvv`.
+        const BYTES: u8 = 3;
+
+        if screen.verbosity < BYTES {
+            return None;
+        }
+        let passed = Arc::new(Mutex::new(VecDeque::new()));
+        let kept = Arc::clone(&passed);
+        let tap = Tap::new(move |packet: Passed| {
+            let line = match packet {
+                Passed::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
+                Passed::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
+                Passed::Frame(bytes) => format!("frame  {}", hex(&bytes)),
+            };
+            let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+            if kept.len() == MOST_SHOWN {
+                kept.pop_front();
+            }
+            kept.push_back(line);
+        });
+        Some((Self { passed }, tap))
+    }
+
+    /// Shows what passed until the link did not open.
+    pub fn show(&self, screen: &Screen) {
+        let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner);
+        if passed.is_empty() {
+            screen.note("no frame was sent or received");
+        }
+        passed.iter().for_each(|line| screen.note(line));
     }
 }
 

@@ -1,19 +1,31 @@
-//! Addresses that a name of the inventory can stand for: `IN2.1`, `OUT1.3` on the controller itself, `CN05`.
+//! Addresses that a name of the inventory can stand for: `IN2.1`, `OUT1.3` on the controller itself, `CN05`, `TN1`, `PT012`.
 
 use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
-/// Bits of ports of station 0, and counters.
-pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "CN", "PN", "F"] };
+/// Bits of ports of station 0 and of the inside, counters, timers and points.
+pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };
 
 /// The last port of a kind that may be there (DOUT takes 1 to 99), and the last counter.
 const LAST: u8 = 99;
+
+/// The last timer.
+const LAST_TIMER: u8 = 9;
+/// The last row of the coordinate table.
+const LAST_POINT: u16 = 999;
 
 /// An address as typed, and as it is written.
 fn address(text: &str) -> Option<(Kind, String)> {
     let at = text.find(|c: char| c.is_ascii_digit())?;
     let (letters, number) = text.split_at(at);
     let number_of = |digits: &str| unsigned::<u8>(digits).filter(|number| (1..=LAST).contains(number));
+    if letters.eq_ignore_ascii_case("PT") {
+        let point = unsigned::<u16>(number).filter(|point| (1..=LAST_POINT).contains(point));
+        return point.map(|point| (Kind::Point, self::point(point)));
+    }
+    if letters.eq_ignore_ascii_case("TN") {
+        return number_of(number).filter(|timer| *timer <= LAST_TIMER).map(|timer| (Kind::Timer, self::timer(timer)));
+    }
     if letters.eq_ignore_ascii_case("CN") {
         return number_of(number).map(|number| (Kind::Counter, counter(number)));
     }
@@ -43,6 +55,40 @@ pub fn counter(number: u8) -> String {
     format!("CN{number:02}")
 }
 
+/// `TN1`.
+pub fn timer(number: u8) -> String {
+    format!("TN{number}")
+}
+
+/// `PT012`.
+pub fn point(row: u16) -> String {
+    format!("PT{row:03}")
+}
+
+/// What the fields of instructions are called that a name can stand in, with what their addresses begin with.
+const FIELDS: [(&str, Kind, &str); 3] =
+    [("point", Kind::Point, "PT"), ("counter", Kind::Counter, "CN"), ("timer", Kind::Timer, "TN")];
+
+/// What a field of an instruction numbers, and what its addresses begin with; `None` where no name can stand in it.
+pub fn of_field(name: &str) -> Option<(Kind, &'static str)> {
+    FIELDS.iter().find(|(field, ..)| *field == name).map(|(_, kind, prefix)| (*kind, *prefix))
+}
+
+/// The number of an address such as `PT012`.
+pub fn number(address: &str) -> Option<i32> {
+    address.trim_start_matches(|c: char| c.is_ascii_alphabetic()).parse().ok()
+}
+
+/// The address of a number in a field of an instruction.
+pub fn address_of(kind: Kind, number: i32) -> Option<String> {
+    Some(match kind {
+        Kind::Point => point(u16::try_from(number).ok()?),
+        Kind::Counter => counter(u8::try_from(number).ok()?),
+        Kind::Timer => timer(u8::try_from(number).ok()?),
+        _ => return None,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -50,10 +96,19 @@ mod tests {
     #[test]
     fn addresses_are_written_one_way() {
         let written = |text| (GRAMMAR.address)(text).map(|(_, address)| address);
-        for (text, address) in [("in2.1", "IN2.1"), ("OUT01.3", "OUT1.3"), ("cn5", "CN05"), ("CN05", "CN05")] {
+        for (text, address) in [
+            ("in2.1", "IN2.1"),
+            ("OUT01.3", "OUT1.3"),
+            ("cn5", "CN05"),
+            ("CN05", "CN05"),
+            ("tn1", "TN1"),
+            ("pt12", "PT012"),
+        ] {
             assert_eq!(written(text).as_deref(), Some(address), "{text}");
         }
-        for text in ["", "1.3", "OUT1", "OUT1.9", "OUT0.1", "CN0", "CN100", "PN01.1", "clamp"] {
+        for text in
+            ["", "1.3", "OUT1", "OUT1.9", "OUT0.1", "CN0", "CN100", "PN01.1", "TN0", "TN10", "PT0", "PT1000", "clamp"]
+        {
             assert_eq!(written(text), None, "{text}");
         }
     }

@@ -74,10 +74,10 @@ pub struct LineSession {
     free: Now,
     /// When something came last that nobody asked for.
     stray: Option<Now>,
-    /// The order that had a yes last, which a late no would take back, and when it had it.
-    accepted: Option<(Request, Now)>,
-    /// An order whose yes a late no has taken back.
-    refuted: Option<Request>,
+    /// The last order that was answered, which the other answer would contradict, and when it was answered.
+    decided: Option<(Decided, Now)>,
+    /// An order to which both answers came.
+    refuted: Option<Decided>,
 }
 
 #[derive(Debug)]
@@ -106,12 +106,28 @@ struct Exchange {
     copy: Option<String>,
     /// Not before this moment: a line that was noisy gets quiet first.
     not_before: Now,
-    /// The order before this question, whose yes a no that comes now may take back.
-    follows: Option<Request>,
-    /// Whether that no came.
+    /// The order before this question, to which its other answer may still come.
+    follows: Option<Decided>,
+    /// Whether a no came, which is that other answer or the one to this question.
     is_refused: bool,
+    /// Whether a yes came, which answers no question.
+    is_contradicted: bool,
     /// Until when an order waits for a line on which something comes that nobody asked for; set at the first look.
     patience: Option<Now>,
+}
+
+/// An order and its answer.
+#[derive(Debug, Clone)]
+struct Decided {
+    order: Request,
+    is_accepted: bool,
+}
+
+impl Decided {
+    /// The answer that was taken.
+    const fn block(&self) -> &'static str {
+        if self.is_accepted { YES } else { NO }
+    }
 }
 
 /// Silence after a garbled block, before the request is sent again; and after what nobody asked for, before an order.
@@ -140,25 +156,22 @@ impl LineSession {
             echoes: false,
             free: Now::ZERO,
             stray: None,
-            accepted: None,
+            decided: None,
             refuted: None,
         }
     }
 
-    /// Begins to wait whether a no follows to an order that has its yes, as long as one may; `false` if none may.
-    pub fn confirm(&mut self, now: Now) -> bool {
-        let Some((_, at)) = &self.accepted else { return false };
-        if !matches!(self.state, State::Ended(_)) || now >= *at + QUIET {
-            return false;
-        }
-        self.state = State::Confirming(YES.to_owned(), *at + QUIET);
-        true
+    /// Whether the other answer to the last order can still come: no question was answered since.
+    pub fn is_open(&self) -> bool {
+        self.decided.is_some()
     }
 
-    /// The order whose yes was taken back by a no that came in the exchange behind it, once; and why it counts no more.
+    /// The order to which both answers came, once; and why neither counts.
     pub fn take_refuted(&mut self) -> Option<(Request, Ended)> {
-        let unfitting = Ended::Unfitting { block: YES.to_owned(), why: BOTH_CAME.to_owned() };
-        self.refuted.take().map(|order| (order, unfitting))
+        self.refuted.take().map(|decided| {
+            let unfitting = Ended::Unfitting { block: decided.block().to_owned(), why: BOTH_CAME.to_owned() };
+            (decided.order, unfitting)
+        })
     }
 
     /// Begins an exchange; what `is_repeatable` is sent again after silence. An exchange that had not ended is given
@@ -189,6 +202,7 @@ impl LineSession {
             not_before,
             follows: None,
             is_refused: false,
+            is_contradicted: false,
             patience: None,
         });
     }
@@ -236,6 +250,7 @@ impl LineSession {
     /// The time for an answer is over.
     fn silence(&mut self, mut exchange: Exchange, deadline: Now) -> Step<Ended> {
         if exchange.is_refused {
+            self.decided.take_if(|(_, at)| deadline >= *at + LATE);
             return self.end(Ended::Answered(NO.to_owned()));
         }
         // Only the request itself came: an answer that looks the same, or the echo of a line without a controller.
@@ -264,9 +279,10 @@ impl LineSession {
         };
         let bytes = format!("{}\r\n", exchange.text).into_bytes();
         self.counters.sent += 1;
-        let is_question = exchange.request.as_ref().is_some_and(|request| !request.row().is_order());
-        let accepted = self.accepted.take_if(|(_, at)| !is_question || now >= *at + LATE);
-        exchange.follows = self.accepted.as_ref().filter(|_| accepted.is_none()).map(|(order, _)| order.clone());
+        if !exchange.is_question() {
+            self.decided = None;
+        }
+        exchange.follows = self.decided.as_ref().map(|(decided, _)| decided.clone());
         self.framer.clear();
         let deadline = self.deadline(now, &bytes);
         self.state = State::Waiting(exchange, deadline);
@@ -291,29 +307,24 @@ impl LineSession {
             exchange.copy = Some(block);
             return State::Waiting(exchange, deadline);
         }
-        if block == NO && exchange.follows.is_some() && !exchange.is_refused {
-            exchange.is_refused = true;
-            return State::Waiting(exchange, deadline.min(now + BEHIND_A_NO));
+        match &exchange.follows {
+            Some(Decided { is_accepted: true, .. }) if block == NO && !exchange.is_refused => {
+                exchange.is_refused = true;
+                return State::Waiting(exchange, deadline.min(now + BEHIND_A_NO));
+            }
+            Some(Decided { is_accepted: false, .. }) if block == YES => exchange.is_contradicted = true,
+            _ => {}
         }
         match exchange.accepts(&block) {
             Ok(()) => {
-                if exchange.is_refused && block != NO {
-                    self.refuted = exchange.follows.take();
-                    self.accepted = None;
-                }
                 self.echoes |= exchange.copy.is_some();
                 // If it was asked several times, the other answers may come as late as that.
                 self.owed_until = deadline;
-                if block == YES
-                    && let Some(order) = exchange.request.filter(is_not_read_back)
-                {
-                    let is_looked_at = RUNS.contains(&order.command());
-                    self.accepted = Some((order, now));
-                    if !is_looked_at {
-                        return State::Confirming(block, now + QUIET);
-                    }
+                if exchange.is_question() {
+                    self.asked(now, &mut exchange, &block);
+                    return State::Ended(Some(Ended::Answered(block)));
                 }
-                State::Ended(Some(Ended::Answered(block)))
+                self.decide(now, exchange.request, block)
             }
             Err(error @ (BlockError::Other { .. } | BlockError::Command { .. })) => {
                 self.counters.foreign += 1;
@@ -335,12 +346,39 @@ impl LineSession {
         }
     }
 
+    /// A question has its answer. A controller answers one block after the other: nothing older comes any more, but what
+    /// a device server sends of another client, for a while.
+    fn asked(&mut self, now: Now, exchange: &mut Exchange, block: &str) {
+        if exchange.is_contradicted || (exchange.is_refused && block != NO) {
+            self.refuted = exchange.follows.take();
+            self.decided = None;
+        }
+        self.decided.take_if(|(_, at)| now >= *at + LATE);
+    }
+
+    /// An order has its answer. The other one may follow.
+    fn decide(&mut self, now: Now, order: Option<Request>, block: String) -> State {
+        let is_accepted = block == YES;
+        let waits = is_accepted && order.as_ref().is_some_and(is_waited_for);
+        if is_accepted || block == NO {
+            self.decided = order.map(|order| (Decided { order, is_accepted }, now));
+        }
+        if waits { State::Confirming(block, now + QUIET) } else { State::Ended(Some(Ended::Answered(block))) }
+    }
+
     /// An order has both answers.
     fn contradicted(&mut self, now: Now, block: String) -> State {
         self.counters.foreign += 1;
         self.stray = Some(now);
-        self.accepted = None;
+        self.decided = None;
         State::Ended(Some(Ended::Unfitting { block, why: BOTH_CAME.to_owned() }))
+    }
+
+    /// A block came before a question was sent: it may be the other answer to the order before it.
+    fn note_other(&mut self, state: &State, framed: &Framed) {
+        let is_question = matches!(state, State::Settling(exchange) if exchange.is_question());
+        let other = self.decided.take_if(|(decided, _)| is_question && contradicts(decided.block(), framed));
+        self.refuted = other.map(|(decided, _)| decided).or(self.refuted.take());
     }
 
     /// A garbled block was the answer. What may be repeated is asked again as soon as the line is quiet; the rest waits
@@ -361,13 +399,13 @@ impl LineSession {
 const YES: &str = "@OK";
 const NO: &str = "@NG";
 
-/// Whether nothing is read back of what an order does: of what moves by itself, and of memory that is cleared. A jog is
-/// looked at all the time, and must not be kept from its stop.
-fn is_not_read_back(order: &Request) -> bool {
+/// Whether a no to an order is waited for before anything else is sent: of what moves by itself, but for what runs, and of
+/// memory that is cleared. A jog must not be kept from its stop.
+fn is_waited_for(order: &Request) -> bool {
     match order.command() {
         Command::Jgst => false,
         Command::Mint => true,
-        _ => order.risk() == Risk::Motion,
+        command => order.risk() == Risk::Motion && !RUNS.contains(&command),
     }
 }
 
@@ -378,6 +416,11 @@ fn contradicts(first: &str, second: &Framed) -> bool {
 }
 
 impl Exchange {
+    /// Whether it asks for data, which neither `@OK` nor the answer to another question can be taken for.
+    fn is_question(&self) -> bool {
+        self.request.as_ref().is_some_and(|request| !request.row().is_order())
+    }
+
     fn accepts(&self, block: &str) -> Result<(), BlockError> {
         self.request.as_ref().map_or(Ok(()), |request| request.check_answer(block))
     }
@@ -451,6 +494,7 @@ impl Session for LineSession {
                     self.counters.foreign += 1;
                     self.stray = Some(now);
                     self.owed = self.owed.saturating_sub(1);
+                    self.note_other(&state, &framed);
                     state
                 }
             };

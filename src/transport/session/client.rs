@@ -108,7 +108,13 @@ pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) 
         Control::Welcome(welcome) if welcome.version == VERSION => {
             Ok(Found::Session(Box::new(Attached::new(end, *welcome))))
         }
-        Control::Refused(why) | Control::Ended(why) => Err(AttachError::Refused(why)),
+        Control::Refused(why) => Err(AttachError::Refused(why)),
+        Control::Ended(_) => {
+            // Its socket closes behind the link: whoever opens that next finds it free.
+            let closed = async { while let Ok(Some(_)) = end.reader.next().await {} };
+            timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
+            Ok(Found::Nothing)
+        }
         _ => Err(AttachError::Foreign),
     }
 }

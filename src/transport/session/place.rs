@@ -2,9 +2,11 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use sha2::{Digest as _, Sha256};
 use thiserror::Error;
+use tokio::time::{Instant, sleep};
 
 use super::socket::{self, Lock};
 use super::wire::Info;
@@ -132,6 +134,24 @@ impl Spot {
         Ok(Some(Claim { spot: self.clone(), _lock: lock }))
     }
 
+    /// Makes the spot this process's own as soon as whoever has it gives it back, who is not waited for long.
+    pub async fn turn(&self, info: &Info) -> Result<Turn, PlaceError> {
+        let until = Instant::now() + TURN_WITHIN;
+        loop {
+            if let Some(claim) = self.claim(info)? {
+                return Ok(Turn::Mine(claim));
+            }
+            // Whoever has it may be a command, which ends, or a session that is just being opened.
+            if self.is_open() {
+                return Ok(Turn::Session);
+            }
+            if Instant::now() >= until {
+                return Ok(Turn::Taken);
+            }
+            sleep(TURN_EVERY).await;
+        }
+    }
+
     /// Who has it, or had it.
     pub fn owner(&self) -> Option<Info> {
         serde_json::from_slice(&files::read(&self.lock(), LONGEST_LOCK).ok()?).ok()
@@ -162,6 +182,21 @@ impl Spot {
             Err(error) => Err(failed(&path)(error)),
         }
     }
+}
+
+/// How long a spot is waited for, and from look to look.
+const TURN_WITHIN: Duration = Duration::from_secs(3);
+const TURN_EVERY: Duration = Duration::from_millis(10);
+
+/// Whose a spot is.
+#[derive(Debug)]
+pub enum Turn {
+    /// This process's.
+    Mine(Claim),
+    /// That of a session, which lets clients in.
+    Session,
+    /// That of a process which has not given it back in time.
+    Taken,
 }
 
 /// A spot that is this process's own, until it is dropped.
@@ -203,7 +238,7 @@ mod tests {
     use super::*;
 
     fn info() -> Info {
-        Info { pid: 7, robot: "cell1".to_owned(), family: "yrcx".to_owned(), target: "sim:".to_owned() }
+        Info { pid: 7, ..Info::own("cell1", "yrcx", "sim:", "armctl status") }
     }
 
     fn spot(folder: &Path) -> Spot {

@@ -228,7 +228,7 @@ pub struct Status {
     pub under_way: bool,
 }
 
-/// Whom a session is for; also what its lock file says.
+/// Whom a session, or a command that has the link to itself, is for; also what its lock file says.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Info {
     /// Process.
@@ -239,13 +239,16 @@ pub struct Info {
     pub family: String,
     /// Target URL.
     pub target: String,
+    /// Command line of the process; empty where an older one does not tell.
+    #[serde(default)]
+    pub command: String,
 }
 
 impl Info {
-    /// That of this process.
-    pub fn own(robot: &str, family: &str, target: &str) -> Self {
+    /// That of this process, which runs this command.
+    pub fn own(robot: &str, family: &str, target: &str, command: &str) -> Self {
         let (robot, family, target) = (robot.to_owned(), family.to_owned(), target.to_owned());
-        Self { pid: super::process(), robot, family, target }
+        Self { pid: super::process(), robot, family, target, command: short(command) }
     }
 }
 

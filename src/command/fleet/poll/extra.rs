@@ -119,10 +119,14 @@ impl fmt::Debug for Extra {
     }
 }
 
-/// Whether a path was given to the command, or to one below it: a file would be read or written again and again.
+/// Whether a path was given to the command, or to one below it, or one is meant where none is given: a file would be read or
+/// written again and again.
 fn takes_file(command: &clap::Command, matches: &ArgMatches) -> bool {
     let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
-    let is_given = |arg: &Arg| matches.value_source(arg.get_id().as_str()) == Some(ValueSource::CommandLine);
+    let is_given = |arg: &Arg| {
+        let source = matches.value_source(arg.get_id().as_str());
+        matches!(source, Some(ValueSource::CommandLine | ValueSource::DefaultValue))
+    };
     if command.get_arguments().any(|arg| is_path(arg) && is_given(arg)) {
         return true;
     }
@@ -154,6 +158,7 @@ mod tests {
             ("yerc status ; yerc hold on", "is more than one command"),
             ("yerc var dump x.json", "names a file or folder"),
             ("yerc file get A.JBI --dir x", "names a file or folder"),
+            ("yerc file get A.JBI", "names a file or folder"),
             ("yrcx backup x", "names a file or folder"),
             ("toyo point list --csv x.csv", "names a file or folder"),
         ] {

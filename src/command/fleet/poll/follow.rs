@@ -15,6 +15,7 @@ use crate::command::face::Watch;
 use crate::command::face::sample::Traffic;
 use crate::command::families;
 use crate::command::frame::attach::is_held;
+use crate::command::frame::share::shared;
 use crate::command::{Access, ConnectMode, Entry};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -42,7 +43,7 @@ const SESSIONS: Duration = Duration::from_secs(5);
 enum Ended {
     /// It is over.
     Over,
-    /// A session holds the link to the robot by now, and the looks shall go through it.
+    /// A session holds the link to the robot by now, and the looks shall go through it; or it does no more.
     Session,
     /// No answer, or none that makes sense.
     Failed(Failure, Traffic),
@@ -60,9 +61,11 @@ pub(super) async fn follow(mut follower: Follower) {
             () = over(&mut stopped) => return,
             opened = async {
                 sleep_until(start).await;
+                let family = families::of(robot.family);
+                let robot = &shared(family.driver(), robot).await?;
                 let is_shared = is_held(robot);
                 let access = Access::reading(ConnectMode::Monitor);
-                let watch = families::of(robot.family).watch(robot, access, screen).await?;
+                let watch = family.watch(robot, access, screen).await?;
                 Ok(Link { watch, is_shared, counted: Traffic::default() })
             } => opened,
         };
@@ -130,6 +133,8 @@ impl Follower {
                     let look = Look { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
                     self.tell.tell(Event::Looked(Arc::new(look))).await;
                 }
+                // Whoever held the link has ended, which says nothing of the robot.
+                Err(_) if link.is_shared && !is_held(&self.robot) => return Ended::Session,
                 Err(failure) => return Ended::Failed(failure, link.traffic()),
             }
             let now = Instant::now();

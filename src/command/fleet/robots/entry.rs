@@ -199,30 +199,35 @@ fn switch(text: &str) -> Result<bool, Failure> {
 
 impl Set {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
-        let entry = known(&run.sources.inventory, &self.name)?;
-        let settings = self.settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
-        // What an address without a scheme means depends on the family that comes with it.
-        let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
-        let family = family.unwrap_or(entry.family);
-        let values = settings.iter().map(|(key, text, parse)| {
-            let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| about(key, why))?) };
-            if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
-                named(family, name, text).map_err(|why| about(key, why))?;
-            }
-            Ok((*key, new))
-        });
-        let values = values.collect::<Result<Vec<_>, Failure>>()?;
-        let mut changes = Vec::new();
-        let file = change(run, |document| {
-            for (key, new) in values {
-                let told = new.as_ref().map(json);
-                let old = document.set(&self.name, key, new)?;
-                changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: told });
-            }
-            Ok(())
-        })?;
-        told(run.local("robots.set", &WasSet { name: self.name, changes, file }))
+        set(run, "robots.set", self.name, &self.settings)
     }
+}
+
+/// Writes settings of a robot into the file.
+pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> Result<(), RunError> {
+    let entry = known(&run.sources.inventory, &robot)?;
+    let settings = settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
+    // What an address without a scheme means depends on the family that comes with it.
+    let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
+    let family = family.unwrap_or(entry.family);
+    let values = settings.iter().map(|(key, text, parse)| {
+        let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| about(key, why))?) };
+        if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
+            named(family, name, text).map_err(|why| about(key, why))?;
+        }
+        Ok((*key, new))
+    });
+    let values = values.collect::<Result<Vec<_>, Failure>>()?;
+    let mut changes = Vec::new();
+    let file = change(run, |document| {
+        for (key, new) in values {
+            let told = new.as_ref().map(json);
+            let old = document.set(&robot, key, new)?;
+            changes.push(SettingChange { setting: key.to_owned(), old: old.as_ref().map(json), new: told });
+        }
+        Ok(())
+    })?;
+    told(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
 /// What a name stands for: a number where it is one, as people write it into the file.

@@ -8,7 +8,9 @@ use super::list::spots;
 use crate::command::Report;
 use crate::command::ValueKind;
 use crate::command::families;
+use crate::command::frame::asking::answered;
 use crate::command::frame::attach::{identify, no_place, refused};
+use crate::command::frame::interrupt::catch_interrupts;
 use crate::command::frame::run::{Run, RunError};
 use crate::controller::nearest::nearest;
 use crate::failure::{Failure, Kind};
@@ -47,6 +49,27 @@ struct Session {
     became: &'static str,
 }
 
+/// The robot of the session that a person chooses; `None` where there is none, or nobody can choose.
+async fn choose(run: &Run) -> Result<Option<String>, Failure> {
+    if !run.screen.can_choose() {
+        return Ok(None);
+    }
+    let open: Vec<Info> = spots()?.iter().filter_map(Spot::owner).collect();
+    if open.is_empty() {
+        return Ok(None);
+    }
+    let options: Vec<String> = open.iter().map(|info| format!("{}  {}", info.robot, info.target)).collect();
+    let screen = run.screen;
+    let question = "session to close (type to search, Enter takes, Esc leaves)";
+    catch_interrupts();
+    let at = answered(screen, move || screen.ask_one_of(question, &options, false)).await?;
+    let robot = open.into_iter().nth(at).map(|info| info.robot);
+    if let Some(robot) = &robot {
+        screen.note(&format!("the same without a question: armctl session close {robot}"));
+    }
+    Ok(robot)
+}
+
 impl Close {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         let selection = &run.sources.selection;
@@ -56,6 +79,8 @@ impl Close {
         if selection.sim {
             names.push("sim:");
         }
+        let chosen = if names.is_empty() && !selection.all { choose(run).await? } else { None };
+        names.extend(chosen.as_deref());
         if names.is_empty() && !selection.all {
             return Err(Failure::usage("no session is named")
                 .hint("name a robot, or close them --all; `armctl session list` shows them")

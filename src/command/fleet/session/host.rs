@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use anyhow::Context as _;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -14,19 +15,20 @@ use super::watched_entry::WatchedEntry;
 use crate::command::Access;
 use crate::command::face::HeldLink;
 use crate::command::families;
-use crate::command::frame::attach::{key_of, no_place};
+use crate::command::frame::attach::{in_use, info, key_of, no_place};
 use crate::command::frame::session_manager::{By, ManagerRequest, SessionManager};
 use crate::failure::Failure;
-use crate::guardian;
+use crate::guardian::{self, HolderGuardian};
 use crate::output::Screen;
 use crate::settings::Robot;
-use crate::transport::session::host::Host;
-use crate::transport::session::place::Place;
-use crate::transport::session::wire::Info;
+use crate::transport::session::host::{Host, Why};
+use crate::transport::session::place::{Place, Turn};
 
 /// A link that this process holds, and lets clients have.
 pub struct SessionHost {
     host: Host,
+    /// Stops what clients move when this process ends.
+    guardian: Rc<HolderGuardian>,
     /// What is to be done once the link is closed.
     finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
     label: String,
@@ -56,29 +58,41 @@ impl SessionHost {
         };
         let key = key_of(robot);
         let spot = place.spot(&key);
-        let info = Info::own(&robot.name, robot.family.name(), robot.target.value.url());
-        let claim = match spot.claim(&info) {
-            Ok(Some(claim)) => claim,
-            Ok(None) => return Ok(Attempt::Taken),
+        let claim = match spot.turn(&info(robot, access)).await {
+            Ok(Turn::Mine(claim)) => claim,
+            Ok(Turn::Session) => return Ok(Attempt::Taken),
+            Ok(Turn::Taken) => return Err(in_use(robot, &spot)),
             Err(error) => return Ok(Attempt::NoPlace(no_place(&error))),
         };
+        let info = info(robot, access);
         let face = families::of(robot.family);
         let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, say.clone()).with_context(|| spot.socket().display().to_string())?;
         let orphaned = robot.clone();
+        let guardian = Rc::new(HolderGuardian::new(robot, face.stop()));
+        let guarding = Rc::clone(&guardian);
+        let is_simulated = robot.target.value.is_simulated();
+        let host = host.watched_by(move |moves| if is_simulated { Ok(()) } else { guarding.moves(moves) });
         let host = host.stopped_by(move |why| {
             say(&format!("{why}: the robot is being stopped"));
             guardian::stop_orphan(&orphaned, face.stop(), say.clone());
         });
         let mut entry = WatchedEntry::new(robot);
         let host = host.guarded(face.guard(), move || entry.is_read_only());
-        Ok(Attempt::Held(Box::new(Self { host, finish, label: robot.label() })))
+        Ok(Attempt::Held(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
-    /// Serves until a client has it end. The future may be dropped: [`SessionHost::end`] goes on from there.
-    pub async fn serve(&mut self) {
-        self.host.serve().await;
+    /// Has it end after so long without a client.
+    #[must_use]
+    pub fn ending_after(self, idle: Option<Duration>) -> Self {
+        Self { host: self.host.ending_after(idle), ..self }
+    }
+
+    /// Serves until a client has it end, or none has come for long. The future may be dropped: [`SessionHost::end`] goes on
+    /// from there.
+    pub async fn serve(&mut self) -> Why {
+        self.guardian.guard(Box::pin(self.host.serve())).await
     }
 
     /// Whether the controller shows that something is under way.
@@ -194,7 +208,7 @@ async fn hold(
     let Some(mut holding) = holding else { return };
     held.borrow_mut().insert(key.clone());
     let why = tokio::select! {
-        () = holding.serve() => {
+        _ = holding.serve() => {
             say(&format!("{label}: another process had the session closed"));
             "the session was closed"
         }

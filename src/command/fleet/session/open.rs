@@ -4,6 +4,7 @@ use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use clap::Args;
@@ -15,13 +16,16 @@ use crate::command::families;
 use crate::command::frame::attach::{identify, key_of, no_place, since};
 use crate::command::frame::background::{self, Opened, Start};
 use crate::command::frame::interrupt::{catch_interrupts, interruptible};
+use crate::command::frame::repeats::{Line, Repeats};
 use crate::command::frame::run::{Run, RunError};
 use crate::command::{Access, ConnectMode};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
-use crate::settings::Robot;
+use crate::output::log::Level;
 use crate::settings::target::Family;
+use crate::settings::{Robot, duration};
 use crate::transport::session::client::status;
+use crate::transport::session::host::Why;
 use crate::transport::session::leave_terminal;
 use crate::transport::session::place::{Place, Spot};
 
@@ -31,6 +35,9 @@ pub struct Open {
     /// Run in the background; return once the connection is open
     #[arg(long)]
     background: bool,
+    /// End once no command has used it for so long
+    #[arg(long, value_name = "TIME", value_parser = duration::parse_some)]
+    idle: Option<Duration>,
     /// The family, where the target does not tell
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
@@ -80,13 +87,13 @@ impl Open {
             let (host, opened) = Self::open(run, robot, false).await?;
             run.local("session.open", &opened)?;
             run.screen.note("Ctrl-C ends it");
-            return Ok(serve(run, host).await?);
+            return Ok(self.serve(run, host).await?);
         }
         leave_terminal().context("the terminal")?;
         match Self::open(run, robot, true).await {
             Ok((host, opened)) => {
                 run.screen.json(&Start::Opened(opened))?;
-                Ok(serve(run, host).await?)
+                Ok(self.serve(run, host).await?)
             }
             Err(failure) => {
                 run.screen.json(&Start::Failed(failure.clone()))?;
@@ -100,7 +107,8 @@ impl Open {
         let place = Place::make().map_err(|error| no_place(&error))?;
         let spot = place.spot(&key_of(robot));
         let log = background.then(|| spot.log());
-        let log_file = SessionLog { screen: run.screen, label: robot.label(), file: log.clone() };
+        let (label, repeats) = (robot.label(), Repeats::default());
+        let log_file = SessionLog { screen: run.screen, label, file: log.clone(), repeats };
         let log_file = Arc::new(Mutex::new(log_file));
         let say = move |text: &str| log_file.lock().unwrap_or_else(PoisonError::into_inner).say(text);
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Control) };
@@ -114,15 +122,17 @@ impl Open {
         let opened = Opened::here(robot, background, log.as_deref());
         Ok((holding, opened))
     }
-}
 
-/// Serves until somebody wants it to end; that is no failure.
-async fn serve(run: &Run, mut holding: Box<SessionHost>) -> Result<(), Failure> {
-    let why = match interruptible(holding.serve()).await {
-        Ok(()) => "the session was closed".to_owned(),
-        Err(asked) => format!("the session has ended: {}", asked.message),
-    };
-    holding.end(&why, &run.screen).await
+    /// Serves until somebody wants it to end, or nobody uses it any more; that is no failure.
+    async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<(), Failure> {
+        let mut holding = holding.ending_after(self.idle);
+        let why = match interruptible(holding.serve()).await {
+            Ok(Why::Asked) => "the session was closed".to_owned(),
+            Ok(Why::Idle) => "the session has ended: nobody has used it for long".to_owned(),
+            Err(asked) => format!("the session has ended: {}", asked.message),
+        };
+        holding.end(&why, &run.screen).await
+    }
 }
 
 /// Somebody else holds the link already.
@@ -141,6 +151,16 @@ struct SessionLog {
     screen: Screen,
     label: String,
     file: Option<PathBuf>,
+    repeats: Repeats,
+}
+
+/// What was only counted is told at the end.
+impl Drop for SessionLog {
+    fn drop(&mut self) {
+        for line in self.repeats.due(Instant::now(), true) {
+            self.write(&line.text);
+        }
+    }
 }
 
 /// The file is begun anew at this size; the one before is kept.
@@ -148,6 +168,13 @@ const LONGEST: u64 = 1 << 18;
 
 impl SessionLog {
     fn say(&mut self, text: &str) {
+        let line = Line::new(Level::Notice, text, &[("robot", &self.label)]);
+        for line in self.repeats.lines(line, Instant::now()) {
+            self.write(&line.text);
+        }
+    }
+
+    fn write(&self, text: &str) {
         let Some(path) = &self.file else {
             self.screen.note(&format!("{}: {text}", self.label));
             return;

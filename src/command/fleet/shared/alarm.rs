@@ -1,19 +1,23 @@
-//! `armctl alarm list|history|reset`: alarms of robots of any family.
+//! `armctl alarm list|history|watch|reset`: alarms of robots of any family.
+
+use std::time::Duration;
 
 use clap::{Args, Subcommand};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Shared;
+use super::line::SharedLine;
 use crate::command::face::shared::SharedVerb;
 use crate::command::fleet::status::{Fleet, Link};
 use crate::command::frame::orders::Done;
+use crate::command::frame::watch::Changes;
 use crate::command::robot::alarm::AllAlarms;
 use crate::command::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
 use crate::failure::Failure;
 use crate::output::envelope::Envelope;
 use crate::output::view::View;
-use crate::settings::alarms;
+use crate::settings::{alarms, duration};
 
 /// Alarms of all robots.
 #[derive(Debug, Subcommand)]
@@ -22,8 +26,18 @@ pub enum Alarm {
     List(List),
     /// Alarm history, the latest first
     History,
+    /// Print alarms as they come and go
+    Watch(Watch),
     /// Reset the alarms of robots
     Reset,
+}
+
+/// Prints the present alarms, and then each that comes or goes, until Ctrl-C, --for, or --count reports.
+#[derive(Debug, Args)]
+pub struct Watch {
+    /// How long to go on
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
 }
 
 impl Alarm {
@@ -33,20 +47,25 @@ impl Alarm {
     }
 
     /// As a command for robots.
-    pub fn command(&self) -> Box<dyn AnyCommand> {
-        match self {
+    ///
+    /// # Errors
+    /// A family that lacks the verb, which a test rules out.
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+        Ok(match self {
             Self::List(_) => Box::new(List {}),
             Self::History => Box::new(Shared::new("alarm.history", SharedVerb::AlarmHistory)),
+            Self::Watch(_) => Box::new(SharedLine::new("alarm.watch", ["alarm", "watch"].map(Into::into).into())?),
             Self::Reset => Box::new(Shared::new("alarm.reset", SharedVerb::AlarmReset)),
-        }
+        })
     }
 }
 
 /// The schemas of what is reported.
-pub fn schemas() -> [SchemaEntry; 3] {
+pub fn schemas() -> [SchemaEntry; 4] {
     [
         SchemaEntry::of::<Present>("alarm.list"),
         SchemaEntry::of::<AllAlarms>("alarm.history"),
+        SchemaEntry::of::<Changes>("alarm.watch"),
         SchemaEntry::of::<Done>("alarm.reset"),
     ]
 }

@@ -1,6 +1,8 @@
 //! Verbs that every family has, for robots of any: each gets the command of its family.
 
 pub mod alarm;
+pub mod io;
+mod line;
 
 use futures_util::future::LocalBoxFuture;
 
@@ -78,7 +80,7 @@ pub fn position() -> Shared {
 pub fn schemas() -> Vec<SchemaEntry> {
     let stop = SchemaEntry::of::<Done>("stop");
     let position = SchemaEntry::of::<AllPositions>("position");
-    alarm::schemas().into_iter().chain([position, stop]).collect()
+    alarm::schemas().into_iter().chain(io::schemas()).chain([position, stop]).collect()
 }
 
 /// Connects to each robot as its family does.
@@ -95,6 +97,10 @@ impl Driver for PerRobot {
 
     fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
         families::of(robot.family).driver().entry(robot, mode)
+    }
+
+    fn takes_one_client(&self, robot: &Robot) -> bool {
+        families::of(robot.family).driver().takes_one_client(robot)
     }
 
     fn addresses(&self, robot: &Robot) -> Result<Vec<Address>, Failure> {

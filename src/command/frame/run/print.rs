@@ -1,5 +1,7 @@
 //! What a run writes on stdout: views for people, envelopes for programs.
 
+use std::collections::HashMap;
+
 use jiff::Timestamp;
 use serde::Serialize;
 use serde_json::Value;
@@ -24,6 +26,8 @@ pub enum ReportPosition<'a> {
     Next,
     /// One of a watch whose reports are lines.
     Line,
+    /// The same of a robot among others.
+    LineOf(&'a Robot),
     /// One of several robots.
     Among { robot: &'a Robot, first: bool },
 }
@@ -91,13 +95,9 @@ impl Run {
         if let Some(summary) = command.summary(&envelopes).filter(|_| self.has_trailer()) {
             self.screen.note(&summary);
         }
-        for (robot, failure) in reasons {
-            // Failures of the link name the robot already.
-            let label = robot.label();
+        for failure in alike(&reasons) {
             self.redraw.forget();
-            let is_named = failure.message.starts_with(&label);
-            let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
-            self.screen.failure(&Failure { message, ..failure });
+            self.screen.failure(&failure);
         }
         Ok(envelopes)
     }
@@ -131,7 +131,12 @@ impl Run {
         place: ReportPosition<'_>,
     ) -> Result<(), Failure> {
         if self.is_for_people() {
-            return self.show_one(report, place);
+            return match place {
+                ReportPosition::LineOf(robot) if self.screen.format.is_rows() => {
+                    self.show_csv(&[(Some(robot), report)], place)
+                }
+                place => self.show_one(report, place),
+            };
         }
         let envelope = enveloped(robot, id, Ok(report))?;
         let is_stream = self.screen.format == Format::Jsonl || !matches!(place, ReportPosition::Alone);
@@ -203,7 +208,7 @@ impl Run {
         let mut before: Vec<&str> = time.iter().map(|_| "time").collect();
         before.extend(reports.iter().find_map(|(robot, _)| robot.map(|_| "robot")));
         let header = sheet.header(&before);
-        let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line);
+        let is_later = matches!(place, ReportPosition::Next | ReportPosition::Line | ReportPosition::LineOf(_));
         let mut text = if is_later && *self.redraw.header.borrow() == header { String::new() } else { header.clone() };
         self.redraw.header.replace(header);
         if !is_csv {
@@ -223,6 +228,9 @@ impl Run {
         let text = render::text(view, screen.width(), screen.stdout_color());
         let text = match place {
             ReportPosition::Alone | ReportPosition::First | ReportPosition::Line => text,
+            ReportPosition::LineOf(robot) => {
+                text.lines().map(|line| format!("{}  {line}\n", escape::line(&robot.name))).collect()
+            }
             ReportPosition::Next if self.redraw.is_on() => text,
             ReportPosition::Next => format!("\n{text}"),
             ReportPosition::Among { robot, first } => {
@@ -231,6 +239,72 @@ impl Run {
         };
         screen.data(&self.redraw.over(text))
     }
+}
+
+/// The failures of robots, those that many have in common as one.
+fn alike(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
+    /// So many robots are told one by one.
+    const FEW: usize = 5;
+    /// So many are named in what stands for all.
+    const NAMED: usize = 3;
+
+    let why = |(robot, failure): &(&Robot, Failure)| {
+        let message = failure.message.strip_prefix(&robot.label()).unwrap_or(&failure.message);
+        let hint = failure.hint.as_ref().map(|hint| general(hint, robot));
+        (failure.kind, general(message.trim_start_matches(": "), robot), hint)
+    };
+    let mut groups: Vec<(_, Vec<&(&Robot, Failure)>)> = Vec::new();
+    let mut places = HashMap::new();
+    for reason in reasons {
+        let why = why(reason);
+        let at = *places.entry((why.0.exit(), why.1.clone(), why.2.clone())).or_insert_with(|| {
+            groups.push((why, Vec::new()));
+            groups.len() - 1
+        });
+        groups[at].1.push(reason);
+    }
+    let told = groups.into_iter().flat_map(|((kind, message, hint), all)| {
+        if all.len() <= FEW {
+            return all.into_iter().map(|(robot, failure)| named(robot, failure.clone())).collect();
+        }
+        let names: Vec<&str> = all.iter().take(NAMED).map(|(robot, _)| robot.name.as_str()).collect();
+        let message = format!("{} and {} more robots: {message}", names.join(", "), all.len() - NAMED);
+        vec![Failure { hint, ..Failure::new(kind, message) }]
+    });
+    told.collect()
+}
+
+/// A text with dots in place of what is this robot's alone: its name, host and port.
+fn general(text: &str, robot: &Robot) -> String {
+    let url = robot.target.value.url();
+    let parts = url.split(|one: char| !one.is_alphanumeric() && !"._-".contains(one));
+    let parts = parts.filter(|part| part.len() > 1 && part.contains(|one: char| one.is_ascii_digit()));
+    std::iter::once(robot.name.as_str()).chain(parts).fold(text.replace(url, "…"), |text, part| without(&text, part))
+}
+
+/// A text with dots in place of a word.
+fn without(text: &str, word: &str) -> String {
+    let is_part = |one: Option<char>| one.is_some_and(|one| one.is_alphanumeric() || one == '_' || one == '-');
+    let mut out = String::with_capacity(text.len());
+    let mut done = 0;
+    for (at, found) in text.match_indices(word) {
+        let (before, after) = (text[..at].chars().next_back(), text[at + found.len()..].chars().next());
+        if !is_part(before) && !is_part(after) {
+            out.push_str(&text[done..at]);
+            out.push('…');
+            done = at + found.len();
+        }
+    }
+    out.push_str(&text[done..]);
+    out
+}
+
+/// A failure with the name of its robot; those of the link have it already.
+pub(super) fn named(robot: &Robot, failure: Failure) -> Failure {
+    let label = robot.label();
+    let is_named = failure.message.starts_with(&label);
+    let message = if is_named { failure.message } else { format!("{label}: {}", failure.message) };
+    Failure { message, ..failure }
 }
 
 /// What several robots reported, or why not.
@@ -256,4 +330,42 @@ pub fn timed(envelope: Envelope) -> Envelope {
 /// What is written, as a value.
 pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failure::Kind;
+    use crate::settings::Sources;
+    use crate::settings::inventory::Inventory;
+
+    #[test]
+    fn failures_that_many_have_in_common_are_one() {
+        let robots = |count: u16| -> Vec<Robot> {
+            let one = |at: u16| {
+                format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
+            };
+            let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
+            let mut sources = Sources { inventory, ..Sources::default() };
+            sources.selection.all = true;
+            sources.robots(None).unwrap()
+        };
+        let failures = |robots: &[Robot]| -> Vec<String> {
+            let failure = |robot: &Robot| {
+                let message = format!("{}: nothing listens on UDP port {}", robot.label(), 2000 + robots.len());
+                let port = robot.target.value.url().rsplit(':').next().unwrap();
+                Failure::new(Kind::NoAnswer, message.replace(&(2000 + robots.len()).to_string(), port))
+                    .hint(format!("`armctl robots check {}`", robot.name))
+            };
+            let reasons: Vec<(&Robot, Failure)> = robots.iter().map(|robot| (robot, failure(robot))).collect();
+            alike(&reasons)
+                .into_iter()
+                .map(|failure| format!("{} | {}", failure.message, failure.hint.unwrap()))
+                .collect()
+        };
+        let few = failures(&robots(2));
+        assert_eq!(few[1], "r1 (udp://127.0.0.1:2001): nothing listens on UDP port 2001 | `armctl robots check r1`");
+        let many = failures(&robots(2500));
+        assert_eq!(many, ["r0, r1, r2 and 2497 more robots: nothing listens on UDP port … | `armctl robots check …`"]);
+    }
 }

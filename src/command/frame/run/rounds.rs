@@ -20,6 +20,8 @@ pub struct Repeat {
     pub count: Option<u64>,
     /// Stop when this holds.
     pub until: Option<Condition>,
+    /// What must hold of a single run.
+    pub check: Option<Condition>,
     /// Longest time to wait for the condition.
     pub within: Option<Duration>,
     /// Only the last round is shown.

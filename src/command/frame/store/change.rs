@@ -1,6 +1,6 @@
 //! Writing rows: what is there is read first, what differs is confirmed, written, and answers for itself.
 
-use super::{Store, Writable, WrittenOf, columns, item, line};
+use super::{Answers, Store, Writable, WrittenOf, columns, difference, item};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::connection::Family;
 use crate::command::frame::dry_run::{Known as _, unknown};
@@ -55,7 +55,15 @@ struct Compared<S: Store> {
 pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
     let Work { robot, link, screen, authority } = work;
     let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
-    let Some(answers) = S::read(link, screen, &keys).await.known().map_err(unwritten)? else {
+    let read = match S::read(link, screen, &keys).await {
+        // All are refused alike: each is judged below.
+        Err(failure) if failure.kind == Kind::Refused => {
+            let refused = keys.iter().map(|_| Err(failure.clone()));
+            Ok(Answers { rows: refused.collect(), asked: keys.len() })
+        }
+        read => read,
+    };
+    let Some(answers) = read.known().map_err(unwritten)? else {
         for (key, draft) in &rows {
             S::plan(link, *key, draft).await?;
         }
@@ -92,13 +100,17 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
 fn overwritten<S: Writable>(rows: &[Compared<S>]) -> Change {
     let lost = rows.iter().filter_map(|Compared { key, old, new, .. }| {
         let old = old.as_ref().filter(|old| *old != new && !S::is_blank(old))?;
-        Some((asked(S::WORDS.nouns[0], &S::name(*key)), line::<S>(old), line::<S>(new)))
+        let [old, new] = difference::<S>(old, new);
+        Some((asked(S::WORDS.nouns[0], &S::name(*key)), old, new))
     });
     let lost: Vec<_> = lost.collect();
     let [one, many] = S::WORDS.nouns;
     let change = match lost.len() {
         0 => return Change::nothing(),
-        1 => Change::new(format!("overwrite a {one}")),
+        1 => Change::new(format!(
+            "overwrite {} {one}",
+            if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+        )),
         count => Change::new(format!("overwrite {count} {many}")),
     };
     lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))

@@ -285,14 +285,29 @@ fn sheet<S: Store>() -> Vec<Column> {
     std::iter::once(Column::text("name")).chain(S::fields().into_iter().map(column)).collect()
 }
 
-/// What a row holds in a line: `250.0`, or `limit=2.50 load=1.00`.
+/// What a row holds in a line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
 fn line<S: Store>(wire: &S::Wire) -> String {
     let (fields, texts) = (S::fields(), S::texts(wire));
-    if let [text] = &texts[..] {
-        return text.clone();
+    if let ([field], [text]) = (&fields[..], &texts[..]) {
+        let unit = field.heading.split_once('(').and_then(|(_, unit)| unit.strip_suffix(')'));
+        return unit.map_or_else(|| text.clone(), |unit| format!("{text} {unit}"));
     }
     let pairs = fields.iter().zip(&texts).map(|(field, text)| format!("{}={text}", field.name));
     pairs.collect::<Vec<_>>().join(" ")
+}
+
+/// What differs between two rows, in a line each.
+fn difference<S: Store>(old: &S::Wire, new: &S::Wire) -> [String; 2] {
+    let (fields, old_texts, new_texts) = (S::fields(), S::texts(old), S::texts(new));
+    if fields.len() < 2 || old_texts.len() != fields.len() {
+        return [line::<S>(old), line::<S>(new)];
+    }
+    let differ = |texts: &[String]| {
+        let rows = fields.iter().zip(texts).zip(old_texts.iter().zip(&new_texts));
+        let rows = rows.filter(|(_, (old, new))| old != new);
+        rows.map(|((field, text), _)| format!("{}={text}", field.name)).collect::<Vec<_>>().join(" ")
+    };
+    [differ(&old_texts), differ(&new_texts)]
 }
 
 /// Rows as typed, with names where people gave some.

@@ -3,49 +3,47 @@
 use std::str::FromStr;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::super::link::{Link, wrong};
 use super::super::numbers::{not_held, number, read_back};
-use super::super::{items, refusal};
-use super::{OUTPUTS, Port, label_of, listed, name, names_of, numbers, ports_of};
+use super::super::refusal;
+use super::Station;
+use super::port::{OUTPUTS, Spot, name, ports_of};
 use crate::command::frame::names;
 use crate::command::frame::orders::{Done, New, Old};
+use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 use crate::command::toyo::complete;
 use crate::command::toyo::link::Toyo;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::names::{Kind as NameKind, Names};
-use crate::controller::toyo::field::{Field, Mask, Value};
+use crate::controller::toyo::field::{self, Field, Mask};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table;
 use crate::controller::typed;
 use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Table, Tone, View};
 
 /// Sets outputs. All bits of a port change at once; ports follow each other as they are typed.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A whole port is eight characters for the bits 8 to 1, so that the rightmost one is bit 1: 1 is on, 0 \
                         is off, a dot leaves the bit alone. Each port is read back behind its order; only the ports \
-                        that `io out` shows can be. A running program may set the same outputs."
+                        that `io list` shows can be. A running program may set the same outputs."
 )]
 pub struct Set {
-    /// Such as 1.3=on (port 1, bit 3), 1=.......1 (port 1, bits 8 to 1), or NAME=on
+    /// Such as OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
     #[arg(required = true, value_name = "PORT[.BIT]=VALUE", add = complete::OUTPUT_STATE)]
     assignments: Vec<Assignment>,
-    /// I/O station: 0 the controller itself, 1 to 4 its slaves
-    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u8).range(0..=4))]
-    station: u8,
+    #[command(flatten)]
+    station: Station,
 }
 
 /// Orders one of the direct outputs F1 to F4.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Parameter M12 (direct-outputs) has four bits, which are taken for those of F1 to F4: the manual does \
-                        not say it in words, nor whether a bit is switched on or over. Look at `toyo io out` after it."
+                        not say it in words, nor whether a bit is switched on or over. Look at `toyo io list --out` after it."
 )]
 pub struct Direct {
     /// 1 to 4
@@ -64,19 +62,19 @@ struct Assignment {
 
 /// A port, or a bit of it, as typed.
 #[derive(Debug, Clone, Copy)]
-struct Spot {
+struct Place {
     port: u8,
     bit: Option<u8>,
 }
 
-/// `1`, `PN01`, `1.3`, `OUT1.3`.
-fn spot(text: &str) -> Result<Spot, String> {
+/// `OUT1.3`, `OUT1`; `PN01`, `1.3` and `1` are taken, too.
+fn place_of(text: &str) -> Result<Place, String> {
     let (port, bit) = text.split_once('.').map_or((text, None), |(port, bit)| (port, Some(bit)));
     let prefix = ["PN", "pn", "OUT", "out"].into_iter().find_map(|prefix| port.strip_prefix(prefix));
     let port = u8::try_from(number(&fields()[1], prefix.unwrap_or(port))?).map_err(|error| error.to_string())?;
     let wrong = |bit: &str| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8");
     let number = |bit: &str| bit.parse().ok().filter(|number| (1..=8).contains(number)).ok_or_else(|| wrong(bit));
-    Ok(Spot { port, bit: bit.map(number).transpose()? })
+    Ok(Place { port, bit: bit.map(number).transpose()? })
 }
 
 /// The fields of DOUT STN=0 PN01=........
@@ -88,21 +86,21 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = typed::setting(text, "a port", "a value", "1.3=on")?;
-        let Spot { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, spot)?;
+        let (place, value) = typed::setting(text, "a port", "a value", "OUT1.3=on")?;
+        let Place { port, bit } = names::read(&[NameKind::Output], "OUT1.1", place, place_of)?;
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
             None => match fields()[2].read(value) {
-                Ok(Value::Mask(mask)) => mask,
+                Ok(field::Value::Mask(mask)) => mask,
                 _ => {
                     return Err(format!(
                         "'{value}' is not a valid port: eight of 0, 1 and . are expected, for the bits 8 to 1; \
-                         one bit is set by {port}.1=on"
+                         one bit is set by OUT{port}.1=on"
                     ));
                 }
             },
         };
-        Ok(Self { port, mask, is_named: spot(place).is_err() })
+        Ok(Self { port, mask, is_named: place_of(place).is_err() })
     }
 }
 
@@ -134,65 +132,91 @@ impl Set {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Outputs;
+    type Report = WrittenSignals;
     const ID: &'static str = "toyo.io.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Outputs, Failure> {
-        let station = self.station;
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenSignals, Failure> {
+        let Station { station } = self.station;
         if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
             return Err(Failure::usage("names are those of the controller's own ports, of station 0")
-                .hint("type port and bit, as in 1.3=on"));
+                .hint("type port and bit, as in OUT1.3=on"));
         }
         let orders = self.orders()?;
         let names = names::of(context.robot, context.screen);
-        let mut outputs = Vec::with_capacity(orders.len());
+        let mut written = Vec::new();
         for (done, order) in orders.iter().enumerate() {
-            let output = order.set(context.link, station).await;
-            let output = output.map(|output| output.labelled(names, station));
-            outputs.push(output.map_err(|failure| account(failure, &orders, done))?);
+            let port = order.set(context.link, station).await.map_err(|failure| account(failure, &orders, done))?;
+            written.extend(order.bits().map(|spot| port.of(spot, order, station, names)));
         }
-        Ok(Outputs { station, outputs })
+        Ok(WrittenSignals::new(written))
+    }
+}
+
+/// A port around an order for it, where it was read.
+struct Around {
+    old: Option<u8>,
+    now: Option<u8>,
+    /// What is said of bits that are not as they were set.
+    failure: Option<Failure>,
+}
+
+impl Around {
+    const UNREAD: Self = Self { old: None, now: None, failure: None };
+
+    fn of(&self, spot: Spot, order: &Assignment, station: u8, names: &Names) -> WrittenSignal {
+        let state = |byte: u8| IoValue::State(spot.is_on(byte));
+        let new = state(order.mask.bits);
+        let written = WrittenSignal::new(spot.item(station, names), self.old.map(state), new);
+        match (self.now.map(state), &self.failure) {
+            (Some(now), Some(failure)) if now != new => written.but(now, failure.clone()),
+            _ => written,
+        }
     }
 }
 
 impl Assignment {
+    /// The signals that it sets.
+    fn bits(&self) -> impl Iterator<Item = Spot> {
+        let Self { port, mask, .. } = *self;
+        let spots = (1..=8).map(move |bit| Spot { bank: OUTPUTS, port, bit });
+        spots.filter(move |spot| spot.is_on(mask.care))
+    }
+
     /// Sets it, and reads it back where that can be.
-    async fn set(&self, link: &mut Link, station: u8) -> Result<Output, Failure> {
+    async fn set(&self, link: &mut Link, station: u8) -> Result<Around, Failure> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
             link.ask(&order).await?;
-            return Ok(Output::new(self, None, None));
+            return Ok(Around::UNREAD);
         };
         let read = OUTPUTS.request(station, screen);
-        let own = |answer: &Record| ports_of(answer).into_iter().find(|port| port.port == Some(self.port));
-        let old = link.before(&read).await?.as_ref().and_then(own);
+        let own = |answer: &Record| ports_of(answer).into_iter().find(|port| port.number == self.port);
+        let old = link.before(&read).await?.as_ref().and_then(own).map(|port| port.byte);
         link.ask(&order).await?;
         if link.is_dry() {
             link.plan(&read, "the port as it is then");
-            return Ok(Output::new(self, None, None));
+            return Ok(Around::UNREAD);
         }
         let answer = read_back(link, &order, &read).await?;
-        let found = own(&answer);
-        let Some(found) = found else {
+        let Some(found) = own(&answer) else {
             let message =
                 format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
-        let mut output = Output::new(self, old.as_ref(), Some(&found));
-        if found.byte() & self.mask.care != self.mask.bits {
-            output.ok = false;
-            output.error = Some(
-                not_held(&order, &format!("{} reads {}", found.name, found.raw))
-                    .hint("a program that runs may set the same outputs; `toyo io out` tells how they are now"),
-            );
-        }
-        Ok(output)
+        let reads = format!("{} reads {:08b}", found.name, found.byte);
+        let failure = not_held(&order, &reads)
+            .hint("a program that runs may set the same outputs; `toyo io list --out` reads them");
+        Ok(Around { old, now: Some(found.byte), failure: Some(failure) })
     }
 
     /// As it is sent.
     fn order(&self, station: u8) -> Result<Request, Failure> {
-        let values = vec![Value::Number(station.into()), Value::Number(self.port.into()), Value::Mask(self.mask)];
+        let values = vec![
+            field::Value::Number(station.into()),
+            field::Value::Number(self.port.into()),
+            field::Value::Mask(self.mask),
+        ];
         Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))
     }
 }
@@ -221,7 +245,7 @@ impl Command for Direct {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        let values = vec![Value::Number(self.number.into())];
+        let values = vec![field::Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
         let words = format!("direct output F{}", self.number);
@@ -229,94 +253,10 @@ impl Command for Direct {
     }
 }
 
-/// What the controller accepted, and what it tells of it then.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Outputs {
-    /// 0 is the controller itself.
-    station: u8,
-    outputs: Vec<Output>,
-}
-
-/// Bits of a port that were set.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Output {
-    /// Whether the port reads as it was set, or cannot be read.
-    ok: bool,
-    /// `PN01`.
-    name: String,
-    port: u8,
-    /// As it was sent: bits 8 to 1, a dot for those left alone.
-    requested: String,
-    /// As the controller told it before; null where it was not told.
-    old: Old,
-    /// What `read` says.
-    new: Option<String>,
-    /// As the controller tells it behind the order; null for a port that it does not tell of.
-    read: Option<String>,
-    /// Bits that were switched on.
-    on: Vec<u8>,
-    /// Bits that were switched off.
-    off: Vec<u8>,
-    /// What people call the bits, bit 1 first; null where one has no name.
-    labels: [Option<String>; 8],
-    /// What is not as it was set.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<Failure>,
-}
-
-impl Output {
-    fn new(Assignment { port, mask, .. }: &Assignment, old: Option<&Port>, found: Option<&Port>) -> Self {
-        let read = found.map(|found| found.raw.clone());
-        Self {
-            ok: true,
-            name: name(*port),
-            port: *port,
-            requested: mask.to_string(),
-            old: Old::read(old.map(|old| old.raw.as_str())),
-            new: read.clone(),
-            read,
-            on: numbers(mask.bits),
-            off: numbers(mask.care & !mask.bits),
-            labels: Default::default(),
-            error: None,
-        }
-    }
-
-    /// With the names of the bits that were set.
-    fn labelled(mut self, names: &Names, station: u8) -> Self {
-        for bit in self.on.iter().chain(&self.off).copied().filter(|_| station == 0) {
-            if let Some(label) = self.labels.get_mut(usize::from(bit) - 1) {
-                *label = names::label(names, NameKind::Output, &names_of::output(self.port, bit));
-            }
-        }
-        self
-    }
-}
-
-impl Report for Outputs {
-    fn view(&self) -> View {
-        let mut table = Table::new(&["port", "8 to 1", "on", "off", "label", "read back"], "no ports");
-        for output in &self.outputs {
-            let tone = if output.ok { Tone::Plain } else { Tone::Bad };
-            table.row([
-                output.name.as_str().into(),
-                output.requested.as_str().into(),
-                listed(&output.on).into(),
-                listed(&output.off).into(),
-                Cell::maybe(label_of(&output.labels)),
-                Cell::maybe(output.read.as_deref()).tone(tone),
-            ]);
-        }
-        View::table(table.without_blank("label"))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::failure(self.outputs.len(), self.outputs.iter().map(|output| output.error.as_ref()))
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use super::*;
     use crate::command::toyo::testing::{Bench, Fault, all_blocks, blocks, objection};
 
@@ -340,13 +280,13 @@ mod tests {
     #[test]
     fn mistakes_are_told_before_anything_is_sent() {
         for (words, why) in [
-            (["io", "set", "1"], "as in 1.3=on"),
+            (["io", "set", "1"], "as in OUT1.3=on"),
             (["io", "set", "1.9=on"], "bits 1 to 8"),
             (["io", "set", "1.0=on"], "bits 1 to 8"),
             (["io", "set", "1.1=yes"], "on and off"),
             (["io", "set", "100=........"], "1 to 99"),
             (["io", "set", "1=.1"], "eight of 0, 1 and ."),
-            (["io", "set", "1=on"], "1.1=on"),
+            (["io", "set", "1=on"], "OUT1.1=on"),
             (["io", "direct", "5"], "1..=4"),
         ] {
             assert!(objection(&words).contains(why), "{words:?}: {}", objection(&words));
@@ -361,16 +301,16 @@ mod tests {
         let message = |orders: &[Assignment], done| account(Failure::local("no"), orders, done).message;
         assert_eq!(message(&orders[..1], 0), "no");
         assert_eq!(message(&orders, 1), "PN02: no; set before that: PN01; not set: PN03");
-        let output = Output::new(&orders[0], None, None);
-        assert_eq!((output.on, output.off), (vec![1], vec![2]));
+        let bits: Vec<u8> = orders[0].bits().map(|spot| spot.bit).collect();
+        assert_eq!(bits, [1, 2]);
     }
 
     #[test]
     fn what_was_set_is_read_back() {
-        let set = Bench::new("sim:").data(&["io", "set", "1.3=on", "18.1=on"]);
-        let outputs = &set["outputs"];
-        assert_eq!((&outputs[0]["requested"], &outputs[0]["read"]), (&".....1..".into(), &"00000100".into()), "{set}");
-        assert_eq!((&outputs[1]["ok"], &outputs[1]["read"]), (&true.into(), &"00000001".into()), "{set}");
+        let set = Bench::new("sim:").data(&["io", "set", "OUT1.3=on", "18.1=on"]);
+        let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
+        assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");
+        assert_eq!(keys(&set["items"][1]), [Value::from("OUT18.1"), false.into(), true.into()], "{set}");
         // A bit that was left alone may be anything.
         let odd = |block: &str, _| match block {
             "@MOUT SNO=0 GN=1" => {
@@ -379,13 +319,16 @@ mod tests {
             _ => Fault::None,
         };
         let (set, failure) = Bench::with_faults("", odd).0.run(&["io", "set", "1.3=on"]).unwrap();
-        let output = &set["outputs"][0];
-        assert_eq!((&output["ok"], &output["read"]), (&false.into(), &"10000000".into()), "{set}");
+        let item = &set["items"][0];
+        assert_eq!((&item["ok"], &item["value"], &item["new"]), (&false.into(), &false.into(), &true.into()), "{set}");
         let failure = failure.unwrap();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000");
+        assert_eq!(
+            failure.message,
+            "OUT1.3: the controller accepted @DOUT STN=0 PN01=.....1.., but PN01 reads 10000000"
+        );
         let (set, failure) = Bench::with_faults("", odd).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap();
-        assert_eq!((&set["outputs"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
+        assert_eq!((&set["items"][1]["ok"], failure.unwrap().kind), (&true.into(), Kind::Mixed));
         let silent =
             |block: &str, count| if block.starts_with("@MOUT") && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();

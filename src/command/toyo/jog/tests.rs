@@ -274,7 +274,7 @@ fn a_letter_is_the_axis_that_the_machine_calls_so() {
     let position = bench.data(&["position"]);
     let axes = position["positions"][0]["joints"].as_array().unwrap().iter().map(|joint| joint["axis"].clone());
     assert_eq!(axes.collect::<serde_json::Value>(), serde_json::json!(["X", "Z", "Y", "R"]));
-    assert_eq!(bench.data(&["point", "get", "1"])["axes"][1], "Z");
+    assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["joints"][1]["axis"], "Z");
 
     // Two axes of one letter: only the number tells them apart.
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{OTHER_TASK, OfTask, items, read_all};
 use crate::command::frame::items::verdict;
+use crate::command::frame::names;
 use crate::command::frame::sheet::{self, SheetOptions, SheetTarget};
 use crate::command::robot::item::{Item, Items};
 use crate::command::robot::position::Position;
@@ -53,7 +54,7 @@ impl Command for List {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Listing, Failure> {
-        let Context { link, screen, several, .. } = context;
+        let Context { robot, link, screen, several, .. } = context;
         let (from, to) = (self.from.unwrap_or(1), self.to.unwrap_or(999));
         if to < from {
             return Err(
@@ -68,7 +69,7 @@ impl Command for List {
         };
         let letters = link.letters().await?;
         let (task, answers) = read_all(link, screen, self.task, &points).await?;
-        let items = items(task, &points, &answers, letters);
+        let items = items(task, &points, &answers, letters, names::of(robot, screen));
         let Some(target) = target else { return Ok(Listing::Points(items)) };
         let setting = |record: &Record| Setting { parameter: points::table(), values: record.values().to_vec() };
         let settings: Vec<Setting> =

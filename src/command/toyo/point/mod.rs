@@ -13,18 +13,21 @@ use serde::Serialize;
 
 use super::items::{Answers, read_each};
 use super::link::{self, Link};
-use super::numbers::Numbers;
+use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
 use super::rows::Listed;
 use super::tasks;
 use super::values::NOT_IN_MANUAL;
 use crate::client::toyo::Letters;
 use crate::command::commands;
+use crate::command::frame::names;
 use crate::command::robot::item::{Columns, Item, Items};
 use crate::command::robot::position::Position;
+use crate::controller::names::{Kind, Names};
 use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Field;
 use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -68,9 +71,12 @@ fn item(task: u8, point: i32, answer: Result<&Record, Failure>, letters: Letters
 }
 
 /// What was answered for these points.
-fn items(task: u8, points: &[i32], answers: &Answers, letters: Letters) -> Items<Position, OfTask> {
-    let items = points.iter().zip(answers);
-    let items = items.map(|(point, answer)| item(task, *point, answer.as_ref().map_err(Clone::clone), letters));
+fn items(task: u8, points: &[i32], answers: &Answers, letters: Letters, names: &Names) -> Items<Position, OfTask> {
+    let items = points.iter().zip(answers).map(|(point, answer)| {
+        let address = names_of::address_of(Kind::Point, *point).unwrap_or_default();
+        let label = names::label(names, Kind::Point, &address);
+        item(task, *point, answer.as_ref().map_err(Clone::clone), letters).labelled(label)
+    });
     Items::new(columns(letters), items.collect())
 }
 
@@ -87,7 +93,12 @@ fn field() -> Field {
 
 /// Points on a command line.
 fn parse_points(text: &str) -> Result<Numbers, String> {
-    Numbers::parse(&field(), text)
+    named(Kind::Point, text, |text| Numbers::parse(&field(), text))
+}
+
+/// A point on a command line: its number, or its name.
+pub fn parse_point(text: &str) -> Result<i32, String> {
+    named(Kind::Point, text, |text| number(&field(), text))
 }
 
 /// Reads points of a task, or of the current one, one after the other; says which task that is. A dry run notes them

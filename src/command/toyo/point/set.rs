@@ -6,17 +6,18 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{OTHER_TASK, OfTask, field, item};
+use super::{OTHER_TASK, OfTask, item, parse_point};
 use crate::client::toyo::Letters;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::teach::printed_position;
 use crate::command::robot::item::Written;
 use crate::command::robot::position::Position;
+use crate::command::toyo::complete;
 use crate::command::toyo::eeprom::Cells;
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
-use crate::command::toyo::numbers::{number, runs};
+use crate::command::toyo::numbers::runs;
 use crate::command::toyo::position::Coordinates;
 use crate::command::toyo::stores::{self, CellState, Store, StoreResult, StoreTask, parameter_cell, parameter_sketch};
 use crate::command::toyo::values::Changes;
@@ -48,8 +49,8 @@ use crate::output::view::View;
     )
 )]
 pub struct Set {
-    /// Row of the coordinate table, 1 to 999
-    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
+    /// Row of the coordinate table, 1 to 999, or a name
+    #[arg(required_unless_present = "from", conflicts_with = "from", value_name = "POINT", value_parser = parse_point, add = complete::POINT)]
     point: Option<i32>,
     /// X, Y, Z and R in mm, or some of them by name, such as z=12.5, which keeps the others; names are the letters of the
     /// teach pendant, or ax1 to ax4; or @FILE with what `position --json` printed, @- for stdin, or here

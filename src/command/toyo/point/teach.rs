@@ -3,11 +3,11 @@
 use clap::Args;
 
 use super::set::{WORK, store};
-use super::{OTHER_TASK, field};
+use super::{OTHER_TASK, parse_point};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::teach::Taught;
+use crate::command::toyo::complete;
 use crate::command::toyo::link::{self, Link, Toyo};
-use crate::command::toyo::numbers::number;
 use crate::command::toyo::position::{Coordinates, UNIT};
 use crate::command::toyo::stores::{self, StoreResult, parameter_sketch};
 use crate::command::toyo::tasks;
@@ -31,8 +31,8 @@ use crate::gate::{Confirmation, outdated};
     )
 )]
 pub struct Teach {
-    /// Row of the coordinate table, 1 to 999
-    #[arg(value_name = "POINT", value_parser = |text: &str| number(&field(), text))]
+    /// Row of the coordinate table, 1 to 999, or a name
+    #[arg(value_name = "POINT", value_parser = parse_point, add = complete::POINT)]
     point: i32,
     /// Task, 1 to 4, instead of the current one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]

@@ -137,9 +137,9 @@ fn a_silent_controller_had_nothing_written() {
 fn a_task_that_was_chosen_is_put_back() {
     let mut bench = Bench::new("sim:");
     bench.data(&["task", "set", "3"]);
-    assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["task"], 2);
+    assert_eq!(bench.data(&["point", "set", "1", "1", "2", "3", "4", "--task", "2"])["items"][0]["task"], 2);
     assert_eq!(bench.data(&["point", "get", "1", "--task", "2"])["items"][0]["value"]["x_mm"], 1.0);
-    assert_eq!(bench.data(&["point", "get", "1"])["task"], 3);
+    assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["task"], 3);
 }
 
 /// Axes 2 and 3 have the other's letters, as on a machine whose second axis goes up and down.

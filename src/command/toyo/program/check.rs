@@ -6,10 +6,12 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::text::Remark;
+use super::text::{self, Remark};
 use crate::command::toyo::files;
 use crate::command::{OfflineCommand, Report};
-use crate::controller::toyo::program::{self, MOST_STEPS};
+use crate::controller::names::{Name, Names};
+use crate::controller::toyo::bulk::points;
+use crate::controller::toyo::program::{self, Checked, Known, MOST_STEPS};
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::output::view::{Cell, Section, Tone, View};
@@ -19,7 +21,8 @@ use crate::output::view::{Cell, Section, Tone, View};
 #[command(after_help = "The exit code is 0 if every file is a program, 8 if one is not, and 1 if one cannot be read. \
                         `program put` and `sim run` check as well; a faulty file is a wrong argument to them: 2.\n\n\
                         The form of a file: a step a line, # or ; begin a comment, labels stand for tags, numbers may \
-                        be short:\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
+                        be short. A controller would stop at what is warned of: a RET without a call, a call that leads \
+                        back to itself, half an arc, a point that is not taught.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
                         JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END")]
 pub struct Check {
     /// Program files; - is stdin
@@ -28,6 +31,12 @@ pub struct Check {
     /// Steps that the task has room for
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
+    /// Points that are taught (CSV, as `point list --csv` writes them): a move to another one is told
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+    /// A name that the files have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)
+    #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
+    name: Vec<Name>,
     /// Warnings are errors
     #[arg(long)]
     strict: bool,
@@ -39,7 +48,18 @@ impl OfflineCommand for Check {
 
     fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
         let room = usize::from(self.room).min(MOST_STEPS);
-        let files = self.files.iter().map(|path| Ok(FileVerdict::new(&files::shown(path), &files::read(path)?, room)));
+        let names = Names::new(self.name.clone());
+        let points = self.points.as_ref().map(|path| {
+            let name = files::shown(path);
+            points::numbers(&files::read(path)?).map_err(|errors| files::faulty(&name, &errors))
+        });
+        let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
+        let verdict = |path: &PathBuf| {
+            let bytes = files::read(path)?;
+            let checked = program::check_known(&bytes, room, None, &names, &known);
+            Ok(FileVerdict::new(&files::shown(path), &bytes, &checked))
+        };
+        let files = self.files.iter().map(verdict);
         Ok(Verdict { files: files.collect::<Result<_, Failure>>()?, strict: self.strict })
     }
 }
@@ -97,8 +117,7 @@ impl Labelled {
 }
 
 impl FileVerdict {
-    fn new(file: &str, bytes: &[u8], room: usize) -> Self {
-        let checked = program::check(bytes, room);
+    fn new(file: &str, bytes: &[u8], checked: &Checked) -> Self {
         let text = String::from_utf8_lossy(bytes);
         let lines: Vec<&str> = text.lines().collect();
         let findings: Vec<Remark> = checked.findings.iter().map(|finding| Remark::new(finding, &lines)).collect();
@@ -165,7 +184,9 @@ mod tests {
     use crate::output::render;
 
     fn verdict(texts: &[(&str, &str)], strict: bool) -> Verdict {
-        let files = texts.iter().map(|(name, text)| FileVerdict::new(name, text.as_bytes(), MOST_STEPS));
+        let files = texts
+            .iter()
+            .map(|(name, text)| FileVerdict::new(name, text.as_bytes(), &program::check(text.as_bytes(), MOST_STEPS)));
         Verdict { files: files.collect(), strict }
     }
 

@@ -19,7 +19,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::text::Encoding;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{Listing, Rows, Style, listing_with};
+use crate::controller::toyo::program::{Rows, Style, listing_with};
 use crate::failure::Failure;
 use crate::gate::Confirmation;
 use crate::output::view::View;
@@ -58,10 +58,13 @@ impl Command for Edit {
             return planned.map(|_| EditedProgram { changed: false, hunks: Vec::new(), stored: None });
         }
         let outcome = get.read(link, screen).await;
-        let (_, _, answers): (u8, u16, Answers) = tasks::done(link, outcome).await?;
+        let (task, _, answers): (u8, u16, Answers) = tasks::done(link, outcome).await?;
         let read: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
         let style = Style { first: 1, is_whole: true, is_numbered: false };
-        let Listing { text, .. } = listing_with(&read, &BTreeMap::new(), style, &Rows::new());
+        let text = match link.sources.get(task).filter(|source| source.is(&read)) {
+            Some(source) => source.text,
+            None => listing_with(&read, &BTreeMap::new(), style, &Rows::new()).text,
+        };
         let mut edited = Edited::new("program.toyo", text.as_bytes(), *screen)?;
         if !edited.is_changed()? {
             return Ok(EditedProgram { changed: false, hunks: Vec::new(), stored: None });

@@ -6,16 +6,18 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::kept::Source;
 use super::steps;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::local::Target;
+use crate::command::frame::names;
 use crate::command::toyo::items::{self, Answers, Item, in_a_word};
 use crate::command::toyo::link::{Link, Toyo, misuse};
 use crate::command::toyo::tasks;
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{self, Rows, Style, Unread, listing_with, not_read};
+use crate::controller::toyo::program::{self, Rows, Style, Unread, listing_named, not_read};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::{Op, Parameter};
 use crate::failure::{Failure, Kind};
@@ -28,7 +30,10 @@ use crate::output::view::View;
 #[derive(Debug, Args)]
 #[command(
     after_help = "All steps are read, as subroutines may stand behind END; NOPs up to the end of the task are left out of the text. A step takes about 35 ms at 9600 baud. To read another task than the current one, that task is \
-                        made the current one for a while, which is a change: a read-only robot refuses it.\n\nWhere the controller \
+                        made the current one for a while, which is a change: a read-only robot refuses it.\n\nA controller \
+                        keeps neither labels nor comments. Where it holds the steps that `program put` of this machine \
+                        wrote last, the text that was put is given; where it holds others, a note says so and the steps \
+                        are given.\n\nWhere the controller \
                         refuses a step, the others are given, and ? stands in its place, which no program has: that text \
                         is refused wherever a program is read, and no file is written."
 )]
@@ -54,6 +59,9 @@ pub struct Get {
     /// Say in comments what the points, speeds and other table rows are that the program names
     #[arg(long)]
     explain: bool,
+    /// Show the steps as the controller has them, without labels and comments of the text that was put
+    #[arg(long)]
+    plain: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
@@ -69,7 +77,7 @@ impl Command for Get {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Got, Failure> {
-        let Context { link, screen, several, .. } = context;
+        let Context { robot, link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
                 .hint("name the lower step with --from"));
@@ -90,7 +98,17 @@ impl Command for Get {
         let last = usize::from(self.from) + read.len() - 1;
         let is_whole = self.from == 1 && last == usize::from(room);
         let style = Style { first: self.from.into(), is_whole, is_numbered: self.numbers };
-        let program::Listing { text, .. } = listing_with(&read, &unread, style, &rows);
+        let source = link.sources.get(task).filter(|_| is_whole && unread.is_empty() && !self.changes_text());
+        let differences = source.as_ref().map_or(0, |source| source.differences(&read));
+        let (text, is_source) = match source {
+            Some(source) if differences == 0 => (source.text, true),
+            source => {
+                if let Some(source) = source {
+                    screen.note(&other_program(&source, differences));
+                }
+                (listing_named(&read, &unread, style, &rows, names::of(robot, screen)).text, false)
+            }
+        };
         let (file, not_written) = match target {
             Some(target) if unread.is_empty() => {
                 let mut draft = target.begin()?;
@@ -114,6 +132,7 @@ impl Command for Get {
             used_steps: program::used(&read),
             tags: program::tags(&read, self.from.into()).into_iter().map(|(tag, step)| Tag { tag, step }).collect(),
             steps: (self.from..).zip(answers).take(shown).map(step).collect(),
+            is_source,
             text: file.is_none().then_some(text),
             file,
             read_steps: read.len(),
@@ -123,9 +142,24 @@ impl Command for Get {
 }
 
 impl Get {
+    /// Whether the text is to be another one than that which was put.
+    fn changes_text(&self) -> bool {
+        self.plain || self.numbers || self.explain
+    }
+
     /// All steps of a task, or of the current one.
     pub fn whole(task: Option<u8>) -> Self {
-        Self { file: None, task, from: 1, to: None, until_end: false, numbers: false, explain: false, force: false }
+        Self {
+            file: None,
+            task,
+            from: 1,
+            to: None,
+            until_end: false,
+            numbers: false,
+            explain: false,
+            plain: false,
+            force: false,
+        }
     }
 
     /// Reads the steps: of which task, how many it has room for, and what each is.
@@ -145,6 +179,17 @@ impl Get {
         link.then("the steps behind it are read, one after the other");
         Err(unknown())
     }
+}
+
+/// That the text that was put last is not that of the program.
+fn other_program(source: &Source, differences: usize) -> String {
+    let Source { file, put_at, .. } = source;
+    let steps = if differences == 1 { "1 step differs".to_owned() } else { format!("{differences} steps differ") };
+    format!(
+        "note: the controller does not hold the text of {} any more, put on {put_at}: {steps}. These are its steps, without \
+         labels and comments",
+        escape::line(file)
+    )
 }
 
 /// Why steps were not read.
@@ -185,6 +230,8 @@ pub struct Got {
     tags: Vec<Tag>,
     /// Each step; without the NOPs at the end of the task.
     steps: Vec<Item<Step>>,
+    /// Whether the text is the one that was put, with its labels and comments.
+    is_source: bool,
     /// The text as a file has it, with `?` for what was not read; null if it went to a file.
     text: Option<String>,
     /// The file that was written; none is where a step was not read.

@@ -3,9 +3,11 @@
 mod check;
 mod copy;
 mod delete;
+mod diff;
 mod edit;
 mod get;
 mod insert;
+pub mod kept;
 mod list;
 mod put;
 mod search;
@@ -26,6 +28,8 @@ commands! {
         Get(get::Get),
         /// Write a program from a file, after checking it whole
         Put(put::Put),
+        /// Compare a program in the controller with a file
+        Diff(diff::Diff),
         /// Edit a program in your editor, and write it back
         Edit(edit::Edit),
         /// Insert a step; those behind it move on

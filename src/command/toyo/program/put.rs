@@ -1,6 +1,7 @@
 //! `toyo program put`.
 
 use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -14,6 +15,7 @@ use super::text;
 use crate::command::frame::authority::Authority;
 use crate::command::frame::dry_run::unknown;
 use crate::command::frame::interrupt::interruptible;
+use crate::command::frame::names;
 use crate::command::toyo::eeprom::{Cells, THERE};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
@@ -21,8 +23,9 @@ use crate::command::toyo::stores::{Replaced, overwriting};
 use crate::command::toyo::{files, tasks};
 use crate::command::{Command, Context, Report};
 use crate::controller::Risk;
+use crate::controller::names::Names;
 use crate::controller::toyo::layout::Record;
-use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program};
+use crate::controller::toyo::program::{self, MOST_STEPS, Part, Program, check_named};
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
@@ -47,6 +50,9 @@ pub struct Put {
     #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
           value_parser = clap::value_parser!(u16).range(1..=5000))]
     resume: Option<u16>,
+    /// Read every step of the task, also where armctl wrote the program and left NOP behind it
+    #[arg(long, conflicts_with_all = ["at", "keep_rest"])]
+    read_all: bool,
     /// What the controller has to hold for it to be written.
     #[arg(skip)]
     expected: Option<Vec<Record>>,
@@ -54,7 +60,11 @@ pub struct Put {
 
 const HELP: &str = "The whole file is checked before anything is sent. It is the program of the task: steps behind its \
                     last one become NOP, as a tag in what is left of an older program would be there twice. With --at \
-                    it is a part of the program, and the other steps stay.";
+                    it is a part of the program, and the other steps stay.\n\nThe steps of the file are read, and \
+                    those behind it; only what differs is written. Where the controller holds the program that armctl \
+                    put there last, the steps behind it are known to be NOP and are not read; --read-all reads them. \
+                    The text is kept on this machine, so that `program get` shows labels and comments again.\n\nNames \
+                    of points, counters and timers (robots.toml) stand for their numbers: PT=pick.";
 
 /// A step that is to be written.
 struct Edit {
@@ -73,15 +83,14 @@ impl Command for Put {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { robot, link, screen, authority, .. } = context;
         let name = self.name();
         let bytes = files::read(&self.file)?;
-        let checked = match self.at {
-            None => program::check(&bytes, MOST_STEPS),
-            // Which tags are around it is known later.
-            Some(at) => program::check_part(&bytes, MOST_STEPS + 1 - usize::from(at), &part(at, None)),
-        };
-        let program = text::program(&name, checked, screen)?;
+        let names = names::of(robot, screen);
+        // Which tags are around a part is known later.
+        let around = self.at.map(|at| part(at, None));
+        let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
+        let program = text::program(&name, check_named(&bytes, room, around.as_ref(), names), screen)?;
         let first = self.at.unwrap_or(1);
         let last = last_of(first, &program);
         let from = self.resume.unwrap_or(first).max(first);
@@ -92,7 +101,7 @@ impl Command for Put {
         if link.is_dry() {
             return self.dry_run(link, &program, from).await;
         }
-        let outcome = self.store((link, screen, &authority), &bytes, from, last).await;
+        let outcome = self.store((link, screen, &authority), (&bytes, names), &program, from..=last).await;
         tasks::done(link, outcome).await
     }
 }
@@ -100,7 +109,7 @@ impl Command for Put {
 impl Put {
     /// A program that was edited, in the place of what it was.
     pub fn edited(file: PathBuf, task: Option<u8>, expected: Vec<Record>) -> Self {
-        Self { file, task, at: None, keep_rest: false, resume: None, expected: Some(expected) }
+        Self { file, task, at: None, keep_rest: false, resume: None, read_all: true, expected: Some(expected) }
     }
 
     /// What the text is called in messages.
@@ -111,24 +120,31 @@ impl Put {
     async fn store(
         &self,
         (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
-        bytes: &[u8],
-        from: u16,
-        last: u16,
+        (bytes, names): (&[u8], &Names),
+        program: &Program,
+        steps: RangeInclusive<u16>,
     ) -> Result<Stored, Failure> {
         let name = self.name();
         let first = self.at.unwrap_or(1);
+        let (from, last) = (*steps.start(), *steps.end());
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
         let program = match self.at {
-            None => text::program(&name, program::check(bytes, room.into()), &screen.silenced())?,
+            None => {
+                let checked = check_named(bytes, room.into(), None, names);
+                text::program(&name, checked, &screen.silenced())?
+            }
+            // Without a tag, those around it do not matter.
+            Some(_) if !names_tags(program) => program.clone(),
             Some(at) => {
                 let tags = tags_around(link, screen, first, last, room).await?;
-                let checked = program::check_part(bytes, usize::from(room - at) + 1, &part(at, Some(tags)));
+                let checked = check_named(bytes, usize::from(room - at) + 1, Some(&part(at, Some(tags))), names);
                 text::program(&name, checked, &screen.silenced())?
             }
         };
         let end = if self.at.is_some() || self.keep_rest { last } else { room };
-        let found = steps::read_all(link, screen, from..=end).await?;
+        let found = self.found(link, screen, task, (from, last, end)).await?;
+        let end = from.saturating_add(u16::try_from(found.len()).unwrap_or(u16::MAX)).saturating_sub(1).max(last);
         if self.expected.as_ref().is_some_and(|expected| *expected != found) {
             return Err(Failure::new(Kind::Rejected, "the program was changed on the controller meanwhile")
                 .hint("edit it again, and put both together"));
@@ -162,6 +178,9 @@ impl Put {
             }
         }
         let cleared = changes.iter().filter(|change| change.step > last).count();
+        if self.at.is_none() && !self.keep_rest && from == 1 {
+            self.keep(link, screen, (task, room), bytes, &program);
+        }
         cells.cells_unchanged = u32::try_from(found.len() - changes.len()).unwrap_or(u32::MAX);
         Ok(Stored {
             file: name,
@@ -169,9 +188,42 @@ impl Put {
             first_step: first,
             last_step: last,
             cleared_steps: cleared,
+            unread_steps: if self.at.is_some() || self.keep_rest { 0 } else { usize::from(room - end) },
             labels: Labelled::of(&program),
             cells,
         })
+    }
+
+    /// The steps that are there, from the first that is compared on. Those behind the program are left out where the
+    /// controller holds what was put there last, and nothing but NOP was behind it.
+    async fn found(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        task: u8,
+        (from, last, end): (u16, u16, u16),
+    ) -> Result<Vec<Record>, Failure> {
+        let whole = from == 1 && end > last && !self.read_all;
+        let source = link.sources.get(task).filter(|source| whole && source.knows_rest(end));
+        let known = source.and_then(|source| Some((u16::try_from(source.len()).ok()?.max(last), source)));
+        let Some((known, source)) = known.filter(|(known, _)| *known < end) else {
+            return steps::read_all(link, screen, from..=end).await;
+        };
+        let mut found = steps::read_all(link, screen, from..=known).await?;
+        if !source.is(&found) {
+            found.extend(steps::read_all(link, screen, known + 1..=end).await?);
+        }
+        Ok(found)
+    }
+
+    /// Keeps the text, for a `get` to come.
+    fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
+        let Ok(text) = std::str::from_utf8(bytes) else { return };
+        let steps: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
+        link.sources.trust();
+        if let Err(error) = link.sources.keep(task, (&self.name(), text), &steps, room) {
+            screen.detail(1, &format!("the text of the program was not kept: {error}"));
+        }
     }
 
     async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored, Failure> {
@@ -179,7 +231,7 @@ impl Put {
         let last = last_of(first, program);
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "whether there is room");
-        if let Some(at) = self.at {
+        if let Some(at) = self.at.filter(|_| names_tags(program)) {
             let around = (1..at).chain(last.saturating_add(1)..=5000).next();
             if let Some(step) = around {
                 link.plan(&steps::read_request(step), "and so on, the steps around: their tags");
@@ -215,6 +267,12 @@ fn replacing(edits: &[Edit], task: u8) -> Change {
         .map(|Edit { step, instruction, found }| [format!("step {step}"), found.written(), instruction.written()])
         .collect();
     overwriting(["a step", "steps"], &lost, &format!(" of task {task}"))
+}
+
+/// Whether a step defines a tag or names one.
+fn names_tags(program: &Program) -> bool {
+    let is_tag = |name: &str| matches!(name, "tag" | "then" | "else");
+    program.steps.iter().any(|step| step.record.pairs().any(|(field, _)| is_tag(field.name)))
 }
 
 fn last_of(first: u16, program: &Program) -> u16 {
@@ -261,6 +319,8 @@ pub struct Stored {
     last_step: u16,
     /// Steps behind it that became NOP.
     cleared_steps: usize,
+    /// Steps behind those that were not read: armctl put the program that was there, and left NOP behind it.
+    unread_steps: usize,
     /// Labels with the tags they stand for.
     labels: Vec<Labelled>,
     #[serde(flatten)]
@@ -269,7 +329,7 @@ pub struct Stored {
 
 impl Report for Stored {
     fn view(&self) -> View {
-        let Self { file, task, first_step, last_step, cleared_steps, labels, cells } = self;
+        let Self { file, task, first_step, last_step, cleared_steps, unread_steps, labels, cells } = self;
         let mut fields = vec![
             ("file", file.as_str().into()),
             ("task", (*task).into()),
@@ -277,6 +337,9 @@ impl Report for Stored {
             ("cleared behind", (*cleared_steps).into()),
             ("result", cells.in_words().into()),
         ];
+        if *unread_steps > 0 {
+            fields.push(("not read", format!("{unread_steps} steps behind, NOP since the last put").into()));
+        }
         fields.extend(labels.iter().map(|label| ("label", label.in_a_line().into())));
         View { sections: vec![Section::Fields(fields)] }
     }

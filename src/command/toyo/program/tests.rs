@@ -68,7 +68,7 @@ fn the_sample_session_of_the_manual_ends_at_its_place_with_its_output_on() {
     let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
     desk.put(SAMPLE, &[]).unwrap();
     desk.bench.data(&["home"]);
-    let ran = desk.bench.data(&["run", "sequential", "1"]);
+    let ran = desk.bench.data(&["run", "sequential", "1", "--wait"]);
     assert_eq!(ran["position"]["text"], "x=100.00 y=20.00 z=0.00 r=0.00");
     let out = desk.bench.data(&["raw", "@MOUT SNO=0 GN=1"]);
     assert!(out["answer"].as_str().unwrap().contains("PN01=00000001"), "{out}");

@@ -4,10 +4,19 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::command::toyo::files;
+use crate::controller::names::Name;
 use crate::controller::toyo::program::{Checked, Finding, Program, Severity};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::{Cell, Tone};
+use crate::settings::inventory;
+use crate::settings::target::Family;
+
+/// A name on a command line that takes no robot: `pick=PT1`.
+pub fn name(text: &str) -> Result<Name, String> {
+    let (name, address) = text.split_once('=').ok_or("write a name and what it stands for, such as pick=PT1")?;
+    inventory::named(Family::Toyo, name, address).map_err(|failure| failure.message)
+}
 
 /// The program in a text that was checked; warnings go to stderr, errors are a failure.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {

@@ -11,9 +11,10 @@ use crate::command::toyo::files;
 use crate::command::toyo::point::AXES;
 use crate::command::toyo::program::text;
 use crate::controller::findings::Finding;
+use crate::controller::names::{Name, Names};
 use crate::controller::toyo::bulk::{self, Placed, Setting};
 use crate::controller::toyo::field::Value;
-use crate::controller::toyo::program::{MOST_STEPS, check};
+use crate::controller::toyo::program::{MOST_STEPS, check_named};
 use crate::controller::toyo::simulator::{Simulator, Start, What};
 use crate::failure::Failure;
 use crate::output::Screen;
@@ -48,6 +49,9 @@ pub struct Run {
     /// (repeatable)
     #[arg(long, value_name = "EVENT", value_parser = input)]
     input: Vec<Input>,
+    /// A name that the programs have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)
+    #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
+    name: Vec<Name>,
     /// Step to start at
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
@@ -120,13 +124,14 @@ impl OfflineCommand for Run {
     const ID: &'static str = "toyo.sim.run";
 
     fn run(&self, screen: &Screen) -> Result<Trace, Failure> {
-        let mut sources = vec![source(screen, 1, &self.file)?];
+        let names = Names::new(self.name.clone());
+        let mut sources = vec![source(screen, &names, 1, &self.file)?];
         for (task, file) in &self.task {
             if sources.iter().any(|source| source.task == *task) {
                 return Err(Failure::usage(format!("--task {task}= is there twice"))
                     .hint("give every task one file; task 1 is the one without --task"));
             }
-            sources.push(source(screen, *task, file)?);
+            sources.push(source(screen, &names, *task, file)?);
         }
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
@@ -274,8 +279,12 @@ fn place(state: &mut toml::Table, task: usize, point: &Setting) {
 }
 
 /// The program in a file.
-fn source(screen: &Screen, task: usize, file: &Path) -> Result<Source, Failure> {
+fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
     let name = files::shown(file);
     let bytes = files::read(file)?;
-    Ok(Source { task, program: text::program(&name, check(&bytes, MOST_STEPS), screen)?, file: name })
+    Ok(Source {
+        task,
+        program: text::program(&name, check_named(&bytes, MOST_STEPS, None, names), screen)?,
+        file: name,
+    })
 }

@@ -3,36 +3,31 @@
 use std::collections::HashSet;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::parts::{Parts, read_in_parts};
-use super::signal::{self, Signals};
-use super::{GroupState, SignalState, group_table, signal_table};
-use crate::command::frame::items;
-use crate::command::frame::items::ItemError;
+use super::{group_item, item, signal};
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
+use crate::command::robot::io::{IoRow, IoValue, Signals, WATCHED};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{parse_numbers, plan_io_reads};
 use crate::failure::Failure;
-use crate::output::view::View;
 
 /// Signals to read.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight of group \
-                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them. Names are those of `yerc names list`."
+                        2001. Numbers that end in 8 or 9 do not exist; a range passes over them. Names are those of `armctl names list`."
 )]
 pub struct Get {
     /// Such as 20010, #20010 or 20010..20027, or a name
-    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = Signals::parse,
+    #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = signal::Signals::parse,
         add = complete::SIGNAL)]
-    signals: Vec<Signals>,
+    signals: Vec<signal::Signals>,
     /// Whole groups of eight, such as 2001 or 2001..2010 (repeatable)
     #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
     groups: Vec<Groups>,
@@ -49,10 +44,10 @@ impl Groups {
 
 impl Command for Get {
     type Family = Yerc;
-    type Report = States;
+    type Report = Signals;
     const ID: &'static str = "yerc.io.get";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
         let Context { link, robot, screen, .. } = context;
         let names = names::of(robot, screen);
         let signals: Vec<Signal> = once(self.signals.iter().flat_map(|signals| signals.0.iter().copied()));
@@ -65,57 +60,22 @@ impl Command for Get {
         let byte = |group| Some(bytes.get(&group)?.clone().map_err(Failure::from));
         let signals = signals.into_iter().filter_map(|signal| {
             let on = byte(signal.group())?.map(|byte| signal.is_on(byte));
-            Some(SignalState::new(model, signal, names, on))
+            Some(item(model, signal, names).map(|item| IoRow::state(item, on)))
         });
-        let groups = groups.into_iter().filter_map(|group| Some(GroupState::new(model, group, byte(group)?)));
-        let signals = signals.collect::<Result<_, _>>()?;
-        let report = States { signals, groups: groups.collect::<Result<_, _>>()? };
-        items::nothing(report.asked(), report.errors())?;
-        Ok(report)
+        let groups = groups.into_iter().filter_map(|group| {
+            let value = byte(group)?.map(|byte| IoValue::Number(byte.into()));
+            Some(group_item(model, group).map(|item| IoRow::new(item, value)))
+        });
+        Signals::new(signals.chain(groups).collect::<Result<_, _>>()?)
     }
 }
 
 impl Watchable for Get {
     const WATCH: &'static str = "yerc.io.watch";
-    const WATCHED: Watched =
-        Watched { list: "signals", name: "name", prefix: "", label: "class", value: Some("on"), empty: "no signals" };
+    const WATCHED: Watched = WATCHED;
 }
 
 fn once<T: Copy + Eq + std::hash::Hash>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut seen = HashSet::new();
     items.filter(|item| seen.insert(*item)).collect()
-}
-
-/// Signals and groups in the order they were asked for.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct States {
-    signals: Vec<SignalState>,
-    /// What `--group` asked for.
-    groups: Vec<GroupState>,
-}
-
-impl States {
-    fn asked(&self) -> usize {
-        self.signals.len() + self.groups.len()
-    }
-
-    fn errors(&self) -> impl Iterator<Item = &ItemError> {
-        let signals = self.signals.iter().filter_map(|state| state.outcome.error());
-        signals.chain(self.groups.iter().filter_map(|state| state.outcome.error()))
-    }
-}
-
-impl Report for States {
-    fn view(&self) -> View {
-        View {
-            sections: [signal_table(self.signals.iter()), group_table(self.groups.iter())]
-                .into_iter()
-                .flatten()
-                .collect(),
-        }
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(self.asked(), self.errors())
-    }
 }

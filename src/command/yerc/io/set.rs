@@ -4,21 +4,18 @@ use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::super::orders::usage;
 use super::super::parts::{Parts, plan_in_parts, read_in_parts};
 use super::super::writes::{WriteOrder, before, write_all};
-use super::signal;
-use super::{GroupState, SignalState, group_table, signal_table};
+use super::{group_item, item, signal};
 use crate::command::frame::dry_run::{Reason, unknown};
 use crate::command::frame::names;
-use crate::command::frame::orders::{Old, Written};
+use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 use crate::command::yerc::complete;
 use crate::command::yerc::link::Link;
 use crate::command::yerc::link::Yerc;
-use crate::command::{Command, Context, Report};
+use crate::command::{Command, Context};
 use crate::controller::Risk;
 use crate::controller::typed;
 use crate::controller::yerc::Model;
@@ -26,7 +23,6 @@ use crate::controller::yerc::query::Query as _;
 use crate::controller::yerc::signal::Signal;
 use crate::controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
 use crate::failure::Failure;
-use crate::output::view::View;
 
 /// Signals to switch.
 #[derive(Debug, Args)]
@@ -95,11 +91,11 @@ impl Change {
 
 impl Command for Set {
     type Family = Yerc;
-    type Report = Switched;
+    type Report = WrittenSignals;
     const ID: &'static str = "yerc.io.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Switched, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
         let Context { link, screen, robot, .. } = context;
         let names = names::of(robot, screen);
         let changes = self.changes()?;
@@ -128,16 +124,14 @@ impl Command for Set {
         write_all(link, screen, &steps).await?;
         let old = |group: u16| found.get(&group).copied();
         let signals = self.signals.iter().map(|Switch { signal, on }| {
-            let old = old(signal.group()).map(|byte| byte >> signal.bit() & 1 == 1);
-            Ok(Written::new(SignalState::new(model, *signal, names, Ok(*on))?, Old::read(old), *on))
+            let old = old(signal.group()).map(|byte| IoValue::State(signal.is_on(byte)));
+            Ok(WrittenSignal::new(item(model, *signal, names)?, old, IoValue::State(*on)))
         });
-        let groups = values.into_iter().map(|(group, value)| {
-            Ok(Written::new(GroupState::new(model, group, Ok(value))?, Old::read(old(group)), value))
+        let groups = self.groups.iter().map(|Whole { group, value }| {
+            let old = old(*group).map(|byte| IoValue::Number(byte.into()));
+            Ok(WrittenSignal::new(group_item(model, *group)?, old, IoValue::Number((*value).into())))
         });
-        Ok(Switched {
-            signals: signals.collect::<Result<_, Failure>>()?,
-            groups: groups.collect::<Result<_, Failure>>()?,
-        })
+        Ok(WrittenSignals::new(signals.chain(groups).collect::<Result<_, Failure>>()?))
     }
 }
 
@@ -193,29 +187,6 @@ impl WriteOrder for WriteIoStep {
 
     fn listed(items: Vec<u16>) -> String {
         format!("group {}", typed::runs(&items, ".."))
-    }
-}
-
-/// What the controller confirmed.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Switched {
-    /// The signals that were named.
-    signals: Vec<Written<SignalState>>,
-    /// The groups as they were written, all eight signals each.
-    groups: Vec<Written<GroupState>>,
-}
-
-impl Report for Switched {
-    fn view(&self) -> View {
-        View {
-            sections: [
-                signal_table(self.signals.iter().map(|written| &written.item)),
-                group_table(self.groups.iter().map(|written| &written.item)),
-            ]
-            .into_iter()
-            .flatten()
-            .collect(),
-        }
     }
 }
 

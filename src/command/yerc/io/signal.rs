@@ -65,6 +65,12 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
         .hint(format!("a PC writes {}; let the ladder program pass them on", listed(model, |span| span.writable))))
 }
 
+/// All groups of a model.
+pub fn groups(model: Model) -> impl Iterator<Item = (u16, &'static Span)> {
+    let spans = Row::from_number(0x78).map_or(&[][..], |row| row.instances.for_model(model));
+    spans.iter().flat_map(|span| (span.first..=span.last).map(move |group| (group, span)))
+}
+
 fn listed(model: Model, wanted: impl Fn(&Span) -> bool) -> String {
     let spans = Row::from_number(0x78).map_or(&[][..], |row| row.instances.for_model(model));
     let range = |span: &Span| format!("{} to {} ({})", name(span.first, 0), name(span.last, 7), span.meaning);

@@ -19,9 +19,12 @@ fn one_signal_is_switched_and_the_others_stay() {
     let mut bench = Bench::new("sim:?model=fs100");
     bench.data(&["io", "set", "--group", "2501=0xF0"]);
     let data = bench.data(&["io", "set", "25010=on", "25017=off", "25020=on"]);
-    assert_eq!((&data["groups"][0]["value"], &data["groups"][1]["value"]), (&Value::from(0x71), &Value::from(1)));
+    let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["new"].clone(), item["written"].clone()];
+    assert_eq!(keys(&data["items"][0]), ["#25010".into(), Value::from(false), true.into(), true.into()]);
     let data = bench.data(&["io", "get", "25010..25013", "25010", "--group", "2501..2502"]);
-    let on: Vec<bool> = data["signals"].as_array().unwrap().iter().map(|signal| signal["on"] == true).collect();
-    assert_eq!(on, [true, false, false, false]);
-    assert_eq!(data["groups"][0]["value_hex"], "0x71");
+    let values: Vec<&Value> = data["items"].as_array().unwrap().iter().map(|item| &item["value"]).collect();
+    assert_eq!(values, [&true.into(), &false.into(), &false.into(), &false.into(), &0x71.into(), &Value::from(1)]);
+    let data = bench.data(&["io", "list", "--in"]);
+    let listed = |name: &str| data["items"].as_array().unwrap().iter().any(|item| item["name"] == name);
+    assert!(listed("#25010") && !listed("#25011"), "{data}");
 }

@@ -10,6 +10,7 @@ use tokio::time::Instant;
 use super::{Select, about, without_suffix};
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::ending::ProgramEnd;
 use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
@@ -39,10 +40,8 @@ pub struct Start {
     /// Line to start at
     #[arg(long, value_name = "N", requires = "name", conflicts_with = "repeat", value_parser = within::<u32>(0, 9999))]
     line: Option<u32>,
-    /// Wait until the job has ended, at most TIME; with --repeat each run
-    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
-    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
-    wait: Option<Option<Duration>>,
+    #[command(flatten)]
+    end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
 }
@@ -91,7 +90,7 @@ impl Command for Start {
             }
         }
         let job = chosen.name(link.encoding);
-        let limit = self.wait.or(self.repeat.repeat.map(|_| None));
+        let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
         let mut line = None;
         for _ in 0..self.repeat.count() {

@@ -1,4 +1,4 @@
-//! `yerc job stop`.
+//! `yerc stop` and `yerc job stop`.
 
 use clap::Args;
 
@@ -27,9 +27,35 @@ impl Command for Stop {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
-        context.link.ask(&query::Hold(true)).await?;
-        let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
-        // A stop waits for nothing, as `hold on` does.
-        Ok(New::of("held", true, words).replaces(Old::UNREAD))
+        hold(context).await
     }
+}
+
+/// The same, for whatever moves.
+#[derive(Debug, Args)]
+pub struct Halt {}
+
+impl Command for Halt {
+    type Family = Yerc;
+    type Report = Done;
+    const ID: &'static str = "yerc.stop";
+
+    fn risk(&self) -> Risk {
+        query::Hold(true).risk()
+    }
+
+    fn is_stop(&self) -> bool {
+        true
+    }
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+        hold(context).await
+    }
+}
+
+async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
+    context.link.ask(&query::Hold(true)).await?;
+    let words = "HOLD is on: the job stands; after `yerc hold off` a `yerc job start` goes on where it stands";
+    // A stop waits for nothing, as `hold on` does.
+    Ok(New::of("held", true, words).replaces(Old::UNREAD))
 }

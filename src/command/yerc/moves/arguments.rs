@@ -4,6 +4,7 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
+use crate::command::frame::ending::MotionEnd;
 use crate::command::frame::names;
 use crate::command::robot::motion;
 use crate::command::yerc::complete;
@@ -22,9 +23,8 @@ pub(super) struct Mover {
     /// The robot or station that moves: R1 …, S1 …
     #[arg(long, default_value = "R1", value_parser = mover)]
     pub(super) group: Group,
-    /// Return when the controller has accepted the motion, not when it has ended
-    #[arg(long)]
-    pub(super) no_wait: bool,
+    #[command(flatten)]
+    pub(super) end: MotionEnd,
 }
 
 impl Mover {

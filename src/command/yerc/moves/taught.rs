@@ -139,7 +139,7 @@ impl Motion<'_> {
         };
         let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
-        Ok(Going { order, group, goal, unnamed, no_wait: self.target.mover.no_wait })
+        Ok(Going { order, group, goal, unnamed, no_wait: self.target.mover.end.no_wait() })
     }
 
     async fn cartesian(
@@ -170,7 +170,7 @@ impl Motion<'_> {
             PositionKind::Base => Goal::Base(target, position.tool),
             _ => Goal::Unknown(Coordinates::Base),
         };
-        Ok(Going { order, group, goal, unnamed: unnamed_base(group, None), no_wait: self.target.mover.no_wait })
+        Ok(Going { order, group, goal, unnamed: unnamed_base(group, None), no_wait: self.target.mover.end.no_wait() })
     }
 
     /// Degrees in pulses, by what the inventory says of the robot.
@@ -245,7 +245,7 @@ impl Motion<'_> {
             let reason = Reason::about(&about).depending_on("what it holds");
             link.plan_depending(&first.request(), &second.request(), reason);
         }
-        if !self.target.mover.no_wait {
+        if !self.target.mover.end.no_wait() {
             plan_looks(link, group, Coordinates::Pulse).await?;
         }
         Ok(unknown())

@@ -75,7 +75,7 @@ fn what_cannot_be_meant_is_not_sent() {
     assert!(failed(&["register", "get", "1000"]).contains("allowed: 0-999"));
     assert!(failed(&["register", "set", "560=1"]).contains("0-559"));
     assert!(failed(&["raw", "--file", "--service", "0x15"]).contains("yerc file put"));
-    assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--check"]).contains("0x008d"));
+    assert!(failed(&["raw", "--command", "0x8D", "--instance", "1", "--service", "1", "--strict"]).contains("0x008d"));
 }
 
 #[test]

@@ -19,8 +19,6 @@ commands! {
         Version(robot::Version),
         /// Model numbers of a robot and its axes
         System(robot::System),
-        /// Current position of a robot
-        Position(position::Info),
         /// Servo state per axis
         Servo(servo::Servo),
         /// Origin return status

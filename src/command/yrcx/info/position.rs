@@ -1,4 +1,4 @@
-//! `yrcx position`, and the same as `yrcx info position` (4.7.4).
+//! `yrcx position` (4.7.4).
 
 use std::time::Duration;
 
@@ -41,27 +41,6 @@ pub struct Where {
     plot: bool,
     #[arg(skip)]
     past: Past,
-}
-
-/// The same below `yrcx info`.
-#[derive(Debug, Args)]
-pub struct Info {
-    #[command(flatten)]
-    which: Where,
-}
-
-impl Command for Info {
-    type Family = Yrcx;
-    type Report = Place;
-    const ID: &'static str = "yrcx.info.position";
-
-    fn is_endless(&self) -> bool {
-        self.which.is_endless()
-    }
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Place, Failure> {
-        self.which.run(context).await
-    }
 }
 
 impl Command for Where {
@@ -142,18 +121,18 @@ mod tests {
 
     #[test]
     fn the_examples_of_the_manual() {
-        assert_eq!(words(&["info", "position", "--report", "pulse"]).unwrap(), [example("4.7.4-pulse")]);
-        assert_eq!(words(&["info", "position"]).unwrap(), [example("4.7.4-mm")]);
-        let pulses = read_example("4.7.4-pulse", &["info", "position", "--report", "pulse"]);
+        assert_eq!(words(&["position", "--report", "pulse"]).unwrap(), [example("4.7.4-pulse")]);
+        assert_eq!(words(&["position"]).unwrap(), [example("4.7.4-mm")]);
+        let pulses = read_example("4.7.4-pulse", &["position", "--report", "pulse"]);
         let (pulses, place) = (&pulses["positions"][0], |place: &Value| place["positions"][0].clone());
         assert_eq!((&pulses["frame"], &pulses["x_mm"]), (&json!("joint"), &json!(null)));
         assert!(pulses["joints"].as_array().unwrap().iter().all(|joint| joint["pulses"].is_i64()), "{pulses}");
-        let place = place(&read_example("4.7.4-mm", &["info", "position"]));
+        let place = place(&read_example("4.7.4-mm", &["position"]));
         assert_eq!(place["form"], json!(null), "bit 0, which the example has, is not used");
         assert!(place["x_mm"].is_f64() && place["joints"][0]["pulses"].is_null(), "{place}");
     }
 
-    const CONTINUOUS: [&str; 3] = ["info", "position", "--continuous"];
+    const CONTINUOUS: [&str; 2] = ["position", "--continuous"];
 
     /// The words of continuous output with the first axis there.
     fn output(position: u16) -> [u16; 16] {
@@ -189,7 +168,7 @@ mod tests {
         let script = [Reply::Shows(vec![output(1000)]), Reply::Ends(1, done)];
         let mut bench = Bench::new(Scripted::new(script));
         bench.run(&CONTINUOUS).unwrap();
-        assert_eq!(bench.run(&["info", "position"]).unwrap()["positions"][0]["x_mm"], json!(0.007));
+        assert_eq!(bench.run(&["position"]).unwrap()["positions"][0]["x_mm"], json!(0.007));
         assert_eq!(bench.into_peer().taken.len(), 2);
     }
 

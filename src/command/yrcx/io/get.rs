@@ -1,18 +1,16 @@
 //! `yrcx io get`.
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::{Readable, State, WordState, readables, table, word_table};
+use super::{Readable, readables, row, word_item};
 use crate::command::frame::names;
+use crate::command::robot::io::{IoRow, IoValue, Signals};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::numbers::Series;
-use crate::command::{Command, ConnectMode, Context, Report};
+use crate::command::{Command, ConnectMode, Context};
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
-use crate::output::view::{Section, View};
 
 /// Reads signals and general-purpose words.
 #[derive(Debug, Args)]
@@ -27,11 +25,11 @@ pub struct Get {
 
 impl Command for Get {
     type Family = Yrcx;
-    type Report = States;
+    type Report = Signals;
     const ID: &'static str = "yrcx.io.get";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of(context.robot, context.screen);
         let given = context.link.shown().copied();
         if given.is_none()
@@ -45,32 +43,18 @@ impl Command for Get {
         let given = given.unwrap_or_default();
         let shown = context.link.look().await?;
         let image = |side| if side == Side::Input { &given } else { &shown };
-        let mut states = States { signals: Vec::new(), words: Vec::new() };
         if self.signals.is_empty() {
             let told = Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown));
-            states.signals = told.map(|signal| State::of(signal, &shown, names)).collect();
+            return Signals::new(told.map(|signal| row(signal, &shown, names)).collect());
         }
-        for readable in Series::all(&self.signals) {
-            match *readable {
-                Readable::Signal(signal) => states.signals.push(State::of(signal, image(signal.side()), names)),
-                Readable::Word(register) => states.words.push(WordState::of(register, image(register.side()), names)),
+        let rows = Series::all(&self.signals).map(|readable| match *readable {
+            Readable::Signal(signal) => row(signal, image(signal.side()), names),
+            Readable::Word(register) => {
+                let image = image(register.side());
+                let value = IoValue::Number(register.read(&image.command()));
+                IoRow::new(word_item(register, Some(image), names), Ok(value))
             }
-        }
-        Ok(states)
-    }
-}
-
-/// Signals and words.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct States {
-    signals: Vec<State>,
-    words: Vec<WordState>,
-}
-
-impl Report for States {
-    fn view(&self) -> View {
-        let signals = (!self.signals.is_empty() || self.words.is_empty()).then(|| table(&self.signals, "no signals"));
-        let words = (!self.words.is_empty()).then(|| word_table(&self.words));
-        View { sections: signals.into_iter().chain(words).map(Section::Table).collect() }
+        });
+        Signals::new(rows.collect())
     }
 }

@@ -1,22 +1,20 @@
 //! `yrcx io`: signals. SO is what the controller shows, SI what it is shown; numbers are octal, as in the manual.
 
 mod get;
+mod list;
 mod map;
 mod set;
 mod watch;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::command::frame::names;
 use crate::command::frame::watch::Watch;
+use crate::command::robot::io::{IoItem, IoKind, IoRow};
 use crate::command::yrcx::numbers::Series;
 use crate::command::{Offline, commands};
 use crate::controller::names::{Kind, Names};
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::register::Register;
 use crate::controller::yrcx::signal::{Side, Signal};
-use crate::output::view::{Cell, Table};
 
 commands! {
     /// What can be done with signals.
@@ -25,6 +23,8 @@ commands! {
         Get(get::Get),
         /// Switch inputs of the controller: servo-on=on, 20=off, SIW2=5
         Set(set::Set),
+        /// List the signals that are on or have a name
+        List(list::List),
         /// Pulse an input of the controller
         Pulse(set::Pulse),
         /// Show signal changes until Ctrl-C
@@ -98,76 +98,38 @@ fn input(text: &str) -> Result<Signal, String> {
     Signal::parse(Side::Input, text).map_err(|error| error.to_string())
 }
 
-/// A signal and its state.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-struct State {
-    /// `SO(02)`.
-    signal: String,
-    /// Its name; null for general-purpose signals.
-    name: Option<&'static str>,
-    /// What people call it; null where they gave it no name.
-    label: Option<String>,
-    on: bool,
-    /// What it says or does; null for general-purpose signals.
-    meaning: Option<&'static str>,
-}
-
-impl State {
-    fn of(signal: Signal, image: &Image, names: &Names) -> Self {
-        let dedicated = signal.dedicated();
-        let address = signal.to_string();
-        Self {
-            label: names::label(names, Kind::Signal, &address),
-            signal: address,
-            name: dedicated.map(|dedicated| dedicated.name),
-            on: signal.is_on(image),
-            meaning: dedicated.map(|dedicated| dedicated.text),
-        }
+/// A signal as reports name it.
+fn item(signal: Signal, names: &Names) -> IoItem {
+    let dedicated = signal.dedicated();
+    let address = signal.to_string();
+    // What inputs and outputs are both called is an output where it is typed.
+    let is_one = |name: &&str| self::signal(name).is_ok_and(|typed| typed == signal);
+    let name = dedicated.map(|dedicated| dedicated.name).filter(is_one);
+    IoItem {
+        name: name.map_or_else(|| address.clone(), ToOwned::to_owned),
+        label: names::label(names, Kind::Signal, &address),
+        kind: if signal.side() == Side::Input { IoKind::Input } else { IoKind::Output },
+        address,
+        meaning: dedicated.map(|dedicated| dedicated.text.to_owned()),
     }
 }
 
-/// A general-purpose word and what it holds.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-struct WordState {
-    /// `SOW(2)`, `SID(4)`.
-    word: String,
-    /// What people call it; null where they gave it no name.
-    label: Option<String>,
-    /// Without a sign.
-    value: u32,
-    /// The same, as in `0x0005`.
-    hex: String,
-    /// A remote command or its answer has the words now: this is a part of it.
-    in_command: bool,
+/// A signal that was read.
+fn row(signal: Signal, image: &Image, names: &Names) -> IoRow {
+    IoRow::state(item(signal, names), Ok(signal.is_on(image)))
 }
 
-impl WordState {
-    fn of(register: Register, image: &Image, names: &Names) -> Self {
-        let words = image.command();
-        let value = register.read(&words);
-        let word = register.to_string();
-        let label = names::label(names, Kind::Signal, &word);
-        Self { word, label, value, hex: register.hex(value), in_command: words[0] != 0 }
+/// A general-purpose word as reports name it; `image` is what it is in.
+fn word_item(register: Register, image: Option<&Image>, names: &Names) -> IoItem {
+    let name = register.to_string();
+    let is_in_command = image.is_some_and(|image| image.command()[0] != 0);
+    IoItem {
+        label: names::label(names, Kind::Signal, &name),
+        kind: IoKind::Word,
+        address: name.clone(),
+        name,
+        meaning: is_in_command.then(|| "part of a remote command".to_owned()),
     }
-}
-
-fn word_table(words: &[WordState]) -> Table {
-    let mut table = Table::new(&["word", "label", "value", "hex", "of a remote command"], "no words");
-    for WordState { word, label, value, hex, in_command } in words {
-        let in_command = if *in_command { "yes" } else { "no" };
-        let label = Cell::maybe(label.as_deref());
-        table.row([word.as_str().into(), label, (*value).into(), hex.as_str().into(), in_command.into()]);
-    }
-    table.without_blank("label")
-}
-
-fn table(states: &[State], empty: &'static str) -> Table {
-    let mut table = Table::new(&["signal", "name", "label", "state", "meaning"], empty);
-    for State { signal, name, label, on, meaning } in states {
-        let label = Cell::maybe(label.as_deref());
-        table.row([signal.as_str().into(), Cell::maybe(*name), label, Cell::switch(*on), Cell::maybe(*meaning)]);
-    }
-    table.without_blank("label")
 }
 
 #[cfg(test)]

@@ -2,15 +2,16 @@
 
 use clap::Args;
 
-use super::{ANY_INPUT, called, input, named_input};
+use super::{ANY_INPUT, called, input, item, named_input, word_item};
 use crate::command::frame::names;
-use crate::command::frame::orders::{AllDone, Done, New, Old};
+use crate::command::frame::orders::{Done, New, Old};
+use crate::command::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::Link;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
-use crate::controller::names::Kind;
+use crate::controller::names::{Kind, Names};
 use crate::controller::typed;
 use crate::controller::yrcx::image::Image;
 use crate::controller::yrcx::procedure::Procedure;
@@ -76,15 +77,15 @@ fn change(text: &str) -> Result<Change, String> {
 
 impl Change {
     /// What was done, where this was shown before.
-    fn done(&self, shown: Option<&Image>) -> Done {
+    fn written(&self, shown: Option<&Image>, names: &Names) -> WrittenSignal {
         match self {
             Self::Signal { signal, on, .. } => {
-                let old = shown.map(|image| signal.is_on(image));
-                New::of(signal.to_string(), *on, self.describe()).replaces(Old::read(old))
+                let old = shown.map(|image| IoValue::State(signal.is_on(image)));
+                WrittenSignal::new(item(*signal, names), old, IoValue::State(*on))
             }
             Self::Word { register, value } => {
-                let old = shown.map(|image| register.read(&image.command()));
-                New::of(register.to_string(), *value, self.describe()).replaces(Old::read(old))
+                let old = shown.map(|image| IoValue::Number(register.read(&image.command())));
+                WrittenSignal::new(word_item(*register, None, names), old, IoValue::Number(*value))
             }
         }
     }
@@ -124,7 +125,7 @@ impl Change {
 
 impl Command for Set {
     type Family = Yrcx;
-    type Report = AllDone;
+    type Report = WrittenSignals;
     const ID: &'static str = "yrcx.io.set";
 
     fn risk(&self) -> Risk {
@@ -135,7 +136,8 @@ impl Command for Set {
         format!("switch {}", describe(&self.changes))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<AllDone, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenSignals, Failure> {
+        let names = names::of(context.robot, context.screen);
         let shown = context.link.shown().copied();
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
@@ -149,8 +151,8 @@ impl Command for Set {
             })?;
             done += together.len();
         }
-        let items = self.changes.iter().map(|change| change.done(shown.as_ref())).collect();
-        Ok(AllDone::new(items, format!("switched {}", describe(&self.changes))))
+        let items = self.changes.iter().map(|change| change.written(shown.as_ref(), names)).collect();
+        Ok(WrittenSignals::new(items))
     }
 }
 
@@ -203,6 +205,8 @@ fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::Value;
+
     use crate::command::yrcx::testing::{Bench, Reply, Scripted, frames, intent, objection, risk};
     use crate::controller::Risk;
 
@@ -241,11 +245,11 @@ mod tests {
         place[0] = 0x0200;
         let mut bench = Bench::new(Scripted::new([Reply::Ends(1, place)]));
         bench.run(&["io", "set", "SIW2=5"]).unwrap();
-        let shown = |bench: &mut Bench| bench.run(&["io", "get", "SIW2"]).unwrap()["words"][0].clone();
+        let shown = |bench: &mut Bench| bench.run(&["io", "get", "SIW2"]).unwrap()["items"][0].clone();
         assert_eq!(shown(&mut bench)["value"], 5);
-        bench.run(&["info", "position"]).unwrap();
+        bench.run(&["position"]).unwrap();
         let word = shown(&mut bench);
-        assert_eq!((&word["value"], &word["hex"], &word["in_command"]), (&5.into(), &"0x0005".into(), &false.into()));
+        assert_eq!((&word["name"], &word["value"], &word["meaning"]), (&"SIW(2)".into(), &5.into(), &Value::Null));
         assert_eq!(bench.into_peer().taken[0][2], 0, "the command had the words for itself");
     }
 

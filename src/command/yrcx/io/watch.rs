@@ -1,19 +1,17 @@
 //! `yrcx io watch`: each change, as it comes.
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use super::{State, table};
+use super::row;
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
+use crate::command::robot::io::{Signals, WATCHED};
 use crate::command::yrcx::complete;
 use crate::command::yrcx::link::{Link, Yrcx};
-use crate::command::{Command, ConnectMode, Context, Report};
+use crate::command::{Command, ConnectMode, Context};
 use crate::controller::names::Kind;
 use crate::controller::yrcx::signal::{Side, Signal};
 use crate::failure::Failure;
-use crate::output::view::View;
 
 /// Outputs of the controller, for a watch.
 #[derive(Debug, Args)]
@@ -33,11 +31,11 @@ fn output_by_address(text: &str) -> Result<Signal, String> {
 
 impl Command for Outputs {
     type Family = Yrcx;
-    type Report = States;
+    type Report = Signals;
     const ID: &'static str = "yrcx.io.outputs";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<States, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of(context.robot, context.screen);
         let link = context.link;
         // What a wait has seen is told, however short it was.
@@ -47,36 +45,17 @@ impl Command for Outputs {
         };
         link.told = Some(image);
         let signals = if self.signals.is_empty() { Signal::all(Side::Output).collect() } else { self.signals.clone() };
-        Ok(States { signals: signals.into_iter().map(|signal| State::of(signal, &image, names)).collect() })
+        Signals::new(signals.into_iter().map(|signal| row(signal, &image, names)).collect())
     }
 }
 
 impl Watchable for Outputs {
     const WATCH: &'static str = "yrcx.io.watch";
-    const WATCHED: Watched = Watched {
-        list: "signals",
-        name: "signal",
-        prefix: "",
-        label: "name",
-        value: Some("on"),
-        empty: "no signal is on",
-    };
+    const WATCHED: Watched = WATCHED;
 
     async fn changed(&self, link: &mut Link) -> Result<(), Failure> {
         let told = link.told;
         link.seen = Some(link.look_until(|image| Some(*image) != told).await?);
         Ok(())
-    }
-}
-
-/// Signals.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct States {
-    signals: Vec<State>,
-}
-
-impl Report for States {
-    fn view(&self) -> View {
-        View::table(table(&self.signals, "no signal is on"))
     }
 }

@@ -147,7 +147,8 @@ fn signals_are_switched_while_a_command_runs() {
     let begun = bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
     assert_eq!((&begun["reached"], &begun["elapsed_ms"]), (&serde_json::Value::Null, &serde_json::Value::Null));
     let switched = bench.run(&["io", "set", "20=on"]).unwrap();
-    assert_eq!(switched["items"], json!([{"set": "SI(20)", "old": false, "new": true}]));
+    let item = &switched["items"][0];
+    assert_eq!((&item["name"], &item["old"], &item["new"]), (&json!("SI(20)"), &json!(false), &json!(true)));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
     assert!(busy.message.contains("move-ptp is still under way"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
@@ -189,8 +190,8 @@ fn a_watch_begins_with_the_state() {
     let mut bench = Bench::new(Scripted::new([]));
     let first = bench.run(&["io", "watch", "servo-on", "20"]).unwrap();
     let told = first["changes"].as_array().unwrap().iter().map(|change| (&change["name"], &change["old"]));
-    assert_eq!(told.collect::<Vec<_>>(), [(&json!("SO(02)"), &json!(null)), (&json!("SO(20)"), &json!(null))]);
-    assert_eq!(first["signals"][1]["signal"], "SO(20)");
+    assert_eq!(told.collect::<Vec<_>>(), [(&json!("servo-on"), &json!(null)), (&json!("SO(20)"), &json!(null))]);
+    assert_eq!(first["items"][1]["name"], "SO(20)");
 }
 
 #[test]
@@ -216,7 +217,7 @@ fn without_words_for_commands_signals_work_and_nothing_else_leaves() {
     assert_eq!(at_rest, (vec![], vec![0x0041]), "SI(00) and SI(06) on, from the first image on");
     bench.run(&["run"]).unwrap();
     bench.run(&["stop"]).unwrap();
-    assert_eq!(bench.run(&["io", "get", "SO1"]).unwrap()["signals"][0]["on"], true);
+    assert_eq!(bench.run(&["io", "get", "SO1"]).unwrap()["items"][0]["value"], true);
     let peer = bench.into_peer();
     assert!(peer.taken.is_empty() && peer.bits.len() > 3, "{:?}", peer.bits);
 }

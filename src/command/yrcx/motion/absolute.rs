@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::{MotionReport, go};
+use crate::command::frame::ending::MotionEnd;
 use crate::command::yrcx::arguments::{Direction, Which};
 use crate::command::yrcx::link::Yrcx;
 use crate::command::yrcx::overwrite::confirmation;
@@ -26,9 +27,8 @@ pub struct AbsReset {
     /// Move only, this way, to the nearest position where a reset is possible
     #[arg(long = "move", value_name = "DIRECTION", allow_hyphen_values = true)]
     direction: Option<Direction>,
-    /// Do not wait for the end of the motion
-    #[arg(long, requires = "direction")]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
     #[command(flatten)]
     which: Which,
 }
@@ -71,6 +71,9 @@ impl Command for AbsReset {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let draft = context.link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
         let Some(direction) = self.direction else {
+            if self.end.no_wait() {
+                return Err(Failure::usage("--no-wait means nothing without --move").hint("remove --no-wait"));
+            }
             let order = draft.build()?;
             let done = context.link.ask(&order).await?;
             let words = format!("reset the absolute position of {}", self.axis());
@@ -78,7 +81,7 @@ impl Command for AbsReset {
         };
         let order = draft.with(Key::Direction, direction.value()).build()?;
         let way = format!("{} {} to a reset position", self.axis(), direction.describe());
-        let done = go(context.link, context.screen, &order, self.no_wait, &format!("moving {way}")).await?;
+        let done = go(context.link, context.screen, &order, self.end.no_wait(), &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };
         Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))
     }

@@ -138,7 +138,7 @@ impl<M: Motion> Command for Moving<M> {
         let [_, moving, moved] = M::VERB;
         let object = self.object();
         let doing = format!("{moving} {object}");
-        let done = go(context.link, context.screen, &order, self.ending.no_wait, &doing).await?;
+        let done = go(context.link, context.screen, &order, self.ending.end.no_wait(), &doing).await?;
         let has_done = format!("{moved} {object}");
         let words = if done.is_some() { has_done } else { doing };
         let mut report = MotionReport::new(words, &order, done.as_ref(), self.unit());

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::{MotionReport, go};
+use crate::command::frame::ending::MotionEnd;
 use crate::command::yrcx::arguments::Which;
 use crate::command::yrcx::link::Yrcx;
 use crate::command::{Command, Context};
@@ -24,9 +25,8 @@ pub struct Origin {
     /// Only axes of this kind
     #[arg(long, value_name = "KIND")]
     only: Option<Kind>,
-    /// Do not wait for the end
-    #[arg(long)]
-    no_wait: bool,
+    #[command(flatten)]
+    end: MotionEnd,
     #[command(flatten)]
     which: Which,
 }
@@ -91,7 +91,7 @@ impl Command for Origin {
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).build()?;
         let doing = format!("returning {} to origin", self.describe());
-        let done = go(context.link, context.screen, &order, self.no_wait, &doing).await?;
+        let done = go(context.link, context.screen, &order, self.end.no_wait(), &doing).await?;
         let has_done = format!("returned {} to origin", self.describe());
         Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }

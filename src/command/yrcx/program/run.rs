@@ -10,6 +10,7 @@ use tokio::time::{Instant, timeout};
 use super::WhichOrAll;
 use crate::command::frame::cycle::{Cycle, Repeat, Runs};
 use crate::command::frame::dry_run::unknown;
+use crate::command::frame::ending::ProgramEnd;
 use crate::command::frame::orders::{Done, New, Old};
 use crate::command::yrcx::link::{Link, Yrcx};
 use crate::command::{Command, Context, Report};
@@ -29,10 +30,8 @@ use crate::settings::duration;
 pub struct Run {
     #[command(flatten)]
     which: WhichOrAll,
-    /// Wait until no program runs any more, at most TIME
-    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
-    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
-    wait: Option<Option<Duration>>,
+    #[command(flatten)]
+    end: ProgramEnd,
     #[command(flatten)]
     repeat: Repeat,
 }
@@ -59,7 +58,7 @@ impl Command for Run {
         let what = self.which.describe();
         let done = New::of("program_state", "running", format!("started {what}"));
         let done = self.which.named(done).replaces(Old::UNREAD);
-        let limit = self.wait.or(self.repeat.repeat.map(|_| None));
+        let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
         for _ in 0..self.repeat.count() {
             let early = |failure| runs.early(failure);

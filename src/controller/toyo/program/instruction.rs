@@ -1,8 +1,10 @@
 //! One instruction as a person writes it: short numbers, any case, labels for tags.
 
 use crate::findings::{Findings, SourceLocation};
+use crate::names::{Found, Names};
 use crate::nearest::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
+use crate::toyo::names;
 use crate::toyo::table::instructions::INSTRUCTIONS;
 use crate::toyo::table::{Instruction, Op};
 
@@ -46,6 +48,7 @@ impl Draft {
 }
 
 /// Text of a line, from a place on.
+#[derive(Clone, Copy)]
 pub(super) struct Cursor<'t> {
     line: &'t str,
     number: usize,
@@ -64,7 +67,7 @@ pub(super) fn is_label(word: &str) -> bool {
 }
 
 /// Reads one instruction, from the cursor to the end of the code; errors are told. `None` if there are some.
-pub(super) fn read(cursor: &mut Cursor<'_>, findings: &mut Findings) -> Option<Draft> {
+pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findings) -> Option<Draft> {
     let before = findings.errors();
     let at = cursor.place();
     let word = cursor.word();
@@ -74,11 +77,14 @@ pub(super) fn read(cursor: &mut Cursor<'_>, findings: &mut Findings) -> Option<D
         findings.error(at, message, near.map(|near| format!("did you mean {near}?")));
         return None;
     };
+    if let Some(draft) = read_short(row, cursor, known, at, findings) {
+        return Some(draft);
+    }
     let mut draft = Draft { instruction: row, values: Vec::new(), tags: Vec::new(), at };
     let mut keys = row.layout.text[row.word.len()..].split("{}");
-    let form = || Some(format!("it is written {}", form_of(row)));
+    let form = || Some(format!("it is written {}", row.form()));
     cursor
-        .pass(keys.next().unwrap_or_default())
+        .pass_to(keys.next().unwrap_or_default(), row.layout.fields.first(), known)
         .map_err(|missing| findings.error(cursor.place(), missing, form()))
         .ok()?;
     for (index, field) in row.layout.fields.iter().enumerate() {
@@ -96,13 +102,14 @@ pub(super) fn read(cursor: &mut Cursor<'_>, findings: &mut Findings) -> Option<D
             }
             draft.values.push(Value::Number(0));
         } else {
-            match value(field, text) {
+            match named_value(field, text, known) {
                 Ok(value) => draft.values.push(value),
-                Err(error) => findings.error(at, error.to_string(), None),
+                Err((message, hint)) => findings.error(at, message, hint),
             }
         }
         let key = keys.next().unwrap_or_default();
-        cursor.pass(key).map_err(|missing| findings.error(cursor.place(), missing, form())).ok()?;
+        let next = row.layout.fields.get(index + 1);
+        cursor.pass_to(key, next, known).map_err(|missing| findings.error(cursor.place(), missing, form())).ok()?;
     }
     if !cursor.rest().is_empty() {
         findings.error(cursor.place(), format!("'{}' is too much", shown(cursor.rest())), form());
@@ -138,6 +145,58 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     }
 }
 
+/// `MOVP pick`: an instruction with a point, of which only the name is written. The rest is the least that it may be:
+/// absolute, without a counter, at the axis speed chosen last, with a stop there.
+fn read_short(
+    row: &'static Instruction,
+    cursor: &mut Cursor<'_>,
+    known: &Names,
+    at: SourceLocation,
+    findings: &mut Findings,
+) -> Option<Draft> {
+    let point = row.layout.fields.iter().find(|field| field.name == "point")?;
+    let number = by_name(point, cursor.rest(), known).ok()??;
+    let values = row.layout.fields.iter().map(|field| match field.form {
+        _ if field.name == point.name => Some(Value::Number(number)),
+        Form::Number(number) => Some(Value::Number(number.least)),
+        Form::Word(words) => words.first().map(|word| Value::Word(word.text)),
+        _ => None,
+    });
+    let values: Vec<Value> = values.collect::<Option<_>>()?;
+    let whole = row.layout.record(values.clone()).ok()?.written();
+    findings.note(at, format!("{} {} is {whole}", row.word, cursor.rest()));
+    Some(Draft { instruction: row, values, tags: Vec::new(), at })
+}
+
+/// The number that a name stands for in a field; `None` where the text is no name of what the field numbers.
+fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, String> {
+    let Some((kind, _)) = names::of_field(field.name) else { return Ok(None) };
+    match known.find(&[kind], text) {
+        Found::One(name) => Ok(names::number(&name.address)),
+        Found::Several(several) => {
+            let addresses: Vec<&str> = several.iter().map(|name| name.address.as_str()).collect();
+            Err(format!("'{}' is the name of {}; write the number", shown(text), addresses.join(" and of ")))
+        }
+        Found::None => Ok(None),
+    }
+}
+
+/// The value of a field, for which a name may stand; what is wrong, and a hint, where it is none.
+fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (String, Option<String>)> {
+    if let Some(number) = by_name(field, text, known).map_err(|message| (message, None))? {
+        return Ok(Value::Number(number));
+    }
+    value(field, text).map_err(|error| match names::of_field(field.name).filter(|_| is_label(text)) {
+        Some((kind, prefix)) => {
+            let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
+            let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
+            let hint = hint.unwrap_or_else(|| format!("names stand in robots.toml: {} = \"{prefix}1\"", shown(text)));
+            (format!("there is no {} called '{}'", kind.word(), shown(text)), Some(hint))
+        }
+        None => (error.to_string(), None),
+    })
+}
+
 fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
     if let Form::Word(words) = field.form {
         let mut same = words.iter().filter(|word| word.text.trim_end().eq_ignore_ascii_case(text));
@@ -149,22 +208,6 @@ fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
         FieldError::Form { name, found, form } => FieldError::Form { name, found: shown(&found).to_owned(), form },
         FieldError::Range { .. } | FieldError::Decimals { .. } => error,
     })
-}
-
-/// How an instruction is written: `JMPC TAG=<tag> CN<counter><compare><count>`.
-fn form_of(row: &Instruction) -> String {
-    let mut fields = row.layout.fields.iter();
-    let mut form = String::new();
-    for (index, words) in row.layout.text.split("{}").enumerate() {
-        if index > 0 {
-            form.push_str(&fields.next().map_or(String::new(), |field| match field.form {
-                Form::Word([one, other]) => format!("{}|{}", one.text, other.text),
-                _ => format!("<{}>", field.name),
-            }));
-        }
-        form.push_str(words);
-    }
-    form
 }
 
 /// The front of what was written, for a message.
@@ -231,6 +274,20 @@ impl<'t> Cursor<'t> {
     fn skip(&mut self) {
         let rest = &self.line[self.at..];
         self.at += rest.len() - rest.trim_start_matches(BLANKS).len();
+    }
+
+    /// Passes the words of a form before a field. A name needs no key before it: `JMPC TAG=next parts>=5`.
+    fn pass_to(&mut self, words: &str, field: Option<&Field>, known: &Names) -> Result<(), String> {
+        if let Some(field) = field
+            && let Some((_, prefix)) = names::of_field(field.name)
+            && words.trim_start().starts_with(prefix)
+        {
+            let text = { *self }.value(field);
+            if by_name(field, text, known).is_ok_and(|found| found.is_some()) {
+                return Ok(());
+            }
+        }
+        self.pass(words)
     }
 
     /// Passes the words of a form, in any case; blanks stand where they like. Stays where something else stands.

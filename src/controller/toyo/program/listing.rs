@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use super::instruction::is_tag;
+use crate::names::Names;
 use crate::toyo::layout::Record;
+use crate::toyo::names;
 use crate::toyo::table::{Op, Parameter};
 
 /// Rows of tables, by the id of the table and their number; those that are there are explained in comments.
@@ -60,6 +62,11 @@ pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
 
 /// The text of steps, of which some were not read: it is no program then, and says so at its head and where they are.
 pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows) -> Listing {
+    listing_named(steps, unread, style, rows, &Names::default())
+}
+
+/// The same, with the names of points, counters and timers in comments.
+pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Rows, known: &Names) -> Listing {
     let Style { first, is_whole, is_numbered } = style;
     let used = used(steps).max(steps.len().min(1));
     let end = if is_whole { used } else { steps.len() };
@@ -87,7 +94,7 @@ pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows
             let _ = write!(text, "{:04}  ", index + first);
         }
         text.push_str(own);
-        let comments = comments(record, &tags, rows);
+        let comments = comments(record, &tags, rows, known);
         if !comments.is_empty() {
             let _ = write!(text, "{:pad$}  # {}", "", comments.join("; "), pad = width - own.len());
         }
@@ -100,7 +107,7 @@ pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows
 }
 
 /// What an instruction names, as people know it.
-fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows) -> Vec<String> {
+fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows, known: &Names) -> Vec<String> {
     if !record.is_listed() {
         return vec![NOT_IN_MANUAL.to_owned()];
     }
@@ -114,7 +121,17 @@ fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows) -> Vec<St
         let row = rows.get(&key)?;
         Some(format!("{name} {}: {}", key.1, values_of(key.0, row)))
     });
-    steps.chain(rows).collect()
+    steps.chain(labels(record, known)).chain(rows).collect()
+}
+
+/// What people call the points, counters and timers of an instruction: `point 1 is pick`.
+fn labels(record: &Record, known: &Names) -> impl Iterator<Item = String> {
+    record.pairs().filter_map(|(field, _)| {
+        let (kind, _) = names::of_field(field.name)?;
+        let number = record.number(field.name)?;
+        let label = known.label(kind, &names::address_of(kind, number)?)?;
+        Some(format!("{} {number} is {label}", field.name))
+    })
 }
 
 /// The rows of tables that an instruction names. Row 0 is none.

@@ -11,11 +11,13 @@
 //!
 //! A file is the program of one task; its first instruction is step 1. A label makes a TAG step, and stands wherever an
 //! instruction names a tag. Numbers may be short, words and keys in any case. Every instruction may begin with its step
-//! number, as lists of controllers have it.
+//! number, as lists of controllers have it. Names of points, counters and timers may stand for their numbers: `PT=pick`,
+//! `JMPC TAG=next parts>=5`; `MOVP pick` alone goes there in the simplest way.
 
 mod flow;
 mod instruction;
 mod listing;
+mod paths;
 mod reader;
 mod tags;
 #[cfg(test)]
@@ -24,13 +26,16 @@ mod tests;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use listing::{
-    Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_with, not_read, tags, used, uses,
+    Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_named, listing_with, not_read, tags, used,
+    uses,
 };
+pub use paths::Known;
 
 use super::layout::Record;
 use super::table::Instruction;
 pub use crate::findings::{Finding, Severity};
 use crate::findings::{Findings, SourceLocation};
+use crate::names::Names;
 
 /// Most steps that the tasks have together (TO 2-4, E22).
 pub const MOST_STEPS: usize = 5000;
@@ -117,7 +122,7 @@ fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
 
 /// Reads the text of a program for a task with so many steps (TO 2-4, E22).
 pub fn check(text: &[u8], room: usize) -> Checked {
-    check_with(text, room, None)
+    check_named(text, room, None, &Names::default())
 }
 
 /// Reads a whole [`listing`], in which steps may be marked as not in the manual: those are kept as they are, and are never
@@ -146,19 +151,26 @@ pub fn check_kept(text: &[u8], room: usize) -> Checked {
 
 /// Reads the text of a part of a program, for which there is room for so many steps.
 pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
-    check_with(text, room, Some(part))
+    check_named(text, room, Some(part), &Names::default())
 }
 
-fn check_with(text: &[u8], room: usize, part: Option<&Part>) -> Checked {
+/// Reads the text of a program, or of a part of one, in which these names may stand.
+pub fn check_named(text: &[u8], room: usize, part: Option<&Part>, names: &Names) -> Checked {
+    check_known(text, room, part, names, &Known::default())
+}
+
+/// The same with what is known of the controller, against which the steps are checked as well.
+pub fn check_known(text: &[u8], room: usize, part: Option<&Part>, names: &Names, known: &Known) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {
         findings.error(SourceLocation { line: 1, column: 1 }, what, Some(hint.to_owned()));
         return Checked { program: None, findings: findings.sorted() };
     }
-    let read = reader::read(text, room, part, &mut findings);
+    let read = reader::read(text, room, part, names, &mut findings);
     let program = tags::resolve(read, part, &mut findings);
     if findings.errors() == 0 {
         flow::check(&program, part.is_some(), &mut findings);
+        paths::check(&program, part.is_some(), known, &mut findings);
     }
     let program = (findings.errors() == 0).then_some(program.program);
     Checked { program, findings: findings.sorted() }

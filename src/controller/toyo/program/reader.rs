@@ -4,6 +4,7 @@ use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_i
 use super::listing::NOT_READ;
 use super::{MOST_STEPS, Part};
 use crate::findings::{Findings, SourceLocation};
+use crate::names::Names;
 use crate::source;
 use crate::toyo::table::Op;
 
@@ -26,11 +27,11 @@ pub(super) struct Defined {
 }
 
 /// Reads the lines, for a task or a part of it that has room for so many steps.
-pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, findings: &mut Findings) -> Read {
+pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names, findings: &mut Findings) -> Read {
     let room = room.min(MOST_STEPS);
     let lines = source::lines(text, findings);
     let start = part.map_or(1, |part| part.first);
-    let mut reader = Reader { read: Read::default(), start, first: None, findings };
+    let mut reader = Reader { read: Read::default(), start, first: None, names, findings };
     for (index, line) in lines.iter().enumerate() {
         if reader.findings.is_full() {
             break;
@@ -60,6 +61,8 @@ struct Reader<'f> {
     start: usize,
     /// The same, as the file has it.
     first: Option<usize>,
+    /// What may stand for points, counters and timers.
+    names: &'f Names,
     findings: &'f mut Findings,
 }
 
@@ -94,7 +97,7 @@ impl Reader<'_> {
             return;
         }
         let at = cursor.place();
-        let draft = read_instruction(&mut cursor, self.findings).unwrap_or_else(|| Draft::empty(at));
+        let draft = read_instruction(&mut cursor, self.names, self.findings).unwrap_or_else(|| Draft::empty(at));
         if let (Op::Tag, [TagUse { target: Target::Label(name), .. }]) = (draft.instruction.op, &draft.tags[..]) {
             self.read.labels.push(Defined { name: name.clone(), tag: None, step: self.read.steps.len(), at });
         }

@@ -1,5 +1,7 @@
 use super::*;
 use crate::testing::{ms, waits};
+use crate::toyo::field::{Form, Mask, Value};
+use crate::toyo::table::commands::{ROWS, Row};
 
 const SECOND: Duration = Duration::from_secs(1);
 const POLICY: Policy = Policy { timeout: SECOND, retries: 2, character: Duration::from_micros(1146) };
@@ -77,15 +79,10 @@ fn a_no_in_a_later_read_takes_a_yes_back() {
         let ended = line.poll(ms(60));
         assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
     }
-    // What runs is looked at without delay; who does not look waits for the no.
+    // What runs is looked at without delay.
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
-    assert!(line.confirm(ms(20)));
-    assert_eq!(line.poll(ms(20)), Step::Wait(ms(20) + QUIET));
-    line.handle(ms(60), b"@NG\r\n");
-    assert!(matches!(line.poll(ms(60)), Step::Done(Ended::Unfitting { .. })));
-    assert!(!line.confirm(ms(60)));
     // What is read back anyway waits for nothing.
     let mut line = sent("@WOVR OV=050", false);
     line.handle(ms(20), b"@OK\r\n");
@@ -115,6 +112,45 @@ fn a_no_before_the_next_answer_takes_a_yes_back() {
     let mut line = accepted();
     assert_eq!(line.poll(ms(80) + BEHIND_A_NO), answered("@NG"));
     assert!(line.take_refuted().is_none());
+}
+
+#[test]
+fn an_order_is_open_until_a_question_was_answered() {
+    for (first, other) in [("@OK", "@NG"), ("@NG", "@OK")] {
+        for row in ROWS.iter().filter(|row| row.is_order()) {
+            let order = example(row);
+            let mut line = sent(&order, false);
+            line.handle(ms(20), format!("{first}\r\n").as_bytes());
+            let now = ms(20) + QUIET;
+            assert_eq!(line.poll(now), answered(first), "{order}");
+            assert!(line.is_open());
+            // However long nobody looks at the line.
+            let now = now + SECOND;
+            line.begin(&request("@STAS SNO=0"), true);
+            assert!(matches!(line.poll(now), Step::Send(_)));
+            line.handle(now, format!("{other}\r\n@STAS SNO=0 ST1=22 ST2=00\r\n").as_bytes());
+            assert_eq!(line.poll(now), answered("@STAS SNO=0 ST1=22 ST2=00"));
+            let refuted = line.take_refuted().map(|(order, _)| order.text());
+            assert_eq!(refuted.as_deref(), Some(&order[..]));
+            assert!(!line.is_open());
+        }
+    }
+}
+
+/// An order as the manual prints it, with the least that its fields may be.
+fn example(row: &Row) -> String {
+    let Some(layout) = row.requests.first() else { return format!("@{}", row.word) };
+    let values = layout.fields.iter().map(|field| match field.form {
+        Form::Number(number) => Value::Number(number.least),
+        Form::Word(words) => Value::Word(words[0].text),
+        Form::Mask => Value::Mask(Mask::default()),
+        _ => Value::Text(match row.word {
+            "WPAR" => "M01 0/01/0".to_owned(),
+            "WPLT" => "END=0001".to_owned(),
+            _ => "NOP".to_owned(),
+        }),
+    });
+    format!("@{}", layout.record(values.collect()).unwrap().emit().unwrap())
 }
 
 #[test]

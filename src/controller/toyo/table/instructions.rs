@@ -5,7 +5,7 @@ use super::fields::{
     SPEED, STATION, SWITCH, TAG, TASK, TIME, TIMER, X, Y, Z, digits, fixed, place, plain, word, words,
 };
 use super::{EVERY, KCA25, Models};
-use crate::toyo::field::Field;
+use crate::toyo::field::{Field, Form};
 use crate::toyo::layout::Layout;
 
 /// An instruction of a sequential program.
@@ -19,6 +19,8 @@ pub struct Instruction {
     pub layout: Layout,
     /// What it does.
     pub about: &'static str,
+    /// One as a person writes it.
+    pub example: &'static str,
     /// Controllers that have it; empty for all.
     pub only_on: Models,
 }
@@ -27,6 +29,22 @@ impl Instruction {
     /// By its word.
     pub fn named(word: &str) -> Option<&'static Self> {
         INSTRUCTIONS.iter().find(|row| row.word == word)
+    }
+
+    /// How it is written: `JMPC TAG=<tag> CN<counter><compare><count>`.
+    pub fn form(&self) -> String {
+        let mut fields = self.layout.fields.iter();
+        let mut form = String::new();
+        for (index, words) in self.layout.text.split("{}").enumerate() {
+            if index > 0 {
+                form.push_str(&fields.next().map_or(String::new(), |field| match field.form {
+                    Form::Word([one, other]) => format!("{}|{}", one.text, other.text),
+                    _ => format!("<{}>", field.name),
+                }));
+            }
+            form.push_str(words);
+        }
+        form
     }
 
     /// Whether it needs axes: an axisless task cannot do it (TO 2-4, E19).
@@ -38,8 +56,11 @@ impl Instruction {
     }
 }
 
+/// The section of the manual that has all of them.
+pub const SECTION: &str = "2-5";
+
 macro_rules! instructions {
-    ($($op:ident $word:literal, $text:literal, $fields:expr, $about:literal $(, $only_on:expr)?;)*) => {
+    ($($op:ident $word:literal, $text:literal, $fields:expr, $about:literal, $example:literal $(, $only_on:expr)?;)*) => {
         /// Which instruction.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "each is explained in its row")]
@@ -61,6 +82,7 @@ macro_rules! instructions {
                 word: $word,
                 layout: Layout::new($text, $fields),
                 about: $about,
+                example: $example,
                 only_on: { let models = EVERY; $(let models = { let _ = models; $only_on };)? models },
             },)*
         ];
@@ -79,73 +101,73 @@ const RAMP: Field = digits("ramp", 2, 1, 20, "row of the acceleration table");
 const AXIS_OF: Field = words("axis", AXIS, "axis");
 
 instructions! {
-    Acc "ACC", "ACC A={}", &[RAMP], "choose acceleration and deceleration";
+    Acc "ACC", "ACC A={}", &[RAMP], "choose acceleration and deceleration", "ACC A=3";
     Brac "BRAC", "BRAC CN={} OFS={}", &[COUNTER_OR_NONE, digits("offset", 3, 0, 999, "added to the counter")],
-        "branch to the tag that counter and offset add up to";
-    Cal "CAL", "CAL TAG={}", &[TAG], "call the subroutine at a tag";
-    Calc "CALC", "CALC TAG={} CN{}{}{}", &[TAG, COUNTER, COMPARE, COUNT], "call if a counter compares";
-    Cali "CALI", "CALI TAG={} STN={} PN{}={}", &[TAG, STATION, PORT, MASK], "call if inputs are as given";
-    Calt "CALT", "CALT TAG={} TN{}{}{}", &[TAG, TIMER, COMPARE, TIME], "call if a timer compares";
-    Cans "CANS", "CANS TA={}", &[ANY_TASK], "cancel what OUTS of a task has pending";
-    Cnt "CNT", "CNT CN{}={}", &[COUNTER, COUNT], "set a counter";
-    CntPlus "CNT+", "CNT+ CN{}={}", &[COUNTER, COUNT], "add to a counter";
-    CntMinus "CNT-", "CNT- CN{}={}", &[COUNTER, COUNT], "subtract from a counter";
-    Cntc "CNTC", "CNTC", &[], "clear all counters";
-    Cwit "CWIT", "CWIT CN{}{}{}", &[COUNTER, COMPARE, COUNT], "wait until a counter compares";
-    Dec "DEC", "DEC D={}", &[RAMP], "choose deceleration", KCA25;
-    End "END", "END", &[], "end of the program";
-    Home "HOME", "HOME", &[], "return to the origin";
-    In "IN", "IN STN={} PN{}={} {}", &[STATION, PORT, MASK, LOGIC], "wait until inputs are as given";
-    Inpc "INPC", "INPC STN={} PN={} CN={}", &[STATION, PORT, COUNTER], "copy an input port to a counter";
-    Iout "IOUT", "IOUT PN{}={}", &[INTERNAL, MASK], "set bits of an internal port";
-    Insp "INSP", "INSP PN{}={} {}", &[INTERNAL, MASK, LOGIC], "wait until an internal port is as given";
-    Jmp "JMP", "JMP TAG={}", &[TAG], "jump to a tag";
-    Jmpc "JMPC", "JMPC TAG={} CN{}{}{}", &[TAG, COUNTER, COMPARE, COUNT], "jump if a counter compares";
-    Jmpi "JMPI", "JMPI TAG={} STN={} PN{}={}", &[TAG, STATION, PORT, MASK], "jump if inputs are as given";
-    Jmpt "JMPT", "JMPT TAG={} TN{}{}{}", &[TAG, TIMER, COMPARE, TIME], "jump if a timer compares";
+        "branch to the tag that counter and offset add up to", "BRAC CN=1 OFS=100";
+    Cal "CAL", "CAL TAG={}", &[TAG], "call the subroutine at a tag", "CAL TAG=20";
+    Calc "CALC", "CALC TAG={} CN{}{}{}", &[TAG, COUNTER, COMPARE, COUNT], "call if a counter compares", "CALC TAG=20 CN1>=5";
+    Cali "CALI", "CALI TAG={} STN={} PN{}={}", &[TAG, STATION, PORT, MASK], "call if inputs are as given", "CALI TAG=20 STN=0 PN1=.......1";
+    Calt "CALT", "CALT TAG={} TN{}{}{}", &[TAG, TIMER, COMPARE, TIME], "call if a timer compares", "CALT TAG=20 TN1>=2.5";
+    Cans "CANS", "CANS TA={}", &[ANY_TASK], "cancel what OUTS of a task has pending", "CANS TA=0";
+    Cnt "CNT", "CNT CN{}={}", &[COUNTER, COUNT], "set a counter", "CNT CN1=0";
+    CntPlus "CNT+", "CNT+ CN{}={}", &[COUNTER, COUNT], "add to a counter", "CNT+ CN1=1";
+    CntMinus "CNT-", "CNT- CN{}={}", &[COUNTER, COUNT], "subtract from a counter", "CNT- CN1=1";
+    Cntc "CNTC", "CNTC", &[], "clear all counters", "CNTC";
+    Cwit "CWIT", "CWIT CN{}{}{}", &[COUNTER, COMPARE, COUNT], "wait until a counter compares", "CWIT CN1>=5";
+    Dec "DEC", "DEC D={}", &[RAMP], "choose deceleration", "DEC D=3", KCA25;
+    End "END", "END", &[], "end of the program", "END";
+    Home "HOME", "HOME", &[], "return to the origin", "HOME";
+    In "IN", "IN STN={} PN{}={} {}", &[STATION, PORT, MASK, LOGIC], "wait until inputs are as given", "IN STN=0 PN1=......10 AND";
+    Inpc "INPC", "INPC STN={} PN={} CN={}", &[STATION, PORT, COUNTER], "copy an input port to a counter", "INPC STN=0 PN=2 CN=1";
+    Iout "IOUT", "IOUT PN{}={}", &[INTERNAL, MASK], "set bits of an internal port", "IOUT PN1=.......1";
+    Insp "INSP", "INSP PN{}={} {}", &[INTERNAL, MASK, LOGIC], "wait until an internal port is as given", "INSP PN1=.......1 AND";
+    Jmp "JMP", "JMP TAG={}", &[TAG], "jump to a tag", "JMP TAG=1";
+    Jmpc "JMPC", "JMPC TAG={} CN{}{}{}", &[TAG, COUNTER, COMPARE, COUNT], "jump if a counter compares", "JMPC TAG=1 CN1<5";
+    Jmpi "JMPI", "JMPI TAG={} STN={} PN{}={}", &[TAG, STATION, PORT, MASK], "jump if inputs are as given", "JMPI TAG=1 STN=0 PN1=.......1";
+    Jmpt "JMPT", "JMPT TAG={} TN{}{}{}", &[TAG, TIMER, COMPARE, TIME], "jump if a timer compares", "JMPT TAG=1 TN1>2.5";
     Loop "LOOP", "LOOP GRP={} THEN={} ELSE={}", &[GROUP, TAG.named("then"), TAG.named("else")],
-        "count on in an MVM group, and jump by whether there is more";
-    Mini "MINI", "MINI GRP={}", &[GROUP], "begin an MVM group anew";
+        "count on in an MVM group, and jump by whether there is more", "LOOP GRP=1 THEN=1 ELSE=2";
+    Mini "MINI", "MINI GRP={}", &[GROUP], "begin an MVM group anew", "MINI GRP=1";
     Mov "MOV", "MOV {} X={} Y={} Z={} R={} {} V={} {}", &[AIM, X, Y, Z, R, COURSE, SPEED, ARRIVAL],
-        "move to coordinates";
+        "move to coordinates", "MOV a X=100 Y=20.5 Z=0 R=0 S V=0 POST";
     Movp "MOVP", "MOVP {} PT={} CN={} {} V={} {}",
-        &[AIM, POINT_OR_COUNTER, COUNTER_OR_NONE, COURSE, SPEED, ARRIVAL], "move to a row of the coordinate table";
-    Mvb "MVB", "MVB {} V={} {}", &[COURSE, SPEED, ARRIVAL], "move back";
+        &[AIM, POINT_OR_COUNTER, COUNTER_OR_NONE, COURSE, SPEED, ARRIVAL], "move to a row of the coordinate table", "MOVP a PT=1 CN=0 S V=0 POST";
+    Mvb "MVB", "MVB {} V={} {}", &[COURSE, SPEED, ARRIVAL], "move back", "MVB S V=0 POST";
     Mvc "MVC", "MVC {} X={} Y={} Z={} R={} V={} {}", &[AIM, X, Y, Z, R, SPEED, ARRIVAL],
-        "move on an arc through coordinates";
+        "move on an arc through coordinates", "MVC a X=100 Y=20.5 Z=0 R=0 V=0 PASS";
     Mvcp "MVCP", "MVCP {} PT={} CN={} V={} {}", &[AIM, POINT_OR_COUNTER, COUNTER_OR_NONE, SPEED, ARRIVAL],
-        "move on an arc through rows of the coordinate table";
+        "move on an arc through rows of the coordinate table", "MVCP a PT=1 CN=0 V=0 PASS";
     Mve "MVE", "MVE {} PT={} CN={} {} V={}", &[AIM, POINT_OR_COUNTER, COUNTER_OR_NONE, COURSE, SPEED],
-        "move to a row of the coordinate table, and leave off at the escape input";
+        "move to a row of the coordinate table, and leave off at the escape input", "MVE a PT=1 CN=0 S V=0";
     Mvm "MVM", "MVM {} GRP={} V={} {} {}",
         &[COURSE, GROUP, SPEED, ARRIVAL, words("target", &[word("DIST", "destination"), word("APPR", "approach")],
             "which point of the place")],
-        "move to the present place of an MVM group";
-    Nop "NOP", "NOP", &[], "do nothing";
-    Ofs "OFS", "OFS X={} Y={} Z={} R={}", &[X, Y, Z, R], "offset what follows by coordinates";
+        "move to the present place of an MVM group", "MVM S GRP=1 V=0 POST DIST";
+    Nop "NOP", "NOP", &[], "do nothing", "NOP";
+    Ofs "OFS", "OFS X={} Y={} Z={} R={}", &[X, Y, Z, R], "offset what follows by coordinates", "OFS X=10 Y=0 Z=0 R=0";
     Ofsp "OFSP", "OFSP PT={} CN={}", &[POINT_OR_COUNTER, COUNTER_OR_NONE],
-        "offset what follows by a row of the coordinate table", KCA25;
-    Out "OUT", "OUT STN={} PN{}={}", &[STATION, PORT, MASK], "set outputs";
-    Outc "OUTC", "OUTC STN={} PN={} CN={}", &[STATION, PORT, COUNTER], "copy a counter to an output port";
+        "offset what follows by a row of the coordinate table", "OFSP PT=10 CN=0", KCA25;
+    Out "OUT", "OUT STN={} PN{}={}", &[STATION, PORT, MASK], "set outputs", "OUT STN=0 PN1=......10";
+    Outc "OUTC", "OUTC STN={} PN={} CN={}", &[STATION, PORT, COUNTER], "copy a counter to an output port", "OUTC STN=0 PN=2 CN=1";
     Outp "OUTP", "OUTP STN={} PN{}={} TM={}", &[STATION, PORT, MASK, fixed("time", (2, 1), 0, 999, "time").unit("s")],
-        "set outputs for a time";
+        "set outputs for a time", "OUTP STN=0 PN1=.......1 TM=0.5";
     Outs "OUTS", "OUTS TA={} STN={} PN{}={} {}{}{}",
         &[ANY_TASK, STATION, PORT, MASK, AXIS_OF, SIDE, place("place", "coordinate")],
-        "set outputs when an axis passes a place";
+        "set outputs when an axis passes a place", "OUTS TA=0 STN=0 PN1=.......1 X>=150";
     Pass "PASS", "PASS PASS={}", &[fixed("percent", (3, 1), 1, 1000, "how near a pass point is passed").unit("%")],
-        "choose how near pass points are passed", KCA25;
-    Psel "PSEL", "PSEL", &[], "jump by the program selection inputs";
-    Ret "RET", "RET", &[], "return from a subroutine";
+        "choose how near pass points are passed", "PASS PASS=50", KCA25;
+    Psel "PSEL", "PSEL", &[], "jump by the program selection inputs", "PSEL";
+    Ret "RET", "RET", &[], "return from a subroutine", "RET";
     Rsmv "RSMV", "RSMV {} X={} Y={} Z={} R={} {} V={} {}", &[AIM, X, Y, Z, R, COURSE, SPEED, ARRIVAL],
-        "move to coordinates that the host supplies";
-    Spd "SPD", "SPD V={}", &[digits("speed", 2, 1, 10, "row of the speed table")], "choose the speed";
-    Stop "STOP", "STOP", &[], "stop until started again";
-    Svon "SVON", "SVON {}", &[AXES_OR_ALL], "switch servo power on";
-    Svof "SVOF", "SVOF {}", &[AXES_OR_ALL], "switch servo power off";
-    Tag "TAG", "TAG TAG={}", &[TAG], "a place to jump to";
-    Tcan "TCAN", "TCAN TASK={}", &[OTHER_TASK], "end a task";
-    Tim "TIM", "TIM TM={}", &[TIME], "wait for a time";
-    Timp "TIMP", "TIMP TN{}={}", &[TIMER, TIME], "set a timer going";
+        "move to coordinates that the host supplies", "RSMV a X=0 Y=0 Z=0 R=0 S V=0 PASS";
+    Spd "SPD", "SPD V={}", &[digits("speed", 2, 1, 10, "row of the speed table")], "choose the speed", "SPD V=5";
+    Stop "STOP", "STOP", &[], "stop until started again", "STOP";
+    Svon "SVON", "SVON {}", &[AXES_OR_ALL], "switch servo power on", "SVON ALL";
+    Svof "SVOF", "SVOF {}", &[AXES_OR_ALL], "switch servo power off", "SVOF R";
+    Tag "TAG", "TAG TAG={}", &[TAG], "a place to jump to", "TAG TAG=1";
+    Tcan "TCAN", "TCAN TASK={}", &[OTHER_TASK], "end a task", "TCAN TASK=2";
+    Tim "TIM", "TIM TM={}", &[TIME], "wait for a time", "TIM TM=1.5";
+    Timp "TIMP", "TIMP TN{}={}", &[TIMER, TIME], "set a timer going", "TIMP TN1=0";
     Tlmv "TLMV", "TLMV {} TT={} TM={} TE={} LE={} AE={} DD={}",
         &[
             AXIS_OF,
@@ -156,8 +178,8 @@ instructions! {
             words("arrival_end", SWITCH, "end on arrival"),
             words("overflow", SWITCH, "watch for overflow"),
         ],
-        "move an axis with limited torque", KCA25;
-    Trsa "TRSA", "TRSA TASK={}", &[TASK], "let a stopped task go on";
-    Tsto "TSTO", "TSTO TASK={}", &[TASK], "stop a task";
-    Tstr "TSTR", "TSTR TASK={}", &[OTHER_TASK], "start a task";
+        "move an axis with limited torque", "TLMV Z TT=1 TM=0.5 TE=ON LE=OFF AE=ON DD=OFF", KCA25;
+    Trsa "TRSA", "TRSA TASK={}", &[TASK], "let a stopped task go on", "TRSA TASK=2";
+    Tsto "TSTO", "TSTO TASK={}", &[TASK], "stop a task", "TSTO TASK=2";
+    Tstr "TSTR", "TSTR TASK={}", &[OTHER_TASK], "start a task", "TSTR TASK=2";
 }

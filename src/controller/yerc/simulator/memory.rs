@@ -140,6 +140,15 @@ impl Memory {
         bank.defined[index] = true;
     }
 
+    /// A position variable is not taught any more.
+    ///
+    /// # Panics
+    /// If `index` is outside the kind's count, which callers check first.
+    pub(super) fn forget(&mut self, kind: Kind, index: usize) {
+        let bank = &mut self.banks[kind as usize];
+        bank.defined[index] = !kind.starts_undefined();
+    }
+
     /// A numeric variable as jobs see it.
     pub(super) fn number(&self, kind: Kind, index: usize) -> f64 {
         let Some(bytes) = self.element(kind, index) else { return 0.0 };

@@ -9,6 +9,7 @@
 //! | `defaults` | what a fresh controller has in it |
 //! | `world` | switches, power, alarms, what may be done when, the passing of time |
 //! | `memory`, `alarms`, `storage` | variables and I/O, alarm log, files |
+//! | `variables` | the file of all variables |
 //! | `motion`, `job`, `playback` | groups that move, job files, jobs that run |
 //! | `robot`, `reads`, `operate`, `moves` | the robot server |
 //! | `transfer` | the file server |
@@ -28,6 +29,7 @@ mod robot;
 mod start;
 mod storage;
 mod transfer;
+mod variables;
 mod world;
 
 #[cfg(test)]

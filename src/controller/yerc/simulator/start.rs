@@ -15,6 +15,7 @@ use super::memory::{Kind, Memory};
 use super::motion::{AXES, Arm, Family, Group};
 use super::playback::Player;
 use super::storage::{Content, Storage, check_stored_name};
+use super::variables;
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::Now;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
@@ -530,6 +531,12 @@ fn file(
         (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
         _ => return Err("a file has one of text, path and size".to_owned()),
     };
+    if name == variables::NAME {
+        let bytes = content.piece(0, usize::try_from(content.size()).unwrap_or(usize::MAX));
+        if !variables::load(&mut world.memory, &bytes) {
+            return Err(format!("'{}' is not a file of variables", entry.name));
+        }
+    }
     world.files.install(&name, content);
     let stem = name.strip_suffix(b".JBI");
     if stem.is_some_and(|stem| world.files.program(stem).is_none()) {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::job::Program;
+use super::variables;
 use super::world::{Refusal, World, code};
 use crate::yerc::Model;
 use crate::yerc::table::BATCH_BACKUP_PATH;
@@ -147,6 +148,9 @@ impl World {
     /// Service 0x16 for anything but the batch backup.
     pub(super) fn read_file(&self, name: &[u8]) -> Result<FileContent, Refusal> {
         check_stored_name(name)?;
+        if name == variables::NAME && self.files.get(name).is_some() {
+            return Ok(FileContent::Content(variables::written(&self.memory).into()));
+        }
         match (self.files.get(name), self.model) {
             (Some(content), _) if content.size() > 0 => Ok(FileContent::Content(content.clone())),
             (None, Model::Fs100) if name.ends_with(JOB) => Err(Refusal::Added(code::NO_SUCH_JOB)),
@@ -199,6 +203,9 @@ impl World {
         if let Some(stem) = name.strip_suffix(JOB) {
             Program::parse(stem, &bytes).map_err(Refusal::Added)?;
             self.player.forget(stem);
+        }
+        if name == variables::NAME && !variables::load(&mut self.memory, &bytes) {
+            return Err(Refusal::Added(code::NOT_LOADED));
         }
         let protected = self.files.files.get(name).is_some_and(|file| file.protected);
         self.files.files.insert(name.to_vec(), File { content: bytes.into(), protected });

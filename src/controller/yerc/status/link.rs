@@ -95,7 +95,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The request carries more or fewer bytes than the command takes; strings and moves differ between the \
          models.",
         "Set the right model for this robot. An FS100 that refuses a cartesian move may want the 25 words of its \
-         manual: ?model=fs100&move_words=25. `armctl yerc raw --check` compares lengths."),
+         manual: ?model=fs100&move_words=25. `armctl yerc raw --strict` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",
         "A value sent is outside what the data can hold, or number plus count runs past the end.",
         "Check value, first number and count against the limits of this controller."),

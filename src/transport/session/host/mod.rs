@@ -55,8 +55,23 @@ pub struct Host {
     stop: Option<Stop>,
     /// Until when nobody but who stops the robot gets the line.
     stop_first: Option<Instant>,
+    /// Is told whether a client of another process moves the robot, and was told last.
+    guard: Option<Guarding>,
+    is_guarding: bool,
     /// Whether the link went down while a client moved the robot.
     was_lost_in_motion: bool,
+    /// How long it goes on without a client, and since when there is none; without end, if it is not told.
+    idle: Option<Duration>,
+    idle_since: Instant,
+}
+
+/// Why a session ends by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Why {
+    /// A client wanted it.
+    Asked,
+    /// No client has come for long.
+    Idle,
 }
 
 /// What may pass to a device that is only to be read, whoever sends it.
@@ -70,6 +85,8 @@ pub struct Guard {
 
 /// Stops the robot; the text says why.
 type Stop = Box<dyn FnMut(&str)>;
+/// Is told whether what a client moves must be stopped when this process ends. What is wrong with that comes back in words.
+type Guarding = Box<dyn FnMut(bool) -> Result<(), String>>;
 
 /// Keeps a robot that is, or becomes, read-only from changes.
 struct Lock {
@@ -104,7 +121,11 @@ impl Host {
             lock: None,
             stop: None,
             stop_first: None,
+            guard: None,
+            is_guarding: false,
             was_lost_in_motion: false,
+            idle: None,
+            idle_since: Instant::now(),
         })
     }
 
@@ -122,21 +143,37 @@ impl Host {
         Self { stop: Some(Box::new(stop)), ..self }
     }
 
-    /// Serves until a client has it end. The future may be dropped: [`Host::end`] goes on from there.
-    pub async fn serve(&mut self) {
+    /// Tells `guard` whether what a client of another process moves must be stopped when this process ends.
+    #[must_use]
+    pub fn watched_by(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
+        Self { guard: Some(Box::new(guard)), ..self }
+    }
+
+    /// Has it end after so long without a client.
+    #[must_use]
+    pub fn ending_after(self, idle: Option<Duration>) -> Self {
+        Self { idle, ..self }
+    }
+
+    /// Serves until a client has it end, or no client has come for the time of [`Host::ending_after`]. The future may be
+    /// dropped: [`Host::end`] goes on from there.
+    pub async fn serve(&mut self) -> Why {
         loop {
+            let idle = self.idle.filter(|_| self.clients.is_empty()).map(|idle| self.idle_since + idle);
             tokio::select! {
                 Some((client, frame)) = self.letters.recv() => {
                     if self.heard(client, frame).await {
-                        return;
+                        return Why::Asked;
                     }
                 }
                 Ok(connection) = self.listener.accept() => self.accept(connection),
                 happening = self.held.next() => self.happened(happening),
                 () = sleep_until(self.stop_first.unwrap_or_else(Instant::now)), if self.stop_first.is_some() => {
                     self.stop_first = None;
+                    self.keep_guard();
                     self.next_in_queue();
                 }
+                () = sleep_until(idle.unwrap_or_else(Instant::now)), if idle.is_some() => return Why::Idle,
             }
         }
     }
@@ -368,12 +405,33 @@ impl Host {
             Some(holder) => Control::Held(holder.peer(holder.motion_since)),
             None => Control::Granted,
         };
-        let is_granted = answer == Control::Granted;
-        if let Some(client) = self.clients.get_mut(&id) {
+        if answer == Control::Granted
+            && self.motion != Some(id)
+            && let Some(client) = self.clients.get_mut(&id)
+        {
+            client.motion_since = Instant::now();
+            self.motion = Some(id);
+            self.keep_guard();
+        }
+        if let Some(client) = self.clients.get(&id) {
             client.tell(answer);
-            if is_granted && self.motion != Some(id) {
-                client.motion_since = Instant::now();
-                self.motion = Some(id);
+        }
+    }
+
+    /// Tells the guard of this process what it must know. A device that loses the link of its images stops by itself, and
+    /// a client in this very process has a guardian of its own.
+    fn keep_guard(&mut self) {
+        let mover = self.motion.and_then(|id| self.clients.get(&id));
+        let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
+        let is_left = |mover: &Client| mover.purpose == Purpose::LeavesMotion;
+        let is_foreign_motion = mover.is_some_and(|mover| is_foreign(mover) && !is_left(mover));
+        let must_guard = (is_foreign_motion || self.stop_first.is_some()) && self.held.images().is_none();
+        if must_guard != self.is_guarding
+            && let Some(guard) = &mut self.guard
+        {
+            self.is_guarding = must_guard;
+            if let Err(why) = guard(must_guard) {
+                (self.say)(&why);
             }
         }
     }
@@ -382,6 +440,7 @@ impl Host {
     /// but for what it wanted shown if it died.
     fn gone(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
+        self.idle_since = Instant::now();
         let died = client.is_named() && !client.has_left;
         let leaves = self.line == Some(id) && self.held.images().is_some_and(|images| !images.is_clear());
         let by = client.peer(client.since);
@@ -416,6 +475,7 @@ impl Host {
         if client.purpose == Purpose::Stop {
             self.stop_first = None;
         }
+        self.keep_guard();
         self.release(id);
         self.next_in_queue();
     }

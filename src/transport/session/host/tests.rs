@@ -67,7 +67,7 @@ fn images() -> Held {
 }
 
 fn info() -> Info {
-    Info { pid: 1, robot: "cell".to_owned(), family: "yrcx".to_owned(), target: "sim:".to_owned() }
+    Info { pid: 1, ..Info::own("cell", "yrcx", "sim:", "armctl session open") }
 }
 
 fn host(folder: &Path, held: Held) -> (Host, Spot) {
@@ -90,7 +90,7 @@ fn soon() -> Instant {
 /// Runs what clients do, while the host serves.
 async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
     tokio::select! {
-        () = host.serve() => panic!("nobody closed it"),
+        _ = host.serve() => panic!("nobody closed it"),
         done = clients => done,
     }
 }

@@ -143,3 +143,17 @@ fn late_copies_of_the_transfer_before_do_no_harm() {
     assert_eq!(bench.file(PEER, 2, true, 0x15, LAST_BLOCK | 1, b"new").len(), 1);
     assert_eq!(bench.fetch(0x16, b"B.DAT"), Ok(b"new".to_vec()));
 }
+
+#[test]
+fn the_file_of_variables_is_what_the_variables_are() {
+    let mut bench = Bench::new("");
+    let before = bench.fetch(0x16, b"VAR.DAT").unwrap();
+    let row = |file: &[u8]| String::from_utf8_lossy(file).lines().nth(3).map(ToOwned::to_owned);
+    assert_eq!(row(&before).as_deref(), Some("0,0,0,0,0,0,0,7,0,0"));
+    assert_eq!(bench.ask(0x7A, 7, 1, 0x10, &[99]).0, Status::OK);
+    let after = bench.fetch(0x16, b"VAR.DAT").unwrap();
+    assert_eq!(row(&after).as_deref(), Some("0,0,0,0,0,0,0,99,0,0"));
+    assert_eq!(bench.load(b"VAR.DAT", &before, 479), Status::OK);
+    assert_eq!(bench.ask(0x7A, 7, 1, 0x0E, &[]), (Status::OK, vec![7]));
+    assert_ne!(bench.load(b"VAR.DAT", b"//OTHER\r\n", 479), Status::OK);
+}

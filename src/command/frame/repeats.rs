@@ -54,8 +54,17 @@ pub struct Repeats {
 }
 
 impl Repeats {
+    /// What is to be printed now, where this line is to be said: summaries that are due, and itself, unless it is counted.
+    pub fn lines(&mut self, line: Line, now: Instant) -> Vec<Line> {
+        let mut lines = self.due(now, false);
+        if self.admits(&line, now) {
+            lines.push(line);
+        }
+        lines
+    }
+
     /// Whether this line is to be printed now. Lines about this machine always are.
-    pub fn admits(&mut self, line: &Line, now: Instant) -> bool {
+    fn admits(&mut self, line: &Line, now: Instant) -> bool {
         let Some(peer) = line.peer() else { return true };
         let kinds = self.seen.entry(peer.clone()).or_default();
         let mut kind = shape(&line.text);

@@ -1,0 +1,120 @@
+//! A name that a line lacks, chosen at the terminal among what completion knows there.
+
+use std::ffi::OsString;
+use std::time::Duration;
+
+use clap::CommandFactory as _;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+use super::parser::Refusal;
+use super::typed::Typed;
+use super::{complete, on_this_thread, wants_json};
+use crate::cli::Cli;
+use crate::command::Candidate;
+use crate::command::frame::asking::answered;
+use crate::command::frame::interrupt::catch_interrupts;
+use crate::command::frame::run::RunError;
+use crate::command::leaves::is_dangerous;
+use crate::failure::Failure;
+use crate::output::{ColorChoice, Format, Screen};
+
+/// How long a controller may take to list what it has.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// A line that asks nothing.
+const NO_INPUT: &str = "--no-input";
+
+/// The line with the value that was chosen for it; `None` where nothing can be listed, or nobody can be asked.
+pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
+    let Refusal::Mistake(error) = refusal else { return None };
+    if !can_choose(args) {
+        return None;
+    }
+    let whole = Cli::command();
+    let what = missing(error, args)?;
+    let line = [args, &[OsString::new()]].concat();
+    let found = complete::complete_within(&line, args.len(), false, PATIENCE, true);
+    let found: Vec<Candidate> = found.into_iter().filter(is_value).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let has_first = !is_dangerous(&Typed::new(args, &whole).path, false);
+    Some(chosen(args, &what, &found, has_first))
+}
+
+/// Whether a person can choose: not where a program reads, nor where the line or the environment forbids it.
+fn can_choose(args: &[OsString]) -> bool {
+    let is_json = wants_json(args).unwrap_or_else(super::prepared::wants_json);
+    let format = if is_json { Format::Json } else { Format::Table };
+    let screen = Screen::new(format, ColorChoice::Never, false, 0);
+    screen.with_questions(args.iter().all(|word| word != NO_INPUT)).can_choose()
+}
+
+/// What is missing at the end of a line: an argument without a flag, or the value of the flag there.
+fn missing(error: &clap::Error, args: &[OsString]) -> Option<String> {
+    match (error.kind(), error.get(ContextKind::InvalidArg)?) {
+        (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
+            let first = missing.first().filter(|first| first.starts_with('<'))?;
+            Some(first.trim_end_matches('.').trim_matches(['<', '>']).to_owned())
+        }
+        (ErrorKind::InvalidValue, ContextValue::String(flag)) => {
+            let has_value =
+                matches!(error.get(ContextKind::InvalidValue), Some(ContextValue::String(value)) if !value.is_empty());
+            let last = args.last()?.to_str()?;
+            let is_last = last.len() > 1 && last.starts_with('-') && !has_value;
+            is_last.then(|| flag.split(['<', '>']).nth(1).unwrap_or(flag).to_owned())
+        }
+        _ => None,
+    }
+}
+
+/// Whether a candidate is a whole value, and no flag.
+fn is_value(candidate: &Candidate) -> bool {
+    !candidate.is_begun && !candidate.value.starts_with('-')
+}
+
+fn chosen(args: &[OsString], what: &str, found: &[Candidate], has_first: bool) -> Result<Vec<OsString>, RunError> {
+    let screen = Screen::new(Format::Table, ColorChoice::Auto, false, 0);
+    let options: Vec<String> = found
+        .iter()
+        .map(|Candidate { value, help, .. }| match help {
+            Some(help) => format!("{value}  {help}"),
+            None => value.clone(),
+        })
+        .collect();
+    let question = format!("{what} (type to search, Enter takes, Esc leaves)");
+    let asked = move || screen.ask_one_of(&question, &options, has_first);
+    let mut at = None;
+    on_this_thread(async {
+        catch_interrupts();
+        at = Some(answered(screen, asked).await?);
+        Ok(())
+    })?;
+    let value = at.and_then(|at| found.get(at)).map(|candidate| candidate.value.clone());
+    let value = value.ok_or_else(|| Failure::local("internal error: nothing was chosen"))?;
+    let line: Vec<OsString> = [args, &[value.into()]].concat();
+    let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
+    if let Ok(words) = shlex::try_join(words) {
+        screen.note(&format!("the same without a question: armctl {words}"));
+    }
+    Ok(line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn what(line: &str) -> Option<String> {
+        let args: Vec<OsString> = line.split(' ').map(Into::into).collect();
+        let error = Cli::command().try_get_matches_from(&args).unwrap_err();
+        missing(&error, &args)
+    }
+
+    #[test]
+    fn a_name_or_the_value_of_the_last_flag_is_missing() {
+        assert_eq!(what("armctl yerc job select").as_deref(), Some("NAME"));
+        assert_eq!(what("armctl robots remove").as_deref(), Some("NAME"));
+        assert_eq!(what("armctl status -r").as_deref(), Some("NAME"));
+        assert_eq!(what("armctl yerc move linear"), None, "its flags");
+        assert_eq!(what("armctl yerc status --color blue"), None);
+    }
+}

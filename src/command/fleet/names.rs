@@ -1,0 +1,77 @@
+//! `armctl names`: names of signals, variables and registers, in robots.toml and as read from a controller.
+
+use clap::{Args, Subcommand};
+
+use super::robots::entry::{self, known};
+use crate::command::SchemaEntry;
+use crate::command::frame::names::{Listing, list};
+use crate::command::frame::run::{Run, RunError};
+use crate::failure::Failure;
+use crate::settings::Robot;
+
+/// What can be done with the names of a robot.
+#[derive(Debug, Subcommand)]
+pub enum Names {
+    /// List the names of a robot's signals, variables and registers
+    List(List),
+    /// Name a signal, variable or register in robots.toml
+    Set(Set),
+}
+
+/// Lists the names of a robot.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Names stand in robots.toml, below [robot.names] of the robot's entry. Those that a yerc controller keeps \
+                  are read by `armctl yerc names get`."
+)]
+pub struct List {
+    /// Only those with this in name, kind, address or origin
+    filter: Option<String>,
+}
+
+/// Writes a name into the entry of the robot in robots.toml.
+#[derive(Debug, Args)]
+#[command(after_help = "Then the name can be typed in place of the address: `armctl yerc io get clamp`.")]
+pub struct Set {
+    /// The name, such as clamp
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// What it names: 27010, B5 (yerc); SO(20), DO12 (yrcx); IN2.1, CN05 (toyo)
+    #[arg(value_name = "ADDRESS")]
+    address: String,
+}
+
+impl Names {
+    /// Does it.
+    pub fn run(self, run: &Run) -> Result<(), RunError> {
+        let robot = one(run)?;
+        match self {
+            Self::List(List { filter }) => run.local("names.list", &list(&robot, filter.as_deref())?),
+            Self::Set(Set { name, address }) => {
+                known(&run.sources.inventory, &robot.name)?;
+                if name.is_empty() || name.contains('=') {
+                    let failure = Failure::usage(format!("'{name}' is not a valid name"));
+                    return Err(failure.hint("use letters, digits and _, such as clamp").into());
+                }
+                entry::set(run, "names.set", robot.name, &[format!("names.{name}={address}")])
+            }
+        }
+    }
+}
+
+/// The robot that is meant.
+fn one(run: &Run) -> Result<Robot, Failure> {
+    let mut robots = run.sources.robots(None)?;
+    match (robots.pop(), robots.len()) {
+        (Some(robot), 0) => Ok(robot),
+        (_, others) => {
+            let message = format!("each robot has its own names, and {} robots are chosen", others + 1);
+            Err(Failure::usage(message).hint("name one with -r"))
+        }
+    }
+}
+
+/// The schemas of what is reported.
+pub fn schemas() -> [SchemaEntry; 2] {
+    [SchemaEntry::of::<Listing>("names.list"), SchemaEntry::of::<entry::WasSet>("names.set")]
+}

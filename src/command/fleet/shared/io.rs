@@ -1,0 +1,74 @@
+//! `armctl io get|list|watch`: signals of robots of any family.
+
+use std::time::Duration;
+
+use clap::{Args, Subcommand};
+
+use super::line::SharedLine;
+use crate::command::frame::watch::Changes;
+use crate::command::robot::io::{Filter, Signals};
+use crate::command::{AnyCommand, SchemaEntry};
+use crate::failure::Failure;
+use crate::settings::duration;
+
+/// Signals of all robots.
+#[derive(Debug, Subcommand)]
+pub enum Io {
+    /// Read signals by name or address
+    Get(Get),
+    /// List the signals that are on or have a name
+    List(List),
+    /// Print each change of signals
+    Watch(Watch),
+}
+
+/// Signals to read, by the names that each robot has for them.
+#[derive(Debug, Args)]
+pub struct Get {
+    /// Names of signals, or addresses as `armctl FAMILY io get` takes them
+    #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',')]
+    signals: Vec<String>,
+}
+
+/// All signals of robots.
+#[derive(Debug, Args)]
+pub struct List {
+    #[command(flatten)]
+    filter: Filter,
+}
+
+/// Signals to watch, until Ctrl-C, --for, or --count reports.
+#[derive(Debug, Args)]
+pub struct Watch {
+    /// Names of signals, or addresses as `armctl FAMILY io watch` takes them
+    #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',')]
+    signals: Vec<String>,
+    /// How long to go on
+    #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
+    within: Option<Duration>,
+}
+
+impl Io {
+    /// As a command for robots.
+    ///
+    /// # Errors
+    /// No family understands a word of it.
+    pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
+        let (id, verb, words) = match self {
+            Self::Get(Get { signals }) => ("io.get", "get", signals.clone()),
+            Self::Watch(Watch { signals, .. }) => ("io.watch", "watch", signals.clone()),
+            Self::List(List { filter }) => ("io.list", "list", filter.words()),
+        };
+        let line = ["io", verb].map(ToOwned::to_owned).into_iter().chain(words);
+        Ok(Box::new(SharedLine::new(id, line.collect())?))
+    }
+}
+
+/// The schemas of what is reported.
+pub fn schemas() -> [SchemaEntry; 3] {
+    [
+        SchemaEntry::of::<Signals>("io.get"),
+        SchemaEntry::of::<Signals>("io.list"),
+        SchemaEntry::of::<Changes>("io.watch"),
+    ]
+}

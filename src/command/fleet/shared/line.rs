@@ -1,0 +1,111 @@
+//! A line of the family of each robot: `io get clamp`. Each robot has names of its own, so each reads the line itself.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::slice;
+
+use futures_util::FutureExt as _;
+use futures_util::future::LocalBoxFuture;
+
+use super::PerRobot;
+use crate::command::face::words::{Typed, Wish};
+use crate::command::families;
+use crate::command::frame::command::AnyContext;
+use crate::command::frame::names;
+use crate::command::{AnyCommand, ConnectMode, Driver, Outcome};
+use crate::controller::Risk;
+use crate::failure::Failure;
+use crate::gate::{Confirmation, Intent};
+use crate::settings::Robot;
+use crate::settings::target::Family;
+
+/// The command that a line is, or why it is none.
+type Parsed = Result<Box<dyn AnyCommand>, Failure>;
+
+/// A line that reads, in the words that all families share.
+pub struct SharedLine {
+    id: &'static str,
+    words: Vec<String>,
+    /// As each family reads it, any address in place of a name.
+    usual: Vec<(Family, Parsed)>,
+    /// As each robot reads it: by its name.
+    own: RefCell<HashMap<String, Rc<Parsed>>>,
+}
+
+impl SharedLine {
+    /// A line; `id` is its name in envelopes and schemas.
+    ///
+    /// # Errors
+    /// No family understands it.
+    pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
+        let usual: Vec<(Family, Parsed)> =
+            Family::ALL.into_iter().map(|family| (family, names::asking(|| parse(family, &words)).0)).collect();
+        match usual.iter().find(|_| usual.iter().all(|(_, parsed)| parsed.is_err())) {
+            Some((_, Err(failure))) => Err(failure.clone()),
+            _ => Ok(Self { id, words, usual, own: RefCell::default() }),
+        }
+    }
+
+    fn usual(&self, family: Option<Family>) -> Option<&dyn AnyCommand> {
+        let of = |other: Family| family.is_none_or(|family| family == other);
+        self.usual.iter().find_map(|(family, parsed)| parsed.as_deref().ok().filter(|_| of(*family)))
+    }
+
+    fn of(&self, robot: &Robot) -> Rc<Parsed> {
+        let parsed = || {
+            let known = slice::from_ref(robot);
+            Rc::new(names::known(robot.family, known, || parse(robot.family, &self.words)))
+        };
+        Rc::clone(self.own.borrow_mut().entry(robot.name.clone()).or_insert_with(parsed))
+    }
+}
+
+impl AnyCommand for SharedLine {
+    fn id(&self) -> &'static str {
+        self.id
+    }
+
+    fn intent(&self, _robot: Option<&Robot>) -> Intent {
+        Intent { risk: Risk::Read, text: String::new(), confirmation: Confirmation::Question, is_stop: false }
+    }
+
+    fn is_endless(&self) -> bool {
+        self.usual(None).is_some_and(AnyCommand::is_endless)
+    }
+
+    fn driver(&self) -> Option<&'static dyn Driver> {
+        Some(&PerRobot)
+    }
+
+    fn connect_mode(&self, robot: &Robot) -> ConnectMode {
+        self.usual(Some(robot.family)).map_or_else(ConnectMode::default, |command| command.connect_mode(robot))
+    }
+
+    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        async move {
+            let parsed = self.of(context.robot);
+            let command = (*parsed).as_ref().map_err(Failure::clone)?;
+            let AnyContext { robot, connection, screen, several, authority } = context;
+            command.run(AnyContext { robot, connection: &mut *connection, screen, several, authority }).await
+        }
+        .boxed_local()
+    }
+}
+
+/// The command of a family that words are.
+fn parse(family: Family, words: &[String]) -> Parsed {
+    let face = families::of(family);
+    let parser = face.augment(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);
+    match parser.try_get_matches_from(words).and_then(|mut matches| face.read(&mut matches)) {
+        Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
+        Ok(_) => Err(Failure::local("internal error: a shared line is a command of each family")),
+        Err(error) => {
+            let told = error.render().to_string();
+            let told = told.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            let message =
+                told.split_once("': ").filter(|_| told.starts_with("invalid value")).map_or(told, |(_, why)| why);
+            Err(Failure::usage(message).hint(format!("see `armctl {family} {} -h`", words[..2].join(" "))))
+        }
+    }
+}

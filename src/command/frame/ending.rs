@@ -1,0 +1,83 @@
+//! `--wait` and `--no-wait`: whether a command ends with what it has set in motion.
+
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::settings::duration;
+
+/// Of a motion, or other work that takes its time: it is waited for, unless told not to.
+#[derive(Debug, Clone, Copy, Args)]
+#[group(skip)]
+pub struct MotionEnd {
+    /// Wait until it has ended, as without a flag
+    #[arg(long, overrides_with = "no_wait", hide_short_help = true)]
+    wait: bool,
+    /// Return as soon as the controller has accepted it
+    #[arg(long)]
+    no_wait: bool,
+}
+
+impl MotionEnd {
+    /// Whether it is not waited for.
+    pub const fn no_wait(self) -> bool {
+        self.no_wait
+    }
+}
+
+/// Of a program: it is not waited for, unless told to.
+#[derive(Debug, Clone, Copy, Args)]
+#[group(skip)]
+pub struct ProgramEnd {
+    /// Wait until the program has ended, at most TIME; with --repeat each run
+    #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
+    #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
+    wait: Option<Option<Duration>>,
+    /// Return as soon as the controller has accepted the start, as without a flag
+    #[arg(long, conflicts_with_all = ["wait", "repeat"], hide_short_help = true)]
+    no_wait: bool,
+}
+
+impl ProgramEnd {
+    /// How long it is waited for, if it is.
+    pub const fn limit(self) -> Option<Option<Duration>> {
+        self.wait
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{Command, CommandFactory as _};
+
+    use crate::cli::Cli;
+
+    /// Commands whose `--wait TIME` is how long an answer may take.
+    const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
+
+    /// Commands below one that take only one of both flags.
+    fn halves(command: &Command, path: &str, found: &mut Vec<String>) {
+        let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
+        if has("wait") != has("no-wait") && !OTHERS.contains(&path) {
+            found.push(path.to_owned());
+        }
+        for verb in command.get_subcommands() {
+            halves(verb, &format!("{path} {}", verb.get_name()), found);
+        }
+    }
+
+    #[test]
+    fn both_flags_exist_together() {
+        let mut found = Vec::new();
+        halves(&Cli::command(), "armctl", &mut found);
+        assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn the_last_flag_counts_and_a_repeated_start_waits() {
+        let parses = |line: &str| Cli::command().try_get_matches_from(line.split(' ')).is_ok();
+        assert!(parses("armctl toyo home --no-wait --wait") && parses("armctl toyo run easy 1 --wait 5s"));
+        assert!(
+            !parses("armctl toyo run easy 1 --repeat 2 --no-wait") && !parses("armctl yerc job start --wait --no-wait")
+        );
+    }
+}

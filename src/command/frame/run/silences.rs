@@ -1,0 +1,53 @@
+//! What a watch says of a robot that is silent: an error now and then, however often it is looked at.
+
+use std::time::Instant;
+
+use super::Run;
+use crate::command::frame::repeats::{Line, Repeats};
+use crate::failure::Failure;
+use crate::output::log::Level;
+use crate::settings::Robot;
+
+/// The silences of a robot that is watched.
+pub(super) struct Silences<'a> {
+    run: &'a Run,
+    robot: &'a Robot,
+    repeats: Repeats,
+    last: Option<Failure>,
+}
+
+impl<'a> Silences<'a> {
+    pub fn new(run: &'a Run, robot: &'a Robot) -> Self {
+        Self { run, robot, repeats: Repeats::default(), last: None }
+    }
+
+    /// Says why it did not answer, unless that was just said.
+    pub fn say(&mut self, failure: &Failure) {
+        let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
+        self.last = Some(failure.clone());
+        let lines = self.repeats.lines(line, Instant::now());
+        self.print(lines);
+    }
+
+    /// It answers, or nobody watches any more: says how often it did not.
+    pub fn end(&mut self) {
+        let lines = self.repeats.due(Instant::now(), true);
+        self.print(lines);
+        self.repeats = Repeats::default();
+    }
+
+    fn print(&self, lines: Vec<Line>) {
+        for Line { text, .. } in lines {
+            if let Some(failure) = &self.last {
+                self.run.screen.failure(&Failure { message: text, ..failure.clone() });
+                self.run.redraw.forget();
+            }
+        }
+    }
+}
+
+impl Drop for Silences<'_> {
+    fn drop(&mut self) {
+        self.end();
+    }
+}

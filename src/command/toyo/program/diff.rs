@@ -1,0 +1,147 @@
+//! `toyo program diff`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::get::Get;
+use super::text;
+use crate::command::backup::text_diff::{self, Hunk, TextDifference};
+use crate::command::frame::names;
+use crate::command::toyo::link::Toyo;
+use crate::command::toyo::{files, tasks};
+use crate::command::{Command, Context, Report};
+use crate::controller::Risk;
+use crate::controller::text::Encoding;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::{MOST_STEPS, check_named, used};
+use crate::failure::{Failure, Kind};
+use crate::output::view::{Section, View};
+
+/// Compares the steps of a program in the controller with those of a text file. The exit code is 8 if they differ.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Steps are compared: labels, comments and the form of numbers do not count, nor NOPs at the end. \
+                        All steps of the task are read, which takes about 35 ms each at 9600 baud. To read another task \
+                        than the current one, that task is made the current one for a while, which is a change: a \
+                        read-only robot refuses it."
+)]
+pub struct Diff {
+    /// A program file; - is stdin
+    file: PathBuf,
+    /// Task, 1 to 4, instead of the current one
+    #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
+    number: Option<u8>,
+    /// The same as a flag
+    #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(u8).range(1..=4))]
+    task: Option<u8>,
+}
+
+impl Diff {
+    fn task(&self) -> Option<u8> {
+        self.number.or(self.task)
+    }
+}
+
+impl Command for Diff {
+    type Family = Toyo;
+    type Report = Difference;
+    const ID: &'static str = "toyo.program.diff";
+
+    fn risk(&self) -> Risk {
+        if self.task().is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Difference, Failure> {
+        let Context { robot, link, screen, .. } = context;
+        let name = files::shown(&self.file);
+        let checked = check_named(&files::read(&self.file)?, MOST_STEPS, None, names::of(robot, screen));
+        let program = text::program(&name, checked, &screen.silenced())?;
+        let get = Get::whole(self.task());
+        if link.is_dry() {
+            get.dry_run(link).await?;
+        }
+        let outcome = get.read(link, screen).await;
+        let (task, _, answers) = tasks::done(link, outcome).await?;
+        let found: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
+        let wanted: Vec<Record> = program.steps.into_iter().map(|step| step.record).collect();
+        Ok(Difference::new(task, name, &found[..used(&found)], &wanted[..used(&wanted)]))
+    }
+}
+
+/// How a program in the controller and a file differ.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Difference {
+    task: u8,
+    file: String,
+    /// Whether the steps are the same.
+    equal: bool,
+    /// Steps in the controller, up to the last that is no NOP.
+    controller_steps: usize,
+    /// Steps of the file, up to the last that is no NOP.
+    file_steps: usize,
+    /// Changes from the controller (old) to the file (new); a line is a step.
+    hunks: Vec<Hunk>,
+}
+
+impl Difference {
+    fn new(task: u8, file: String, found: &[Record], wanted: &[Record]) -> Self {
+        let lines = |steps: &[Record]| steps.iter().map(|step| format!("{}\n", step.written())).collect::<String>();
+        let equal = found.len() == wanted.len() && found.iter().zip(wanted).all(|(one, other)| one == other);
+        let difference = TextDifference::of(Encoding::Utf8, lines(found).as_bytes(), lines(wanted).as_bytes());
+        let hunks = difference.filter(|_| !equal).map(|difference| difference.hunks).unwrap_or_default();
+        Self { task, file, equal, controller_steps: found.len(), file_steps: wanted.len(), hunks }
+    }
+
+    fn summary(&self) -> String {
+        let Self { task, file, equal, controller_steps, file_steps, .. } = self;
+        if *equal {
+            format!("the program of task {task} and {file} are the same, {file_steps} steps")
+        } else {
+            format!("the program of task {task} ({controller_steps} steps) and {file} ({file_steps} steps) differ")
+        }
+    }
+}
+
+impl Report for Difference {
+    fn view(&self) -> View {
+        if self.equal {
+            return View::text(self.summary());
+        }
+        let old = format!("task {} (controller)", self.task);
+        View::default().and(Section::Lines(text_diff::unified(&old, &self.file, &self.hunks)))
+    }
+
+    fn failure(&self) -> Option<Failure> {
+        (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::command::toyo::testing::{Bench, Fault, blocks};
+    use crate::failure::Kind;
+
+    #[test]
+    fn steps_are_compared_and_not_their_form() {
+        let state = "steps = { 1 = [\"SPD V=05\", \"TAG TAG=001\", \"JMP TAG=001\", \"END\"] }";
+        let (mut bench, _) = Bench::with_faults(state, |_, _| Fault::None);
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let path = file.path().to_str().unwrap();
+        std::fs::write(path, "# the same\nspd v=5\nnext: JMP TAG=next\nEND\nNOP\n").unwrap();
+        let (same, failure) = bench.run(&["program", "diff", path]).unwrap();
+        assert!(failure.is_none() && same["equal"] == true && same["file_steps"] == 4, "{same}");
+        std::fs::write(path, "SPD V=6\nnext: JMP TAG=next\nEND\n").unwrap();
+        let (other, failure) = bench.run(&["program", "diff", path, "1"]).unwrap();
+        assert_eq!(failure.map(|failure| (failure.kind, failure.kind.exit())), Some((Kind::ConditionNotMet, 8)));
+        assert_eq!(
+            other["hunks"][0]["lines"][0],
+            serde_json::json!({ "change": "removed", "text": "SPD V=05", "ending": "lf" })
+        );
+        assert_eq!(blocks(&["program", "diff", path]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);
+        std::fs::write(path, "EMD\n").unwrap();
+        assert_eq!(bench.run(&["program", "diff", path]).unwrap_err().kind, Kind::Usage);
+    }
+}

@@ -1,0 +1,181 @@
+//! Source texts of the programs that were put, kept by the address of the controller: a controller keeps neither labels nor
+//! comments.
+//!
+//! A file per controller and task in the state folder of the user. It counts only for the very steps that it was put as. It
+//! is an aid: where it cannot be kept or read, nothing is lost but labels and comments.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+
+use crate::command::frame::local::state_folder;
+use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::program::used;
+use crate::files;
+use crate::settings::Robot;
+
+/// What such a file begins with.
+const FORMAT: &str = "armctl-toyo-source";
+/// What is larger is none that was written here: 5000 steps with long comments are less.
+const MOST: u64 = 8 << 20;
+/// Tasks that a controller may have.
+const TASKS: std::ops::RangeInclusive<u8> = 1..=4;
+
+/// The kept texts of a controller.
+#[derive(Debug, Clone, Default)]
+pub struct Sources {
+    /// Its files begin with this; `None` where nothing is kept.
+    prefix: Option<PathBuf>,
+    address: String,
+    /// Whether the steps behind the kept ones count as unknown by now.
+    is_doubted: bool,
+}
+
+/// A text that was put, with the steps that it became.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    format: String,
+    /// The controller that it was put to.
+    address: String,
+    task: u8,
+    /// What the file was called.
+    pub file: String,
+    /// When it was put.
+    pub put_at: Timestamp,
+    /// The text.
+    pub text: String,
+    /// The steps up to the last that is no NOP, as the controller has them.
+    steps: Vec<String>,
+    /// How many steps the task had.
+    room: u16,
+    /// Whether all steps behind these were NOP, and no command of this user has changed them since.
+    rest_is_nop: bool,
+}
+
+impl Source {
+    /// How many steps it has.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether steps from the first one on are those that it was put as.
+    pub fn is(&self, steps: &[Record]) -> bool {
+        self.differences(steps) == 0
+    }
+
+    /// How many steps differ from those that it was put as.
+    pub fn differences(&self, steps: &[Record]) -> usize {
+        let used = used(steps);
+        let differing = steps[..used].iter().zip(&self.steps).filter(|(step, kept)| step.written() != **kept).count();
+        differing + used.abs_diff(self.steps.len())
+    }
+
+    /// Whether the steps behind it need no look, as far as those up to its last one are as they were put.
+    pub fn knows_rest(&self, room: u16) -> bool {
+        self.rest_is_nop && self.room == room
+    }
+}
+
+impl Sources {
+    /// Of a robot; of a simulator in this process nothing is kept.
+    pub fn of(robot: &Robot) -> Self {
+        let Some(address) = robot.target.value.address().key() else { return Self::default() };
+        let hash = Sha256::digest(address.as_bytes()).iter().take(8).fold(String::new(), |mut text, byte| {
+            // Nothing fails when text is written to a string.
+            let _ = write!(text, "{byte:02x}");
+            text
+        });
+        let prefix = state_folder().map(|folder| folder.join("toyo-programs").join(hash));
+        Self { prefix, address, is_doubted: false }
+    }
+
+    fn path(&self, task: u8) -> Option<PathBuf> {
+        let mut path = self.prefix.clone()?.into_os_string();
+        path.push(format!("-{task}.json"));
+        Some(path.into())
+    }
+
+    /// The text that was put last as the whole program of a task; none where there is none, or none that can be read.
+    pub fn get(&self, task: u8) -> Option<Source> {
+        let text = files::text(&self.path(task)?, MOST).ok()?;
+        let source: Source = serde_json::from_str(&text).ok()?;
+        (source.format == FORMAT && source.address == self.address && source.task == task).then_some(source)
+    }
+
+    /// Keeps a text that was put, with all the steps of its task.
+    pub fn keep(&mut self, task: u8, (file, text): (&str, &str), steps: &[Record], room: u16) -> std::io::Result<()> {
+        let steps = steps[..used(steps)].iter().map(Record::written).collect();
+        let now = Timestamp::now();
+        self.write(&Source {
+            format: FORMAT.to_owned(),
+            address: self.address.clone(),
+            task,
+            file: file.to_owned(),
+            put_at: now.round(jiff::Unit::Second).unwrap_or(now),
+            text: text.to_owned(),
+            steps,
+            room,
+            rest_is_nop: true,
+        })
+    }
+
+    fn write(&self, source: &Source) -> std::io::Result<()> {
+        let Some(path) = self.path(source.task) else { return Ok(()) };
+        std::fs::create_dir_all(files::folder_of(&path))?;
+        files::replace(&path, &serde_json::to_vec(source)?)
+    }
+
+    /// Something changes steps of the controller: what is behind a program may not be NOP any more.
+    pub fn doubt(&mut self) {
+        if std::mem::replace(&mut self.is_doubted, true) {
+            return;
+        }
+        for source in TASKS.filter_map(|task| self.get(task)).filter(|source| source.rest_is_nop) {
+            // Without this, a later put reads less than it should; so the file goes.
+            if self.write(&Source { rest_is_nop: false, ..source.clone() }).is_err()
+                && let Some(path) = self.path(source.task)
+            {
+                std::fs::remove_file(path).unwrap_or_default();
+            }
+        }
+    }
+
+    /// What was doubted is known again.
+    pub fn trust(&mut self) {
+        self.is_doubted = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controller::toyo::request::instruction;
+
+    fn steps(texts: &[&str]) -> Vec<Record> {
+        texts.iter().map(|text| instruction(text).unwrap()).collect()
+    }
+
+    #[test]
+    fn a_text_counts_for_the_steps_that_it_was_put_as() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources = Sources {
+            prefix: Some(folder.path().join("programs").join("x")),
+            address: "tcp 127.0.0.1 1".to_owned(),
+            is_doubted: false,
+        };
+        assert_eq!(sources.get(1), None);
+        let put = steps(&["SPD V=05", "END", "NOP", "NOP"]);
+        sources.keep(1, ("pick.toyo", "# text\nSPD V=5\nEND\n"), &put, 4).unwrap();
+        let source = sources.get(1).unwrap();
+        assert!(source.is(&put) && source.len() == 2 && source.knows_rest(4) && !source.knows_rest(5));
+        assert_eq!(source.differences(&steps(&["SPD V=06", "END", "TAG TAG=001"])), 2);
+        sources.doubt();
+        let source = sources.get(1).unwrap();
+        assert!(source.is(&put) && !source.knows_rest(4), "the text stays, what is behind it is unknown");
+        let other = Sources { address: "tcp 127.0.0.1 2".to_owned(), ..sources };
+        assert_eq!(other.get(1), None, "another controller");
+    }
+}

@@ -1,0 +1,57 @@
+//! `yerc io list`.
+
+use clap::Args;
+
+use super::super::orders::usage;
+use super::super::parts::{Parts, read_in_parts};
+use super::{item, kind, signal};
+use crate::command::frame::names;
+use crate::command::robot::io::{Filter, IoRow, Signals};
+use crate::command::yerc::link::Yerc;
+use crate::command::{Command, Context};
+use crate::controller::yerc::signal::Signal;
+use crate::controller::yerc::variables::plan_io_reads;
+use crate::failure::Failure;
+
+/// Reads the signals of all classes that the model has.
+#[derive(Debug, Args)]
+#[command(after_help = "A group that the controller does not have is left out.")]
+pub struct List {
+    #[command(flatten)]
+    filter: Filter,
+}
+
+impl Command for List {
+    type Family = Yerc;
+    type Report = Signals;
+    const ID: &'static str = "yerc.io.list";
+
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Signals, Failure> {
+        let Context { link, robot, screen, .. } = context;
+        let names = names::of(robot, screen);
+        let groups = |model| -> Vec<u16> {
+            let all = signal::groups(model).filter(|(_, span)| self.filter.has(kind(span.meaning)));
+            all.map(|(group, _)| group).collect()
+        };
+        let model = link.model_for(|model| signal::reads(model, &groups(model), false)).await?;
+        let wanted = groups(model);
+        let progress = screen.spinner("reading signals");
+        let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
+        let say =
+            |_: &[u16], known: usize| progress.say(&format!("reading signals: {known} of {} groups", wanted.len()));
+        let bytes = read_in_parts(link, plan, &wanted, |_| Parts::Halves, say).await?;
+        if let Some(Err(denied)) = bytes.values().find(|_| bytes.values().all(Result::is_err)) {
+            return Err(denied.clone().into());
+        }
+        let mut rows = Vec::new();
+        for group in &wanted {
+            let Some(Ok(byte)) = bytes.get(group) else { continue };
+            let bits = (0..8).filter_map(|bit| Signal::new(u32::from(*group) * 10 + bit).ok());
+            for signal in bits {
+                let row = IoRow::state(item(model, signal, names)?, Ok(signal.is_on(*byte)));
+                rows.extend(Some(row).filter(|row| self.filter.lists(row)));
+            }
+        }
+        Signals::new(rows)
+    }
+}

@@ -1,0 +1,35 @@
+//! `yrcx io list`.
+
+use clap::Args;
+
+use super::row;
+use crate::command::frame::names;
+use crate::command::robot::io::{Filter, Signals};
+use crate::command::yrcx::link::Yrcx;
+use crate::command::{Command, ConnectMode, Context};
+use crate::controller::yrcx::signal::{Side, Signal};
+use crate::failure::Failure;
+
+/// Reads all signals. Inputs are known to the client that sets them, so they are listed in a session only.
+#[derive(Debug, Args)]
+pub struct List {
+    #[command(flatten)]
+    filter: Filter,
+}
+
+impl Command for List {
+    type Family = Yrcx;
+    type Report = Signals;
+    const ID: &'static str = "yrcx.io.list";
+    const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
+
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
+        let names = names::of(context.robot, context.screen);
+        let inputs = context.link.shown().copied();
+        let outputs = context.link.look().await?;
+        let inputs = inputs.iter().flat_map(|image| Signal::all(Side::Input).map(move |signal| (signal, image)));
+        let all = inputs.chain(Signal::all(Side::Output).map(|signal| (signal, &outputs)));
+        let rows = all.map(|(signal, image)| row(signal, image, names)).filter(|row| self.filter.lists(row));
+        Signals::new(rows.collect())
+    }
+}

@@ -1,0 +1,172 @@
+//! A link that takes one client, which `top`, services, watches and commands want at the same time: a device server in front
+//! of a simulated controller counts how often two of them would have met.
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use serde_json::Value;
+
+use super::{Desk, Running, simulator, stderr};
+use crate::support::terminal::Terminal;
+
+/// A serial device server.
+struct DeviceServer {
+    url: String,
+    /// Connections that came while another one was there.
+    conflicts: Arc<AtomicUsize>,
+    accepted: Arc<AtomicUsize>,
+}
+
+impl DeviceServer {
+    /// In front of a simulator; of two clients it lets the first one go if it `evicts`, or else the second one.
+    fn before(target: &str, evicts: bool) -> Self {
+        let controller: SocketAddr = target.strip_prefix("tcp://").unwrap().parse().unwrap();
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let url = format!("tcp://{}", listener.local_addr().unwrap());
+        let (conflicts, accepted) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0)));
+        let server = Self { url, conflicts: Arc::clone(&conflicts), accepted: Arc::clone(&accepted) };
+        thread::spawn(move || {
+            let mut before: Option<TcpStream> = None;
+            for client in listener.incoming() {
+                let client = client.unwrap();
+                accepted.fetch_add(1, Ordering::Relaxed);
+                let is_there = |client: &TcpStream| {
+                    client.set_nonblocking(true).unwrap();
+                    let found = client.peek(&mut [0]);
+                    client.set_nonblocking(false).unwrap();
+                    !matches!(found, Ok(0)) && !found.is_err_and(|error| error.kind() != std::io::ErrorKind::WouldBlock)
+                };
+                if before.as_ref().is_some_and(is_there) {
+                    conflicts.fetch_add(1, Ordering::Relaxed);
+                    if !evicts {
+                        continue;
+                    }
+                }
+                if let Some(before) = before.replace(client.try_clone().unwrap()) {
+                    before.shutdown(Shutdown::Both).unwrap_or_default();
+                }
+                let line = connected(controller);
+                pass(client.try_clone().unwrap(), line.try_clone().unwrap());
+                pass(line, client);
+            }
+        });
+        server
+    }
+}
+
+/// The one connection that a simulator takes, as soon as it has let go of the one before.
+fn connected(controller: SocketAddr) -> TcpStream {
+    loop {
+        let line = TcpStream::connect(controller).unwrap();
+        line.set_read_timeout(Some(std::time::Duration::from_millis(20))).unwrap();
+        let is_let_go = matches!(line.peek(&mut [0]), Ok(0));
+        line.set_read_timeout(None).unwrap();
+        if !is_let_go {
+            return line;
+        }
+    }
+}
+
+fn pass(mut from: TcpStream, mut to: TcpStream) {
+    thread::spawn(move || {
+        let mut buffer = [0; 1024];
+        while let Ok(length) = from.read(&mut buffer) {
+            if length == 0 || to.write_all(&buffer[..length]).is_err() {
+                break;
+            }
+        }
+        to.shutdown(Shutdown::Both).unwrap_or_default();
+    });
+}
+
+/// What a watch prints, line by line, until it is ended.
+struct Watch {
+    running: Running,
+    lines: Arc<Mutex<Vec<String>>>,
+}
+
+impl Watch {
+    fn start(mut command: Command) -> Self {
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let lines = Arc::new(Mutex::new(Vec::new()));
+        let (stdout, printed) = (process.stdout.take().unwrap(), Arc::clone(&lines));
+        thread::spawn(move || {
+            BufReader::new(stdout).lines().map_while(Result::ok).for_each(|line| printed.lock().unwrap().push(line));
+        });
+        let stderr = BufReader::new(process.stderr.take().unwrap());
+        Self { running: Running { process, stderr, first: String::new() }, lines }
+    }
+}
+
+#[test]
+fn what_looks_at_a_robot_shares_a_link_that_takes_one_client() {
+    for evicts in [false, true] {
+        let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+        let server = DeviceServer::before(&simulator.first, evicts);
+        let desk = Desk::new(&[("cell", "toyo", &server.url)]);
+        let mut top = Terminal::start(desk.command("top --all --watch 50ms"), 100, 30).unwrap();
+        let watch = Watch::start(desk.command("-r cell toyo position --watch 50ms -o jsonl"));
+        let metrics = Watch::start(desk.command("serve metrics --all --listen 127.0.0.1:0 --watch 50ms"));
+        // Whatever it is told of, it looks at robots whether or not there is a broker.
+        let publish = Watch::start(desk.command("publish mqtt://127.0.0.1:1 --all --watch 50ms"));
+        let seen = |watch: &Watch| watch.lines.lock().unwrap().len();
+        while seen(&watch) < 40 {
+            let output = desk.run("-r cell toyo position --json");
+            assert!(output.status.success(), "{}", stderr(&output));
+        }
+        top.shows("cell  toyo  answer");
+        for line in &*watch.lines.lock().unwrap() {
+            assert_eq!(serde_json::from_str::<Value>(line).unwrap()["ok"], true, "{line}");
+        }
+        assert_eq!(server.conflicts.load(Ordering::Relaxed), 0, "evicts: {evicts}");
+        assert!(desk.listed()["clients"].as_array().unwrap().len() >= 4, "{}", desk.listed());
+        for mut watch in [watch, metrics, publish] {
+            watch.running.signal("TERM");
+            let mut said = String::new();
+            watch.running.stderr.read_to_string(&mut said).unwrap();
+            assert!(!said.contains("cell ("), "it says that something was wrong: {said}");
+        }
+        top.press("q");
+        assert!(top.end().success());
+        // Nobody uses the session any more, so it ends.
+        while !desk.files("sock").is_empty() {}
+    }
+}
+
+/// Commands without a session open the link one after the other.
+#[test]
+fn commands_wait_for_each_other_where_a_link_takes_one_client() {
+    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let server = DeviceServer::before(&simulator.first, true);
+    let desk = Desk::new(&[("cell", "toyo", &server.url)]);
+    let asked: Vec<_> = (0..8).map(|_| Running::start(desk.command("-r cell toyo position"), false)).collect();
+    for asked in asked {
+        let (code, said) = asked.end();
+        assert_eq!(code, Some(0), "{said}");
+    }
+    assert_eq!((server.conflicts.load(Ordering::Relaxed), server.accepted.load(Ordering::Relaxed)), (0, 8));
+    assert!(desk.files("sock").is_empty(), "a command opens no session");
+}
+
+/// A command that keeps the link to itself is not evicted, and whoever wants it is told who has it.
+#[test]
+fn who_keeps_a_link_to_himself_is_named() {
+    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let server = DeviceServer::before(&simulator.first, true);
+    let desk = Desk::new(&[("cell", "toyo", &server.url)]);
+    let jog = Running::start(desk.command("-r cell toyo jog X + low --for 60s --yes"), false);
+    while server.accepted.load(Ordering::Relaxed) == 0 {}
+    let blocked = desk.run("-r cell toyo position");
+    super::fails(
+        &blocked,
+        4,
+        &format!("process {} (`armctl -r cell toyo jog X + low --for 60s --yes`) has it", jog.process.id()),
+    );
+    assert_eq!(server.conflicts.load(Ordering::Relaxed), 0);
+    jog.signal("INT");
+    assert_eq!(jog.end().0, Some(130));
+}
