@@ -21,9 +21,9 @@ use anyhow::Context as _;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::failure::{Failure, Kind};
+use crate::files::this_program;
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
-use crate::transport::this_program;
 
 /// Pause between two beats.
 const BEAT: Duration = Duration::from_millis(500);

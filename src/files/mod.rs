@@ -2,6 +2,8 @@
 //! endless, or never say anything; a file that is too large is none that was meant. And the one way to replace them:
 //! from drafts beside them, which no run leaves behind for good.
 
+mod program;
+
 use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write as _};
@@ -9,6 +11,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use tempfile::NamedTempFile;
+
+pub use self::program::this_program;
 
 /// Room for settings and lists that people write: inventories, files of commands, states of simulators.
 pub const SETTINGS: u64 = 16 << 20;

@@ -20,7 +20,6 @@ mod port;
 pub mod ports;
 pub mod profibus;
 pub mod profinet;
-mod program;
 mod pty;
 pub mod serial;
 pub mod server;
@@ -39,8 +38,7 @@ pub mod udp;
 use std::fmt::Display;
 use std::io;
 
-pub use armctl_files::plain;
-pub use program::this_program;
+pub use armctl_files::{plain, this_program};
 
 /// The error of a byte stream whose other end is gone.
 fn vanished(why: impl Display) -> io::Error {

@@ -1,7 +1,7 @@
 //! `toyo counter` and `toyo timer`.
 
 use super::items::read_each;
-use super::link::{Link, Toyo};
+use super::link::{Link, Toyo, wrong};
 use super::numbers::{Numbers, not_held, number, read_back};
 use super::rows::Listed;
 use crate::command::ValueKind;
@@ -134,9 +134,8 @@ impl Writable for Counters {
 
     fn whole(counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
         let count = draft.ok_or_else(|| Failure::usage(format!("{}: a count is needed", Self::name(counter))))?;
-        Ok(read(counter).row().answers[0]
-            .record(vec![Value::Number(counter), Value::Number(count)])
-            .map_err(|error| super::link::wrong(&error))?)
+        let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
+        record.map_err(|error| wrong(&error))
     }
 
     async fn plan(link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {

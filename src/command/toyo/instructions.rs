@@ -99,10 +99,12 @@ impl Operand {
         let words = if let Form::Word(words) = field.form { words } else { &[] };
         let words = words.iter().map(|word| OperandWord { word: word.text.trim_end(), meaning: word.about });
         let words: Vec<OperandWord> = words.collect();
-        let meanings = words.iter().map(|OperandWord { word, meaning }| match word == meaning {
-            true => (*word).to_owned(),
-            false => format!("{word} ({meaning})"),
-        });
+        let meanings =
+            words.iter().map(
+                |OperandWord { word, meaning }| {
+                    if word == meaning { (*word).to_owned() } else { format!("{word} ({meaning})") }
+                },
+            );
         let meanings = meanings.collect::<Vec<_>>().join(", ");
         Self {
             name: field.name,

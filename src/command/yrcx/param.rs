@@ -87,10 +87,10 @@ impl Command for Get {
             let unit = Some(unit).filter(|unit| !unit.is_empty());
             let value = outcome.map(|values| Some(values.int(Key::Value).unwrap_or_default()));
             let more = Setting { number, axis: *axis, unit, meaning };
-            let axis = axis.map_or_else(|| "-".into(), Cell::from);
-            let cells = |value: &i32| vec![axis.clone(), (*value).into(), Cell::maybe(unit), meaning.into()];
+            let of_axis = axis.map_or_else(|| "-".into(), Cell::from);
+            let cells = |value: &i32| vec![of_axis.clone(), (*value).into(), Cell::maybe(unit), meaning.into()];
             let item = Item::with("parameter", name, more, value);
-            if item.ok { item.shown(cells) } else { Item { cells: vec![axis], ..item } }
+            if item.ok { item.shown(cells) } else { Item { cells: vec![of_axis], ..item } }
         });
         let columns =
             Columns { name: "parameter", values: vec!["axis", "value", "unit", "meaning"], empty: "no parameters" };

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::program::{Program, Stop};
 use crate::failure::{Kind, end};
-use crate::transport::this_program;
+use crate::files::this_program;
 
 /// The only argument of such a process.
 const WORD: &str = "--filter-worker";

@@ -69,8 +69,8 @@ pub fn typed<S: Writable>(key: S::Key, words: &[String]) -> Result<S::Draft, Fai
     };
     let wrong = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
     let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
-    let named = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
-    if words.iter().any(named) {
+    let has_name = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
+    if words.iter().any(has_name) {
         for word in words {
             let (name, value) = word.split_once('=').ok_or_else(|| wrong(format!("'{word}' has no name")))?;
             // `speed` for `speed_mm_s`.

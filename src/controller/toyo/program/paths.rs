@@ -2,6 +2,7 @@
 //!
 //! Whether a condition holds is not known, so both ways are followed, and what is found may never happen: a warning.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::tags::Resolved;
@@ -141,10 +142,9 @@ impl Finder<'_> {
         let mut bodies: BTreeMap<usize, Reach> = BTreeMap::new();
         let mut open: Vec<usize> = main.calls.values().copied().collect();
         while let Some(entry) = open.pop() {
-            if !bodies.contains_key(&entry) {
-                let body = self.reach(entry, &tags);
+            if let Entry::Vacant(place) = bodies.entry(entry) {
+                let body = place.insert(self.reach(entry, &tags));
                 open.extend(body.calls.values());
-                bodies.insert(entry, body);
             }
         }
         let mut depths = BTreeMap::new();
