@@ -500,8 +500,8 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
-            ("armctl yerc var dump points.csv P0..P9", "a range belongs to its flag: --ranges P0..P9"),
-            ("armctl yerc job start --name WELD", "NAME stands alone, without --name"),
+            ("armctl yerc var dump points.csv P0..P9", "type the range after its flag: --ranges P0..P9"),
+            ("armctl yerc job start --name WELD", "type NAME without --name"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 12.600", "say whose code it is: `armctl explain yrcx 12.600`"),
         ] {

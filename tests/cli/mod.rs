@@ -61,6 +61,7 @@ transcripts! {
     signals
     simulator
     status
+    tables
     teaching
     top
     toyo_backups

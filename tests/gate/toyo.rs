@@ -25,7 +25,7 @@ fn what_somebody_wrote_is_asked_before_it_is_replaced() {
     }
     for (line, part) in [
         ("point set 7 z=5", "overwrite a point of task 1 (point 7: z=3.00 mm -> z=5.00 mm)"),
-        ("easy set 1 loop=9", "overwrite an easy program (program 1: loop=6 -> loop=9)"),
+        ("easy set 1 loop=9", "overwrite an easy program (easy program 1: loops=6 -> loops=9)"),
         ("program insert 1 HOME", "insert a step before step 1 of task 1 (step 1 (TAG TAG=005) and"),
         ("program delete 1", "delete a step of task 1 (step 1: TAG TAG=005)"),
         ("param set P01 ax2=150", "overwrite a parameter (P01 (soft-limit-plus): ax2="),

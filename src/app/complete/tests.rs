@@ -11,7 +11,7 @@ fn words_and_flags_are_those_of_the_command() {
     for (line, expected) in [
         ("armctl ye", &["yerc"][..]),
         ("armctl yerc st", &["status", "stop"]),
-        ("yerc st", &["status"]),
+        ("yerc st", &["status", "stop"]),
         ("/usr/bin/yerc.exe job se", &["select"]),
         ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),
         ("armctl yerc --sim servo o", &["on", "off"]),

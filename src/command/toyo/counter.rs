@@ -133,16 +133,18 @@ impl Writable for Counters {
     }
 
     fn whole(counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
-        let count = draft.ok_or_else(|| Failure::usage(format!("{}: a count is needed", Self::name(counter))))?;
+        let missing = || Failure::usage(format!("{}: a count is needed", Self::name(counter)));
+        let count = draft.ok_or_else(|| missing().hint("give a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
         record.map_err(|error| wrong(&error))
     }
 
     async fn plan(link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {
-        let order = order(counter, draft.unwrap_or_default());
-        link.ask(&order).await?;
-        link.plan(&read(counter), "what it holds now");
-        Ok(())
+        let text = match draft {
+            Some(count) => order(counter, *count).text(),
+            None => format!("@MCST {}=?", Self::name(counter)),
+        };
+        link.plan_overwriting(&read(counter), &text).await
     }
 
     async fn write(link: &mut Link, _screen: &Screen, counter: i32, new: &Record) -> Result<(), Failure> {

@@ -62,7 +62,9 @@ const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
 /// What is on it beside its start state.
-const BEFORE: [&str; 5] = [
+const BEFORE: [&str; 7] = [
+    "torque-table set 2 load=2",
+    "counter set 1 3",
     "easy set 1 5 6 7",
     "easy set 2 5 6 8",
     "palletizing set 1 end 5",

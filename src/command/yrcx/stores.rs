@@ -183,10 +183,15 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     async fn plan(link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
-        let reason = Reason::default().depending_on("whether it differs from what is there");
-        // Two rows that agree in what is given alone.
-        let filled = |other: &str| draft.iter().map(|text| text.clone().unwrap_or_else(|| other.to_owned())).collect();
-        match (stored::<K>(number, filled("1")), stored::<K>(number, filled("2"))) {
+        let reason = Reason::default().depending_on("what is there: it is written if that differs");
+        // Two rows that agree only in what is given.
+        let filled = |which: usize| {
+            let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
+            columns
+                .map(|(text, (_, key))| text.clone().unwrap_or_else(|| samples(*key, number)[which].into()))
+                .collect()
+        };
+        match (stored::<K>(number, filled(0)), stored::<K>(number, filled(1))) {
             (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
             _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
         }
@@ -196,6 +201,23 @@ impl<K: Kind> Writable for Numbered<K> {
     async fn write(link: &mut Link, _screen: &Screen, number: i32, new: &Row) -> Result<(), Failure> {
         let (order, _) = stored::<K>(number, new.texts.clone())?;
         link.ask(&order).await.map(drop)
+    }
+}
+
+/// Two texts of a field that have no word in common, for a dry run.
+fn samples(key: Key, number: i32) -> [&'static str; 2] {
+    match key {
+        Key::Unit => ["mm", "pulse"],
+        // Only a point in millimetres has one.
+        Key::HandSystem => ["left", ""],
+        Key::Comment => ["", "AAAAAAAAAAAAAAAA"],
+        // It is part of the command word, which a plan shows: that of the first robot.
+        Key::Owner => ["1", "1"],
+        Key::CountX | Key::CountY | Key::CountZ | Key::FirstPoint => ["1", "2"],
+        Key::Data4 => ["0", "1"],
+        // Real variables begin at 256.
+        Key::Value if number >= 256 => ["0", "-1.1"],
+        _ => ["0", "-1"],
     }
 }
 

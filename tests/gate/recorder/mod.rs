@@ -40,7 +40,8 @@ pub trait Recorder {
     fn take(&mut self) -> Vec<(Effect, String)>;
 }
 
-const STOPS: [&str; 6] = ["stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
+const STOPS: [&str; 7] =
+    ["stop", "yerc hold on", "yerc job stop", "yerc stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
 /// A line of the help as it is run here.
 #[derive(Debug)]
@@ -236,15 +237,16 @@ impl<'a> Bench<'a> {
         command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
         let mut setup = Terminal::start(command, 100, 30).expect("a terminal");
         setup.says("Where is the robot?");
-        setup.press("1\r");
+        setup.press("\r");
         setup.says("a URL:");
         setup.press(&format!("{url}\r"));
         // A layer that fails, as beside a session that has the port, is asked about.
         for _ in 0..8 {
             match setup.says_one_of(&["What now?", "Name [", "Which controller"]) {
-                0 => setup.press("3\r"),
+                // The third of the list.
+                0 => setup.press("\x1b[B\x1b[B\r"),
                 1 => break,
-                _ => setup.press("1\r"),
+                _ => setup.press("\r"),
             }
         }
         setup.press("\r");
@@ -264,6 +266,8 @@ impl<'a> Bench<'a> {
         for by in ["directly", "in a session"] {
             let in_session = by == "in a session";
             if in_session {
+                // A watch has opened one by itself where the link takes one client.
+                self.desk.run("session close --all");
                 self.prepare("session open --background --yes");
                 // By then its first image has arrived.
                 let read = if self.recorder.family() == "yrcx" { "yrcx io get" } else { "status" };

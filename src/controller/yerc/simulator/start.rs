@@ -52,7 +52,7 @@ application = "ARC WELDING"
 parameter_version = "12.34"
 groups = ["R1", "B1", "S1"]
 robot_axes = 6                  # or 7
-trim_axes = false               # true: answers have no words for axes that are not fitted (default: robots of 7 axes)
+trim_axes = false               # true: no words for axes that are not fitted (default: 7 axes)
 positions = { R1 = [0, 0, 0, 0, 0, 0], B1 = [0] }
 user_frames = { 1 = [500.0, 0.0, 0.0, 0.0] }  # X, Y, Z in mm, turn about Z in degrees
 job = "TESTJOB"                 # the job to execute
