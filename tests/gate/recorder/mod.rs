@@ -243,10 +243,16 @@ impl<'a> Bench<'a> {
         // A layer that fails, as beside a session that has the port, is asked about.
         for _ in 0..8 {
             match setup.says_one_of(&["What now?", "Name [", "Which controller"]) {
-                // The third of the list.
-                0 => setup.press("\x1b[B\x1b[B\r"),
+                // The third of the list, which each key draws anew.
+                0 => {
+                    setup.press("\x1b[B\x1b[B\r");
+                    setup.says("What now?: go on all the same");
+                }
                 1 => break,
-                _ => setup.press("\r"),
+                _ => {
+                    setup.press("\r");
+                    setup.says("Which controller is it?: ");
+                }
             }
         }
         setup.press("\r");
