@@ -503,7 +503,7 @@ mod tests {
             ("armctl yerc var dump points.csv P0..P9", "type the range after its flag: --ranges P0..P9"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
-            ("armctl explain 12.600", "say whose code it is: `armctl explain yrcx 12.600`"),
+            ("armctl explain 12.600", "add the family of the code: `armctl explain yrcx 12.600`"),
         ] {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }

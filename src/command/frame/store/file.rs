@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::change::{Work, confirmation, intent, write};
-use super::get::Rows;
+use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read_keys, sheet};
 use crate::command::frame::command::{Command, Context};
 use crate::command::frame::items::{ItemError, verdict};
@@ -53,7 +53,7 @@ impl<S: Store> Command for Dump<S> {
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let name = S::name(*key);
-            match outcome {
+            match defined::<S>(outcome) {
                 Ok(Some(wire)) if !S::is_blank(&wire) => rows.push([vec![name], S::texts(&wire)].concat()),
                 Ok(_) => {}
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),

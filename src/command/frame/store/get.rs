@@ -85,12 +85,21 @@ impl<S: Store> Command for List<S> {
         let keys = Rows::of(&self.rows);
         let answers = S::read(link, screen, &keys).await?;
         let names = names::of(robot, screen);
-        let held = keys.into_iter().zip(answers.rows).filter(|(_, outcome)| {
+        let rows = answers.rows.into_iter().map(defined::<S>);
+        let held = keys.into_iter().zip(rows).filter(|(_, outcome)| {
             let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(S::is_blank);
             self.empty || !outcome.as_ref().is_ok_and(is_empty)
         });
         let items: Vec<Item<S::Value, S::More>> = held.map(|(key, outcome)| item::<S>(names, key, outcome)).collect();
         Ok(Items::new(columns::<S>(), items))
+    }
+}
+
+/// A refusal that says that a row is not defined is the answer where all rows are wanted.
+pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
+    match outcome {
+        Err(failure) if S::is_undefined(&failure) => Ok(None),
+        outcome => outcome,
     }
 }
 
