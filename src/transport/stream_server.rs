@@ -300,13 +300,20 @@ mod tests {
     mod pseudo_terminal {
         use serialport::{DataBits, Parity, StopBits};
 
-        use super::super::super::serial::{Line, Serial};
+        use super::super::super::serial::{Line, OpenError, Serial};
         use super::*;
 
         fn open(path: &str) -> Serial {
             let path = path.to_owned();
             let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
-            Serial::open(&Line { path, baud: 9600, data_bits, parity, stop_bits }).unwrap()
+            let line = Line { path, baud: 9600, data_bits, parity, stop_bits };
+            // The thread that had the port before may still be closing it.
+            loop {
+                match Serial::open(&line) {
+                    Err(OpenError::Busy) => std::thread::yield_now(),
+                    opened => return opened.unwrap(),
+                }
+            }
         }
 
         async fn ask(serial: &mut Serial, line: &[u8], count: usize) -> Vec<u8> {

@@ -6,7 +6,9 @@ use super::numbers::{Numbers, not_held, number, read_back};
 use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
-use crate::command::frame::store::{Answers, Field, Get, Ids, List, Single, Store, Words, Writable, ids, table_commands};
+use crate::command::frame::store::{
+    Answers, Field, Get, Ids, List, Single, Store, Words, Writable, ids, table_commands,
+};
 use crate::command::frame::watch::Watch;
 use crate::command::toyo::complete;
 use crate::controller::Risk;
@@ -152,7 +154,13 @@ impl Writable for Counters {
         link.plan_overwriting(&read(counter), &text).await
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, counter: i32, new: &Record) -> Result<(), Failure> {
+    async fn write(
+        &self,
+        link: &mut Link,
+        _screen: &Screen,
+        counter: i32,
+        (_, new): (Option<&Record>, &Record),
+    ) -> Result<(), Failure> {
         let wanted = count(new).unwrap_or_default();
         let order = order(counter, wanted);
         link.ask(&order).await?;

@@ -201,7 +201,8 @@ impl Store for Groups {
         let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
         let sheets = read_each(link, screen, "reading sheets", &requests).await?;
         // The first that was refused tells of the whole.
-        let whole = |sheets: &[Result<Record, Failure>]| sheets.iter().cloned().collect::<Result<Vec<Record>, Failure>>();
+        let whole =
+            |sheets: &[Result<Record, Failure>]| sheets.iter().cloned().collect::<Result<Vec<Record>, Failure>>();
         Ok(Answers::of(sheets.chunks(SHEETS.len()).map(whole).collect()))
     }
 }
@@ -252,10 +253,17 @@ impl Writable for Groups {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, group: i32, new: &Vec<Record>) -> Result<(), Failure> {
-        for (index, record) in new.iter().enumerate().filter(|(_, record)| record.is_listed()) {
+    async fn write(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        _group: i32,
+        (old, new): (Option<&Vec<Record>>, &Vec<Record>),
+    ) -> Result<(), Failure> {
+        for (index, record) in new.iter().enumerate().filter(|(index, new)| old.is_none_or(|old| old[*index] != **new))
+        {
             let cell = parameter_cell(sheet(index), record.values().to_vec()).map_err(|error| wrong(&error))?;
-            link.store(screen, &cell, &mut Cells::default()).await?;
+            link.overwrite(screen, &cell, &mut Cells::default()).await?;
         }
         Ok(())
     }

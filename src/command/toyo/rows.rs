@@ -14,7 +14,9 @@ use super::numbers::Numbers;
 use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, NOT_IN_MANUAL, word};
 use crate::client::toyo::Letters;
-use crate::command::frame::store::{Answers, Differing, Field, Ids, Single, Store, Words, Writable, ids, table_commands};
+use crate::command::frame::store::{
+    Answers, Differing, Field, Ids, Single, Store, Words, Writable, ids, table_commands,
+};
 use crate::command::robot::item::asked;
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Form, Value};
@@ -246,7 +248,8 @@ impl<T: EepromRow> Writable for T {
             (Some(values), _) => values,
             (None, Some(old)) => changes.over(old)?,
             (None, None) => {
-                let message = format!("{} was not read: there are no values to keep", asked(T::WORDS.nouns[0], &T::name(key)));
+                let message =
+                    format!("{} was not read: there are no values to keep", asked(T::WORDS.nouns[0], &T::name(key)));
                 return Err(Failure::usage(message).hint("nothing was written; give all values"));
             }
         };
@@ -266,7 +269,13 @@ impl<T: EepromRow> Writable for T {
         link.plan_overwriting(&self.request(key)?, &self.sketch(key, changes.values())).await
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, key: T::Key, new: &Record) -> Result<(), Failure> {
+    async fn write(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        key: T::Key,
+        (_, new): (Option<&Record>, &Record),
+    ) -> Result<(), Failure> {
         let fields = self.body(key).fields.len();
         let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();
         link.overwrite(screen, &self.cell(key, values)?, &mut Cells::default()).await

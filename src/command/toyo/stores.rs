@@ -2,7 +2,6 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value as Json;
 
 use super::eeprom::{Cell, Cells};
 use super::items::plan_twice;
@@ -10,7 +9,7 @@ use super::link::Link;
 use super::values;
 use crate::client::toyo::Letters;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::orders::{Old, Written, unwritten};
+use crate::command::frame::orders::unwritten;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
@@ -79,12 +78,6 @@ impl Store {
         Self { letters, ..self }
     }
 
-    /// With what it holds; `None` in a dry run.
-    #[must_use]
-    pub fn over(self, found: Option<Record>) -> Self {
-        Self { found: found.into(), ..self }
-    }
-
     /// Whether it is known to hold something else.
     pub fn differs(&self) -> bool {
         matches!(&self.found, CellState::This(found) if !self.cell.is(found))
@@ -120,11 +113,6 @@ pub fn replaced(work: StoreTask, stores: &[Store]) -> Vec<Replaced> {
 }
 
 /// What is replaced, for a person to confirm; `of` says where: ` of task 1`.
-pub fn replacing(work: StoreTask, stores: &[Store], of: &str) -> Change {
-    overwriting(work.things, &replaced(work, stores), of)
-}
-
-/// The same of any things.
 pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
     let change = match replaced.len() {
         0 => return Change::nothing(),
@@ -301,8 +289,7 @@ fn span(work: StoreTask, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: StoreTask =
-        StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"] };
+    const WORK: StoreTask = StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"] };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();
@@ -321,20 +308,17 @@ mod tests {
         };
         assert_eq!(
             told(Kind::Refused, &[StoreResult::Written, StoreResult::Unchanged]),
-            "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | --resume=3 goes on there"
+            "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | \
+             the same command goes on: what is stored already is not written again"
         );
         assert_eq!(
             told(Kind::OutcomeUnknown, &[StoreResult::Written]),
             "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
-             --resume=2 goes on there"
+             the same command goes on: what is stored already is not written again"
         );
-        assert_eq!(told(Kind::NoAnswer, &[]), "no; nothing was written | --resume=1 goes on there");
-    }
-
-    #[test]
-    fn resuming_leaves_out_what_is_before() {
-        assert_eq!(left_out(&stores(), None).unwrap(), 0);
-        assert_eq!(left_out(&stores(), Some("3")).unwrap(), 2);
-        assert_eq!(left_out(&stores(), Some("9")).unwrap_err().kind, Kind::Usage);
+        assert_eq!(
+            told(Kind::NoAnswer, &[]),
+            "no; nothing was written | the same command goes on: what is stored already is not written again"
+        );
     }
 }

@@ -206,7 +206,13 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, number: i32, new: &Row) -> Result<(), Failure> {
+    async fn write(
+        &self,
+        link: &mut Link,
+        _screen: &Screen,
+        number: i32,
+        (_, new): (Option<&Row>, &Row),
+    ) -> Result<(), Failure> {
         let (order, _) = stored::<K>(number, new.texts.clone())?;
         link.ask(&order).await.map(drop)
     }

@@ -159,7 +159,7 @@ async fn write_each<S: Writable>(
         row.outcome = match &end {
             Some(failure) => Err(not_written(failure)),
             // Ctrl-C ends the work, and what was written is said.
-            None => match interruptible(table.write(link, screen, row.key, &row.new)).await {
+            None => match interruptible(table.write(link, screen, row.key, (row.old.as_ref(), &row.new))).await {
                 Ok(outcome) => outcome.map(|()| true),
                 Err(interrupted) => Err(interrupted),
             },

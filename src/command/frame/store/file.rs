@@ -1,7 +1,7 @@
 //! `dump` and `restore`: rows as a CSV file for spreadsheets.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -54,14 +54,21 @@ impl<S: Store> Command for Dump<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
-        let keys = Rows::of(&self.rows);
+        // An update is of the rows that the file has, whatever they hold now.
+        let old = target.old().filter(|_| self.rows.is_empty());
+        let keys = old.map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
         let mut table = S::open(link, &self.options).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let name = S::name(*key);
             match defined::<S>(outcome) {
-                Ok(Some(wire)) if !table.is_blank(&wire) => rows.push([vec![name], table.texts(&wire)].concat()),
+                Ok(Some(wire)) if old.is_some() || !table.is_blank(&wire) => {
+                    rows.push([vec![name], table.texts(&wire)].concat());
+                }
+                Ok(None) if old.is_some() => {
+                    rows.push([vec![name], vec![String::new(); table.fields().len()]].concat())
+                }
                 Ok(_) => {}
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
             }
@@ -69,6 +76,32 @@ impl<S: Store> Command for Dump<S> {
         let file = target.write(&sheet(&table), &rows, canonical::<S>)?;
         Ok(Dumped { file, saved: rows.len(), failed: errors })
     }
+}
+
+/// The rows that a file has, in its order.
+fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
+    let (mut findings, mut keys) = (Findings::default(), Vec::new());
+    let expected = "the first column is name";
+    if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
+        match sheet.column("name") {
+            Some(at) => {
+                for row in sheet.rows() {
+                    match read_keys::<S>(row.text(at)) {
+                        Ok(row) => keys.extend(row),
+                        Err(why) => findings.error(row.place(at), why, None),
+                    }
+                }
+            }
+            None => {
+                let message = "column name is missing".to_owned();
+                findings.error(sheet.end_of_head(), message, Some(expected.to_owned()));
+            }
+        }
+    }
+    if findings.errors() > 0 {
+        return Err(text_files::faulty(&text_files::shown(path), &findings.into_errors()));
+    }
+    Ok(keys)
 }
 
 /// One spelling of a row.

@@ -105,7 +105,8 @@ impl<S: Store> Command for List<S> {
             let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(|wire| table.is_blank(wire));
             self.empty || !outcome.as_ref().is_ok_and(is_empty)
         });
-        let items: Vec<Item<S::Value, S::More>> = held.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
+        let items: Vec<Item<S::Value, S::More>> =
+            held.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
         Ok(Items::new(columns(&table), items))
     }
 }

@@ -202,10 +202,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// Asks the controller what must be known before a row is read or written, such as the letters of the axes. Nothing is
     /// changed.
-    async fn open(
-        link: &mut <Self::Family as Family>::Link,
-        options: &Self::Options,
-    ) -> Result<Self, Failure>;
+    async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
 
     /// Risk of reading rows: Write where another table has to be selected on the controller for that.
     fn risk_of_reading(_options: &Self::Options) -> Risk {
@@ -332,13 +329,13 @@ pub trait Writable: Store {
         draft: &Self::Draft,
     ) -> Result<(), Failure>;
 
-    /// Writes a row.
+    /// Writes a row; the change is from what it holds, as far as that is known, to what it shall hold.
     async fn write(
         &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
         key: Self::Key,
-        new: &Self::Wire,
+        change: (Option<&Self::Wire>, &Self::Wire),
     ) -> Result<(), Failure>;
 }
 

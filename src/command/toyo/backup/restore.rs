@@ -70,10 +70,8 @@ const MACHINE: StoreTask = StoreTask {
     doing: "storing machine parameters",
     noun: "",
     things: ["a machine or special parameter", "machine and special parameters"],
-    resumes: false,
 };
-const SPEED: StoreTask =
-    StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"] };
+const SPEED: StoreTask = StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"] };
 /// Values that a question shows one by one; more are counted by parts.
 const SHOWN: usize = 10;
 

@@ -14,7 +14,7 @@ use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
-use super::rows::{EepromRow, Listed, WRITING, is_zero};
+use super::rows::{EepromRow, Listed, is_zero};
 use super::values::{self, Shown};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;

@@ -66,9 +66,9 @@ impl Command for Dump {
 /// All parameters, and all rows of the tables but points.
 fn keys() -> Vec<Key> {
     let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
-    let rows = tables
-        .filter_map(|table| Some((table, table.row()?)))
-        .flat_map(|(table, field)| Numbers::of(&[], field).into_iter().map(move |row| Key { parameter: table, row: Some(row) }));
+    let rows = tables.filter_map(|table| Some((table, table.row()?))).flat_map(|(table, field)| {
+        Numbers::of(&[], field).into_iter().map(move |row| Key { parameter: table, row: Some(row) })
+    });
     singles().map(Key::single).chain(rows).collect()
 }
 

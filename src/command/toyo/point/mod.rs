@@ -15,7 +15,7 @@ use super::items::{Answers as Records, read_each};
 use super::link::{Link, Toyo, wrong};
 use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::rows::{EepromRow, Listed, WRITING, is_zero, texts};
+use super::rows::{EepromRow, Listed, is_zero, texts};
 use super::stores::{parameter_cell, parameter_sketch};
 use super::{complete, tasks};
 use crate::client::toyo::Letters;

@@ -90,7 +90,7 @@ impl Teach {
         }
         let is_there = found == new;
         if !is_there {
-            points.write(link, screen, point, &new).await?;
+            points.write(link, screen, point, (Some(&found), &new)).await?;
         }
         // What was written has been read back and is that.
         let name = point.to_string();
