@@ -26,7 +26,7 @@ const LINES: &[(&str, Risk)] = &[
     ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
     ("param restore FOLDER/parameters.toml", Destroy),
     ("point get 1", Read), ("point list", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
-    ("point get 1 --task 2", Write), ("point copy 2 3", Destroy), ("point dump FOLDER/taught.csv 1-2", Read),
+    ("point get 1 --task 2", Write), ("point copy 1 2", Destroy), ("point dump FOLDER/taught.csv 1-2", Read),
     ("point restore FOLDER/points.csv --task 2", Destroy),
     ("speed-table get 1", Read), ("speed-table set 1 77", Destroy), ("speed-table list", Read), ("speed-table dump FOLDER/speed.csv", Read),
     ("speed-table copy 2 3", Destroy), ("speed-table restore FOLDER/rows.csv", Destroy),
@@ -65,7 +65,9 @@ const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
 /// What is on it beside its start state.
-const BEFORE: [&str; 7] = [
+const BEFORE: [&str; 9] = [
+    "point set 2 7 7 7 7",
+    "mvm set 2 pieces1=4",
     "torque-table set 2 load=2",
     "counter set 1 3",
     "easy set 1 5 6 7",
@@ -288,7 +290,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
     // What is as it shall be, and what nobody wrote, is no question.
-    for line in ["param set P01 ax2=1000", "point set 2 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
+    for line in ["param set P01 ax2=1000", "point set 4 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
         if let Err(failure) = bench.unasked(&words) {
             panic!("{line}: {failure}");

@@ -244,8 +244,10 @@ impl Writable for Groups {
 
     async fn plan(&self, link: &mut Link, group: i32, draft: &Vec<Changes>) -> Result<(), Failure> {
         let reads = reads(group)?;
+        // A copy knows no values before.
+        let is_copy = draft.iter().all(|changes| changes.values().iter().all(Option::is_none));
         for (index, changes) in draft.iter().enumerate() {
-            if changes.values().iter().any(Option::is_some) {
+            if is_copy || changes.values().iter().any(Option::is_some) {
                 let sketch = parameter_sketch(sheet(index), Some(group), changes.values());
                 link.plan_overwriting(&reads[index], &sketch).await?;
             }

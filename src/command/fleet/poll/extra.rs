@@ -160,7 +160,7 @@ mod tests {
             ("yerc file get A.JBI --dir x", "names a file or folder"),
             ("yerc file get A.JBI", "names a file or folder"),
             ("yrcx backup x", "names a file or folder"),
-            ("toyo point list --csv x.csv", "names a file or folder"),
+            ("toyo point dump x.csv", "names a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

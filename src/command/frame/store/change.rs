@@ -7,7 +7,7 @@ use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::names;
 use crate::command::frame::orders::unwritten;
-use crate::command::robot::item::{Written, WrittenItems, asked};
+use crate::command::robot::item::{Written, WrittenItems};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
@@ -131,7 +131,7 @@ pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change 
     let lost = rows.iter().filter_map(|(key, old, new)| {
         let old = old.filter(|old| old != new && !table.is_blank(old))?;
         let [old, new] = table.difference(old, new);
-        Some((asked(S::WORDS.nouns[0], &S::name(*key)), old, new))
+        Some((S::asked(*key), old, new))
     });
     let lost: Vec<_> = lost.collect();
     let [one, many] = S::WORDS.nouns;

@@ -55,8 +55,10 @@ impl<S: Store> Command for Dump<S> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
         // An update is of the rows that the file has, whatever they hold now.
-        let old = target.old().filter(|_| self.rows.is_empty());
-        let keys = old.map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
+        let old = target.old();
+        let keys = old
+            .filter(|_| self.rows.is_empty())
+            .map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
         let mut table = S::open(link, &self.options).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
         let (mut rows, mut errors) = (Vec::new(), Vec::new());

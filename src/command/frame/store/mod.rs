@@ -23,7 +23,7 @@ pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
 use super::names as labels;
-use crate::command::robot::item::{Columns, Item, Items, WrittenItems};
+use crate::command::robot::item::{Columns, Item, Items, WrittenItems, asked};
 use crate::controller::Risk;
 use crate::controller::names::{Kind, Names};
 use crate::controller::sheet::Column;
@@ -194,6 +194,11 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 
     /// A row as it is typed.
     fn name(key: Self::Key) -> String;
+
+    /// A row in questions.
+    fn asked(key: Self::Key) -> String {
+        asked(Self::WORDS.nouns[0], &Self::name(key))
+    }
 
     /// The address under which people's names for rows are kept.
     fn address(key: Self::Key) -> String {

@@ -315,9 +315,8 @@ mod tests {
         assert_eq!(text, std::fs::read_to_string(&second).unwrap());
         assert!(text.starts_with("name,value\nstart,tag=5 mode=1-M\n"), "{text}");
         let restored = bench.data(&["palletizing", "restore", &second, "1"]);
-        assert!(written(&restored).iter().all(|(_, is_written)| *is_written == true), "{restored}");
+        assert_eq!(written(&restored).iter().filter(|(_, is_written)| *is_written == true).count(), 3, "{restored}");
         assert_eq!(bench.run(&["palletizing", "dump", &second, "9"]).unwrap_err().kind.exit(), 1);
-        assert!(bench.data(&["palletizing", "list", "1"])["items"].as_array().unwrap().len() == 3);
     }
 
     #[test]

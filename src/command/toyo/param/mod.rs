@@ -197,6 +197,10 @@ impl Store for Parameters {
         if key.row.is_some() { key_text(key) } else { key.parameter.name.to_owned() }
     }
 
+    fn asked(key: Key) -> String {
+        if key.row.is_some() { key_text(key) } else { format!("{} ({})", key.parameter.id, key.parameter.name) }
+    }
+
     async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
         Ok(Self)
     }

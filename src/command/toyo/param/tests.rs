@@ -8,10 +8,7 @@ use crate::controller::toyo::table::Parameter;
 
 #[test]
 fn parameters_are_read_by_name_or_id() {
-    assert_eq!(
-        blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(),
-        ["@RPAR P01", "@RPAR P01", "@RPAR M09"]
-    );
+    assert_eq!(blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(), ["@RPAR P01", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "list", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
     // Those that only some controllers have are asked twice, if they are refused.
     let mut all = blocks(&["param", "list"]).unwrap();

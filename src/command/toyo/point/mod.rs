@@ -17,7 +17,7 @@ use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
 use super::rows::{EepromRow, Listed, is_zero, texts};
 use super::stores::{parameter_cell, parameter_sketch};
-use super::{complete, tasks};
+use super::{complete, tasks, values};
 use crate::client::toyo::Letters;
 use crate::command::ValueKind;
 use crate::command::frame::store::{Answers, Field, Ids, Store, Words, ids, table_commands};
@@ -181,6 +181,10 @@ impl Store for Points {
 
     fn texts(&self, record: &Record) -> Vec<String> {
         texts(record, AXES)
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &self.letters)
     }
 
     fn value(&self, record: &Record) -> Option<Position> {

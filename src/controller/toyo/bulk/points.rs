@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn columns_are_those_of_the_letters_or_of_the_numbers() {
-        let points = super::read(b"name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
+        let points = read(b"name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
         let points: Vec<Setting> = points.into_iter().map(|(point, _)| point).collect();
         assert_eq!(write_numbered(&points), "name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n");
     }
