@@ -152,12 +152,12 @@ impl Names {
         Self { all, by_address, by_name }
     }
 
-    /// All of them.
+    /// All items, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Name> {
         self.all.iter()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }

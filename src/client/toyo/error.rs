@@ -44,7 +44,7 @@ pub enum Error {
     Malformed {
         /// The received block.
         block: String,
-        /// What is wrong with it.
+        /// The problem.
         why: String,
     },
     /// One exchange brought more characters than a controller sends.

@@ -77,7 +77,7 @@ pub enum RequestError {
     ReadOnly {
         /// The instance given.
         found: u16,
-        /// What it is.
+        /// Description.
         class: &'static str,
         /// The controller.
         model: Model,

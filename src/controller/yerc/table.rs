@@ -109,7 +109,7 @@ pub enum Action {
 pub struct Service {
     /// The byte on the wire.
     pub number: u8,
-    /// In words.
+    /// Readable name.
     pub meaning: &'static str,
     /// Which side the data travels.
     pub action: Action,
@@ -135,7 +135,7 @@ pub struct Row {
     pub number: u16,
     /// Robot or file.
     pub division: Division,
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
     /// Section of the manuals.
     pub section: &'static str,

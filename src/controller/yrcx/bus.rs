@@ -73,7 +73,7 @@ pub struct MapRow {
     pub high: u8,
     /// The signals, such as `SI(20) to SI(27)`; empty if reserved.
     pub signal: String,
-    /// In words.
+    /// Readable name.
     pub meaning: String,
     /// Whether the bits must not be used.
     pub reserved: bool,

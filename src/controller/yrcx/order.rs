@@ -68,7 +68,7 @@ impl Order {
         Ok(Self { row, values, words: *words })
     }
 
-    /// Its row.
+    /// Row of the table.
     pub fn row(&self) -> &'static Row {
         self.row
     }

@@ -55,7 +55,7 @@ impl Register {
         self.side
     }
 
-    /// What it holds.
+    /// Content.
     pub fn read(self, words: &Words) -> u32 {
         let low = u32::from(words[self.word]);
         if self.is_double { low | u32::from(words[self.word + 1]) << 16 } else { low }

@@ -50,7 +50,7 @@ pub struct Row {
     pub code: u16,
     /// Its name for programs, such as `move-ptp`.
     pub id: &'static str,
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
     /// Section of the manual, in chapter 2.
     pub section: &'static str,

@@ -245,7 +245,7 @@ impl Values {
         }
     }
 
-    /// All of them.
+    /// All items, in order.
     pub fn iter(&self) -> impl Iterator<Item = (Key, &Value)> {
         self.0.iter().map(|(key, value)| (*key, value))
     }

@@ -74,7 +74,7 @@ pub enum PositionTextError {
     Axis {
         /// The key.
         key: String,
-        /// What is wrong with it.
+        /// The problem.
         error: UnitError,
     },
     /// A tool, user coordinate or form with a value that cannot be sent.

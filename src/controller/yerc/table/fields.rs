@@ -45,9 +45,9 @@ pub enum Kind {
 /// A named piece of data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
-    /// What it holds.
+    /// Content.
     pub kind: Kind,
 }
 

@@ -107,7 +107,7 @@ impl VariableKind {
 /// A variable by kind and number; reads and shows as `B0`, `P12`, `EX3`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Reference {
-    /// What it holds.
+    /// Content.
     pub kind: VariableKind,
     /// From 0.
     pub number: u16,

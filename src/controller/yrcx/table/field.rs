@@ -13,7 +13,7 @@ pub struct Field {
     pub name: &'static str,
     /// The first word, 0 to 15.
     pub word: usize,
-    /// How it is written.
+    /// Format.
     pub form: Form,
     /// The values allowed, as spans of what travels; empty: all that fit.
     pub spans: &'static [(i32, i32)],

@@ -7,7 +7,7 @@ pub struct Parameter {
     pub number: u16,
     /// Its name in the robot language.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
     /// What it is measured in; empty where the manual does not say.
     pub unit: &'static str,

@@ -199,7 +199,7 @@ commands! {
 }
 
 impl Command {
-    /// Its row.
+    /// Row of the table.
     pub const fn row(self) -> &'static Row {
         // The macro puts the rows in the order of the variants.
         &ROWS[self as usize]
