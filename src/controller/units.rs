@@ -66,7 +66,6 @@ pub enum UnitError {
     },
 }
 
-/// Suffix with the unit, if it has a symbol.
 fn of_unit(symbol: &str) -> String {
     if symbol.is_empty() { String::new() } else { format!(" of {symbol}") }
 }

@@ -41,7 +41,7 @@ impl Client {
     }
 
     /// Reopens a lost line for a read: after a re-plug, or a restart of the device server. Not if this client has a
-    /// change to undo: the hints in the log explain how to undo it.
+    /// motion to stop or a change to undo: hints explain that to the user.
     pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Error> {
         let owes = self.moving.is_some() || self.host == Host::Taken || !self.borrowed.is_empty();
         if !self.is_gone || risk > Risk::Read || owes {

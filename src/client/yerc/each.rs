@@ -49,8 +49,8 @@ pub struct Round {
 const MOST_NONSENSE: u32 = 2;
 
 impl Client {
-    /// Sends one read of a batch. Returns an error only before the first answer. After the connection is lost, the
-    /// remaining reads are not sent.
+    /// Sends one read of a batch. Before the first answer, silence or repeated garbage ends the batch with an error.
+    /// After the connection is lost, the remaining reads are not sent.
     pub async fn ask_in<Q: Query>(&mut self, round: &mut Round, query: &Q) -> Result<Outcome<Q::Answer>, Error> {
         if let Some(lost) = &round.lost {
             return Ok(Err(Denied::NotAsked(lost.clone())));

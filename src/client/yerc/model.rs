@@ -99,8 +99,8 @@ impl Client {
         }
     }
 
-    /// The model for `make`: the known one, or any if the result is the same for all models. Otherwise it is read
-    /// first. A remembered model for which `make` fails is read again, if `make` works for another one.
+    /// The model for `make`: the known one, or any if all models have the same result or all fail. Otherwise it is read
+    /// first. A remembered model is read again if `make` fails for it, but not for all models.
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Error> {
         let can = || Model::ALL.iter().any(|model| make(*model).is_ok());
         match self.known {

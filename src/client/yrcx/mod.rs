@@ -44,7 +44,7 @@ pub use self::simulated::Simulated;
 pub use self::stop::Stopped;
 use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
-/// A connection to one controller. It is not `Send`, because fieldbus links are not.
+/// A connection to one controller. It belongs to one thread, as fieldbus links do.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Client {

@@ -88,7 +88,8 @@ impl Client {
         }
     }
 
-    /// Waits until a command that another client left running has ended: replacing it would stop it.
+    /// Checks that a command that another client left running has ended: replacing it would stop it.
+    /// [`Error::OthersUnderWay`] while it runs.
     pub(super) async fn end_others(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {

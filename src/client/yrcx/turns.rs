@@ -61,14 +61,14 @@ impl Client {
         Ok(())
     }
 
-    /// Reserves the words of remote commands: waits until no command uses them.
+    /// Reserves the words of remote commands, which no other command may use.
     pub(super) async fn have_words(&mut self) -> Result<(), Error> {
         self.end_earlier().await?;
         self.acquire().await?;
         self.end_others().await
     }
 
-    /// Waits until a command that was left running has ended, and reports a failure.
+    /// Ends an earlier command of this client and reports its failure. [`Error::UnderWay`] while it runs.
     async fn end_earlier(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
             self.turn_until(Instant::now()).await?;
@@ -280,7 +280,7 @@ impl Client {
             Passed::Shown(change) => self.shown_by_others(now, &change),
             Passed::Denied => {
                 self.in_flight = false;
-                // Only an exchange that was already sent has an end to report.
+                // A command that was sent before is still followed to its end.
                 self.exchange.take_if(|exchange| exchange.sent().is_none());
                 self.sequence = None;
                 self.words = Words::default();

@@ -26,7 +26,6 @@ pub(crate) fn expected(word: &str, what: &str) -> String {
     format!("'{word}' is not {what}")
 }
 
-/// Error for an unknown line.
 pub(crate) fn unknown(line: &str) -> String {
     format!("no such line: '{}'", line.trim())
 }

@@ -124,7 +124,7 @@ struct Decided {
 }
 
 impl Decided {
-    /// The accepted answer.
+    /// Text of the answer.
     const fn block(&self) -> &'static str {
         if self.is_accepted { YES } else { NO }
     }

@@ -126,7 +126,6 @@ fn answer_summary(frame: &AnswerFrame<'_>, request: Option<&Request>) -> String 
     format!("#{} answer{name}: {}{block}, {} bytes", frame.id, status_words(frame.status), frame.data.len())
 }
 
-/// The request of a client frame.
 fn request_of(frame: &RequestFrame<'_>) -> Request {
     Request {
         command: frame.command,

@@ -159,7 +159,6 @@ fn reading(command: u16, instance: u16, attribute: u8, service: u8) -> Request {
     Request { command, instance, attribute, service, data: Vec::new() }
 }
 
-/// Reads all fields of an instance.
 fn read_all(command: u16, instance: u16) -> Request {
     reading(command, instance, 0, service::GET_ALL)
 }

@@ -63,7 +63,6 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
     })
 }
 
-/// Comment that describes a parameter.
 fn comment(parameter: &Parameter) -> String {
     format!("# {}: {}{}", parameter.id, parameter.about, reading::comment(parameter.fields()))
 }

@@ -15,7 +15,6 @@ pub(super) enum Target {
     Label(String),
 }
 
-/// A tag in an instruction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TagUse {
     /// Index of the value.

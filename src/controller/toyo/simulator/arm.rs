@@ -146,7 +146,6 @@ impl Arm {
         self.segments.iter().any(|segment| segment.owner == owner && segment.ends() > now)
     }
 
-    /// End of the next move that ends.
     pub(super) fn next_end(&self) -> Option<Now> {
         self.segments.iter().map(Segment::ends).min()
     }

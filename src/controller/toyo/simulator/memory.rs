@@ -135,7 +135,6 @@ pub(super) struct Memory {
     tags: Vec<Vec<u16>>,
 }
 
-/// Result of a tag lookup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TagLookup {
     Step(usize),
@@ -240,13 +239,11 @@ impl Content {
         number.checked_sub(1).and_then(|place| self.easy.get(place)).copied().unwrap_or_default()
     }
 
-    /// A record of a palletizing program.
     pub(super) fn pallet(&self, program: usize, record: &Pallet) -> Option<Record> {
         let values = self.pallets.get(program.checked_sub(1)?)?.get(usize::from(record.number) - 1)?;
         record.layout.record(values.clone()).ok()
     }
 
-    /// Whether parameters of a group differ.
     pub(super) fn differs(&self, other: &Self, group: Group) -> bool {
         let singles = PARAMETERS.iter().filter(|row| row.row().is_none());
         singles.zip(self.singles.iter().zip(&other.singles)).any(|(row, (a, b))| row.group() == group && a != b)
@@ -276,7 +273,6 @@ impl Memory {
         self.content.steps[task].get(step.checked_sub(1)?).map(|step| &step.record)
     }
 
-    /// Rebuilds the tag index.
     pub(super) fn index_tags(&mut self) {
         for (tags, steps) in self.tags.iter_mut().zip(&self.content.steps) {
             tags.clear();

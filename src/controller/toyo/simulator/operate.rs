@@ -21,7 +21,6 @@ impl World {
         if self.card.is_busy() { Err("the memory card is being read or written") } else { Ok(()) }
     }
 
-    /// Refuses if a start is not possible.
     fn startable(&self) -> Result<(), Refusal> {
         self.idle()?;
         self.unchanged()?;

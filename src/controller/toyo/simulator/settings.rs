@@ -59,7 +59,6 @@ pub(super) struct Settings {
 /// Parameters with effect after power on: E.
 #[derive(Debug, Clone)]
 pub(super) struct Machine {
-    /// Axes of each task.
     pub(super) tasks: [Axes; TASKS],
     pub(super) top: Coordinates,
     /// mm/s: low, middle, high.

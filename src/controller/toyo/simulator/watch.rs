@@ -49,7 +49,6 @@ impl World {
         });
     }
 
-    /// Ends the pulses that are due.
     pub(super) fn end_pulses(&mut self) {
         let (now, ports) = (self.now, &mut self.ports);
         self.pulses.retain(|(at, port, mask)| {
@@ -106,7 +105,6 @@ impl World {
         }
     }
 
-    /// Judges an axis after the judgement time.
     fn judge(&mut self, axis: usize) {
         if self.arm.push(axis, self.now) <= 0.0 {
             self.presses[axis] = None;

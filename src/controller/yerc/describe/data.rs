@@ -52,7 +52,6 @@ impl Notes<'_> {
     }
 }
 
-/// Meaning of the bytes of a field.
 fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
     let unsigned = little(bytes);
     let word = u32::try_from(unsigned).unwrap_or_default();

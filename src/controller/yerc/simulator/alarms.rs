@@ -7,7 +7,6 @@ use encoding_rs::SHIFT_JIS;
 use crate::yerc::Model;
 use crate::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
 
-/// Maximum number of active alarms.
 pub(super) const ACTIVE: usize = 4;
 /// Entries per class of the history.
 const HISTORY: usize = 100;

@@ -24,7 +24,6 @@ const HELP: &[(&str, &str)] = &[
     ("register NUMBER VALUE", "set a register: register 0 17"),
 ];
 
-/// Executes a line and returns its output.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {

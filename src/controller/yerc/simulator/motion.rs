@@ -79,7 +79,6 @@ pub(super) struct Group {
     pub(super) family: Family,
     /// 1 for R1.
     pub(super) number: u16,
-    /// Number of axes.
     pub(super) axes: usize,
     pub(super) pulses: Pulses,
     pub(super) form: u32,
@@ -190,7 +189,6 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// Pulses at a fraction of the path.
     fn at(&self, fraction: f64) -> Pulses {
         if fraction >= 1.0 {
             return self.to;
@@ -222,7 +220,6 @@ pub(super) struct Motion {
     braking: Option<(Now, f64)>,
 }
 
-/// End of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// Target reached.

@@ -13,7 +13,6 @@ use crate::yerc::payload::{CycleMode, JobInfo, Text};
 
 /// Duration of a line without motion or wait.
 const LINE_TIME: Duration = Duration::from_millis(2);
-/// Maximum nesting of calls.
 const MAX_CALLS: usize = 12;
 /// Signal number of general-purpose output 1.
 const FIRST_OUTPUT: u32 = 10010;

@@ -14,7 +14,6 @@ pub(super) type Answer = Result<Vec<u8>, Refusal>;
 /// First FS100 software with the newer commands.
 const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
 
-/// Answers a request of the robot server.
 pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
     let row = Row::from_number(frame.command).filter(|row| has(world, row.availability)).ok_or(Refusal::Command)?;
     let service = row.service(frame.service).ok_or(Refusal::Command)?;

@@ -192,7 +192,7 @@ pub(super) struct World {
     pub(super) mode_changes: u64,
 }
 
-/// Limit of steps per call of [`World::advance`]; the rest of a longer time is skipped.
+/// Limit of steps per call of [`World::advance`]; the remaining time is one step.
 const MAX_STEPS: u32 = 1_000_000;
 
 impl World {

@@ -120,7 +120,6 @@ pub struct Exchange {
     policy: Policy,
     phase: Phase,
     started: Option<Now>,
-    /// The last input image.
     input: Option<Image>,
     linked: bool,
     /// Time of the first sending of the command word.

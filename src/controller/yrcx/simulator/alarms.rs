@@ -117,7 +117,6 @@ impl fmt::Display for Fault {
     }
 }
 
-/// An alarm and its source.
 pub(super) type Entry = (Alarm, AlarmSource);
 
 /// Active alarms and history.
@@ -165,7 +164,6 @@ impl AlarmLog {
         self.active.clear();
     }
 
-    /// The oldest active alarm.
     pub(super) fn active(&self) -> Option<Alarm> {
         self.active.first().map(|(alarm, _)| *alarm)
     }

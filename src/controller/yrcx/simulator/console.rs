@@ -25,7 +25,6 @@ const HELP: &[(&str, &str)] = &[
     ("journal", "list the images that masters showed since the last `journal`"),
 ];
 
-/// Executes a line and returns its output.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {

@@ -6,11 +6,9 @@ use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT
 use super::geometry::{Four, STEPS, whole};
 use super::robot::AXES;
 
-/// Number of points.
 pub(super) const POINTS: u16 = 30_000;
 /// Number of pallets and of shifts.
 pub(super) const SHIFTS: usize = 40;
-/// Number of hands.
 pub(super) const HANDS: usize = 32;
 /// Variables of each kind.
 const VARIABLES: usize = 32;
@@ -22,7 +20,6 @@ const PORT_TYPES: usize = 7;
 /// Port types in the image.
 pub(super) const SI: usize = 5;
 pub(super) const SO: usize = 6;
-/// Names of the port types, by code.
 pub(super) const PORT_NAMES: [&str; PORT_TYPES] = ["DI", "DO", "MO", "LO", "TO", "SI", "SO"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -260,7 +257,6 @@ impl Memory {
     }
 }
 
-/// Result of an operation.
 pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> Result<f64, Fault> {
     let (a, b) = (first.wide(), second.wide());
     match operation {

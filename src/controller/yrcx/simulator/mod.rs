@@ -82,7 +82,7 @@ use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
 
-/// Limit of scans per call; the rest of a longer time is skipped.
+/// Limit of scans per call; the remaining time is one scan.
 const MAX_SCANS: u32 = 1_000_000;
 
 /// Event of the master.

@@ -128,7 +128,6 @@ pub(super) enum Owner {
     Task(u8),
 }
 
-/// End of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum End {
     /// Target reached.

@@ -18,7 +18,6 @@ const SIX: [Key; 6] = [Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4, Key::Axis
 const EIGHT: [Key; 8] =
     [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
 
-/// Answer of a read.
 pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> {
     let number = request.robot();
     let robot = world.robots.get(number);

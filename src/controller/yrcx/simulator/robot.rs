@@ -218,7 +218,6 @@ impl Robot {
     }
 }
 
-/// Fault of an axis at its limit.
 pub(super) fn over_limit(robot: usize, axis: usize) -> Fault {
     let why = format!("axis {} would be outside its soft limits", axis + 1);
     Fault::new(SOFT_LIMIT, AlarmSource::Axis(robot, axis), why)

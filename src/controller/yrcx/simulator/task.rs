@@ -10,9 +10,7 @@ use super::program::{Operand, Statement};
 use super::world::World;
 use crate::Now;
 
-/// Maximum nesting of calls.
 const MAX_CALLS: usize = 16;
-/// Number of tasks.
 pub(super) const TASKS: u8 = 16;
 /// The program whose subroutines all programs can call (4.6.4).
 const COMMON: &str = "COMMON";
@@ -186,7 +184,6 @@ impl World {
         Ok(())
     }
 
-    /// Skips one line of a task.
     pub(super) fn skip_line(&mut self, at: usize) -> Result<(), Fault> {
         self.may_run()?;
         self.none_runs()?;

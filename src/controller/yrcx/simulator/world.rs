@@ -85,7 +85,6 @@ pub(super) struct World {
     pub(super) link_alarm: Alarm,
     /// Time without a first master after which the link counts as lost.
     pub(super) link_within: Option<Duration>,
-    /// Input image.
     pub(super) inputs: Image,
     pub(super) motor: bool,
     pub(super) robots: Vec<Robot>,
@@ -229,7 +228,6 @@ impl World {
         }
     }
 
-    /// Handles an image of the master.
     pub(super) fn master_shows(&mut self, image: Image) {
         self.link = Link::Up;
         self.inputs = image;

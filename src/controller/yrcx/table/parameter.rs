@@ -47,7 +47,6 @@ pub const PARAMETERS: [Parameter; 14] = [
     axis(270, "PSHSPD", "push speed ratio", "", RATIO),
 ];
 
-/// Names by number.
 pub(super) const NAMES: [(u16, &str); PARAMETERS.len()] = {
     let mut names = [(0, ""); PARAMETERS.len()];
     let mut at = 0;

@@ -19,7 +19,6 @@ struct Script {
     runs: Option<u64>,
     /// Whether the running status is visible.
     shows_run: bool,
-    /// Its answer.
     answer: Words,
     /// Whether it accepts commands.
     takes: bool,

@@ -11,7 +11,6 @@ use crate::yrcx::session::{Ended, Exchange, ImageSession, Next, NotSentReason, O
 
 const RPI: u64 = 20;
 
-/// A master on a link.
 struct MasterLink {
     simulator: Simulator,
     output: Output,
