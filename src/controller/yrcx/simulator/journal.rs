@@ -28,7 +28,7 @@ impl Journal {
         ));
     }
 
-    /// Takes all entries, one per line after their number.
+    /// Removes and returns all entries: their number, then one per line.
     pub(super) fn take(&mut self) -> String {
         let Self { entries, omitted } = std::mem::take(self);
         let more = if omitted == 0 { String::new() } else { format!(", {omitted} more omitted") };

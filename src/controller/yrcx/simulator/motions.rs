@@ -70,7 +70,7 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
         | Command::PushPoint
         | Command::PushMm
         | Command::PushPulse => mask(request),
-        // Axes without motion are also held; a jog along a coordinate may need all axes.
+        // The axes that do not move must hold their position, and a jog along a coordinate may move all of them.
         _ => {
             let named = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or_default();
             world.has_axes(robot, named)?;
