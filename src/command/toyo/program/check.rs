@@ -31,7 +31,7 @@ pub struct Check {
     /// Steps that the task has room for
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
-    /// Points that are taught (CSV, as `point list --csv` writes them): a move to another one is told
+    /// Points that are taught (CSV, as `point dump` writes them): a move to another one is told
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// A name that the files have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)

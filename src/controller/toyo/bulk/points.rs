@@ -1,7 +1,7 @@
-//! Rows of the coordinate table as CSV: `name,x_mm,y_mm,z_mm,r_mm`, a point a line.
+//! Coordinate table in CSV: `name,x_mm,y_mm,z_mm,r_mm`, one point per line.
 //!
-//! Columns come in any order, and cells may be quoted. Where all coordinates are wanted, a column may only be missing for an
-//! axis that the controller does not have; such a coordinate is 0. Millimetres have at most two decimals.
+//! Columns can be in any order, and cells can be quoted. Complete points may lack a column only for an axis that the
+//! controller does not have; its coordinate is 0. Millimetres have at most two decimals.
 
 use std::collections::HashMap;
 
@@ -11,21 +11,21 @@ use crate::sheet::{self, Column, Dialect, Row, Sheet};
 use crate::toyo::field::{Field, Value};
 use crate::toyo::table::Parameter;
 
-/// The columns, in the order of the fields of the table.
+/// The columns, in the field order of the table.
 const COLUMNS: [&str; 5] = ["name", "x_mm", "y_mm", "z_mm", "r_mm"];
 
 /// The coordinate table.
 ///
 /// # Panics
-/// If the table of parameters lacks it, which a test shows.
+/// If it is missing in the parameter table; a test checks that.
 pub fn table() -> &'static Parameter {
     Parameter::named("T1").expect("the coordinate table is in the table of parameters")
 }
 
-/// Where axes have numbers: the columns that mean the same on every machine.
+/// Columns with axis numbers instead of letters: they have the same meaning on every machine.
 const NUMBERED_COLUMNS: [&str; 5] = ["name", "ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
 
-/// The columns of so many axes (1 to 4).
+/// The columns for 1 to 4 axes.
 pub fn columns(axes: usize) -> Vec<Column> {
     COLUMNS[..=axes.clamp(1, 4)].iter().map(|name| Column::number(*name)).collect()
 }
@@ -38,28 +38,28 @@ fn rows(points: &[Setting]) -> Vec<Vec<String>> {
     points.iter().map(cells).collect()
 }
 
-/// Points as CSV, with columns that mean the same on every machine.
+/// Formats points as CSV, with axis numbers as columns.
 pub fn write_numbered(points: &[Setting]) -> String {
     let columns = NUMBERED_COLUMNS.map(Column::number);
     sheet::write(Dialect::COMMAS, &columns, &rows(points))
 }
 
-/// Points as CSV, with the columns of so many axes (1 to 4).
+/// Formats points as CSV, with the columns of 1 to 4 axes.
 pub fn write(points: &[Setting], axes: usize) -> String {
     sheet::write(Dialect::COMMAS, &columns(axes), &rows(points))
 }
 
-/// A point of a file: its number and coordinates; none where the file has no column for it.
+/// A point of a file; `None` for a coordinate without a column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Partial {
-    /// Its number, then x, y, z and r.
+    /// Number, then x, y, z and r.
     pub values: Vec<Option<Value>>,
-    /// Its line, from 1.
+    /// Line, from 1.
     pub line: usize,
 }
 
 impl Partial {
-    /// The number of the point.
+    /// Number of the point.
     pub fn row(&self) -> i32 {
         match self.values.first() {
             Some(Some(Value::Number(row))) => *row,
@@ -68,7 +68,7 @@ impl Partial {
     }
 }
 
-/// Points in a CSV file, for a controller of so many axes (1 to 4): each once, all coordinates in range.
+/// Parses points from CSV for a controller with 1 to 4 axes. Each must be unique and have all coordinates in range.
 pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
     let points = read_wanted(bytes, COLUMNS, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
     let whole = |Partial { values, line }: Partial| {
@@ -100,7 +100,7 @@ pub fn numbers(bytes: &[u8]) -> Result<Vec<i32>, Vec<Finding>> {
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
 
-/// Whether the columns of a file have the numbers of axes.
+/// Whether the columns of a file have axis numbers.
 fn has_numbers(bytes: &[u8]) -> bool {
     let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
     String::from_utf8_lossy(head).to_ascii_lowercase().contains(NUMBERED_COLUMNS[1].trim_end_matches("1_mm"))
@@ -112,7 +112,7 @@ fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> 
     let expected = format!("the first line is {}", names[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
-        // A row that is wrong hides no other mistake.
+        // An error in one row does not hide errors in others.
         let before = findings.errors();
         let places = sheet.columns(&names, &expected, &mut findings);
         for (name, _) in names.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
