@@ -162,7 +162,7 @@ fn faulty_files_are_wrong_arguments() {
     ]);
     for (words, told) in [
         (&["./a.txt"][..], "a.txt:1:1: there is no instruction 'EMD'"),
-        (&["./good.txt", "--points", "./points.csv"], "points.csv:1:11: column y_mm is missing"),
+        (&["./good.txt", "--points", "./points.csv"], "points.csv:1:10: column y_mm is missing"),
         (&["./good.txt", "--params", "./params.toml"], "params.toml:2:5: speed: 0.0 is out of range"),
         (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: a controller has 1 to 4 axes"),
     ] {
