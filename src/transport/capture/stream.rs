@@ -34,6 +34,7 @@ const MOST_WAITING: usize = 64;
 const MOST_STREAMS: usize = 1 << 16;
 const MOST_HELD: usize = 32 << 20;
 
+/// TCP reassembly of all streams in a file.
 #[derive(Debug, Default)]
 pub struct Streams {
     streams: HashMap<StreamKey, Stream>,
