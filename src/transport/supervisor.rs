@@ -1,10 +1,10 @@
-//! Tells the service manager that started this process how it is: `sd_notify(3)`. Datagrams to the socket that
-//! `NOTIFY_SOCKET` names; without it there is nobody to be told, and nothing happens.
+//! Notifications to the service manager, `sd_notify(3)`: datagrams to the socket in `NOTIFY_SOCKET`. Without this
+//! variable, nothing is sent.
 
 use std::io;
 use std::time::Duration;
 
-/// Who started this process and wants to know how it is.
+/// Service manager that started this process.
 #[derive(Debug, Default)]
 pub struct Supervisor {
     #[cfg(unix)]
@@ -13,23 +13,23 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// The one that the environment names.
+    /// Finds the service manager in the environment.
     ///
     /// # Errors
-    /// What it names cannot be reached.
+    /// The socket cannot be opened.
     #[cfg(unix)]
     pub fn find() -> io::Result<Self> {
         let Some(name) = std::env::var_os("NOTIFY_SOCKET").filter(|name| !name.is_empty()) else {
             return Ok(Self::default());
         };
         let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u64>().ok());
-        // The watchdog of a process that has started this one is not its own.
+        // A child process can inherit the variables of its parent.
         let is_own = number("WATCHDOG_PID").is_none_or(|process| process == u64::from(std::process::id()));
         let watchdog = number("WATCHDOG_USEC").filter(|micros| is_own && *micros > 0).map(Duration::from_micros);
         Ok(Self { socket: Some(unix::Socket::named(&name)?), watchdog })
     }
 
-    /// There is none here.
+    /// Not supported on this system.
     ///
     /// # Errors
     /// None.
@@ -38,31 +38,31 @@ impl Supervisor {
         Ok(Self::default())
     }
 
-    /// How often it wants to hear that this process is alive: twice in the time after which it would start it anew.
+    /// Interval of the alive messages: half of the watchdog time of the service manager.
     pub fn pulse(&self) -> Option<Duration> {
         self.watchdog.map(|within| within / 2)
     }
 
-    /// All is set up: those who wait for this service may begin.
+    /// Reports that the service is ready, so that dependent services can start.
     ///
     /// # Errors
-    /// It cannot be told.
+    /// The datagram cannot be sent.
     pub fn ready(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("READY=1\nSTATUS={status}"))
     }
 
-    /// Still alive, and how.
+    /// Reports that the service is alive, with a status text.
     ///
     /// # Errors
-    /// It cannot be told.
+    /// The datagram cannot be sent.
     pub fn alive(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
     }
 
-    /// It comes to its end.
+    /// Reports that the service stops.
     ///
     /// # Errors
-    /// It cannot be told.
+    /// The datagram cannot be sent.
     pub fn stopping(&self) -> io::Result<()> {
         self.tell("STOPPING=1")
     }
@@ -94,7 +94,7 @@ mod unix {
     impl Socket {
         pub fn named(name: &OsStr) -> io::Result<Self> {
             let own = UnixDatagram::unbound()?;
-            // A manager that does not read must not hold up who is watched.
+            // A service manager that does not read must not block this process.
             own.set_nonblocking(true)?;
             let to = match name.as_bytes() {
                 [b'@', name @ ..] => in_abstract(name)?,
