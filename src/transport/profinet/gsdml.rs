@@ -316,7 +316,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(Fitting { slots: allowed, fixed, module })
     }
 
-    /// Submodules of a module or access point. Optional submodules are used only if there is exactly one.
+    /// Submodules of a module or access point. Of the referenced submodules, only those fixed in a subslot are used.
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {

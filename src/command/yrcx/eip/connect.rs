@@ -35,8 +35,8 @@ fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
 }
 
-/// Heartbeat instances of input-only connections on boards of several manufacturers. The first is one whose loss the
-/// board does not report to its controller. The loss of the last one can be reported.
+/// Heartbeat instances of input-only connections on boards of several manufacturers, in the order in which they are
+/// tried. A board does not report the loss of the first to its controller. The loss of the last can be reported.
 const HEARTBEATS: [u32; 5] = [6, 238, 254, 198, 3];
 /// Minimum interval of reads, because boards answer messages with low priority.
 const PAUSE: Duration = Duration::from_millis(20);
