@@ -152,7 +152,6 @@ impl Plan<'_> {
         Ok(Some(Planned { ready, origin: origin.clone(), typed }))
     }
 
-    /// Runs the lines.
     async fn go(&self, lines: Vec<Planned>) -> Result<(), RunError> {
         let all = lines.len();
         let mut failed: Vec<(Origin, Failure)> = Vec::new();

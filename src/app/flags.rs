@@ -11,7 +11,6 @@ use crate::gate::OnInterrupt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a group of flags of its own")]
 struct Uses {
-    /// Selection of robots.
     robots: bool,
     /// Link options.
     link: bool,

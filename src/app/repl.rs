@@ -76,7 +76,6 @@ enum Next {
     Line,
     /// The line failed, and the error was printed.
     Failed(Kind),
-    /// Leave.
     Leave,
 }
 
@@ -200,7 +199,6 @@ impl Repl {
         }
     }
 
-    /// Runs a line, and prints its error.
     async fn run_line(&mut self, text: &str, manager: &SessionManager) -> Next {
         let words = match words::split(text) {
             Ok(words) => words,

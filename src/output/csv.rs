@@ -187,7 +187,6 @@ fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a V
     all
 }
 
-/// Whether the schema requires this field.
 fn is_required(root: &Value, name: &str) -> bool {
     let lists = expanded(root, root).into_iter().filter_map(|schema| schema["required"].as_array());
     lists.flatten().any(|required| required == name)

@@ -68,7 +68,6 @@ impl Screen {
     }
 }
 
-/// Asks on stderr.
 fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     prompt::save();
     ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {

@@ -27,7 +27,6 @@ use crate::controller::yerc::Model;
 use crate::failure::{Failure, plain};
 use crate::files;
 
-/// File name.
 const FILE_NAME: &str = "alarms.toml";
 
 /// What the file says of an alarm.
@@ -108,7 +107,6 @@ pub fn find(robot: &Robot, code: &str) -> Result<Option<Explanation>, Failure> {
     robot.alarms.find(Origin::of(robot), code)
 }
 
-/// Content of the file.
 #[derive(Debug)]
 struct Table(Vec<Entry>);
 

@@ -119,7 +119,6 @@ fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor
     Ok(editor)
 }
 
-/// History file.
 struct History(PathBuf);
 
 impl History {

@@ -9,7 +9,6 @@ use crate::command::frame::run::Repeat;
 use crate::failure::Failure;
 use crate::settings::duration;
 
-/// Polling interval.
 const EVERY: Duration = Duration::from_millis(200);
 
 /// Wait until a condition holds, of several robots for all of them, and print how they are then

@@ -82,7 +82,6 @@ impl From<Stop> for FilterError {
     }
 }
 
-/// The worker of this process.
 struct Worker {
     child: Child,
     requests: ChildStdin,
@@ -200,7 +199,6 @@ pub fn serve() -> Result<(), Kind> {
     end(Kind::PipeClosed)
 }
 
-/// Sets the limits of the worker.
 #[cfg(unix)]
 fn limit() {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};

@@ -87,7 +87,6 @@ pub struct EipKey {
 const PORT: u16 = 44818;
 /// Valid sizes: at least an image (chapter 1, section 1: 24 words), at most a datagram.
 const SIZES: RangeInclusive<u16> = 48..=65_000;
-/// Valid intervals.
 const RPIS: RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
 const RPI: Duration = Duration::from_millis(20);
 

@@ -11,7 +11,6 @@ use crate::settings::duration;
 
 /// Default address of this program: the usual one of a single master.
 const MASTER: u8 = 2;
-/// Highest station address.
 const MAX_STATION: u8 = 125;
 /// Bit rates that adapters support.
 const RATES: [(&str, u32); 7] = [

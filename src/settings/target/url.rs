@@ -6,7 +6,6 @@ use std::ops::RangeInclusive;
 
 use crate::controller::nearest::nearest;
 
-/// Valid baud rates.
 const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
 /// Part between the slashes and the query.

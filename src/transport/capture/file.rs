@@ -65,7 +65,6 @@ const MOST: usize = 16 << 20;
 /// Limit of interfaces per section, because each one is kept in memory.
 const MOST_INTERFACES: usize = 1 << 16;
 
-/// Byte order of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ByteOrder {
     Big,

@@ -14,7 +14,6 @@ pub(super) struct Producer {
     due: Now,
     sequence: u32,
     count: u16,
-    /// Datagrams sent.
     pub(super) sent: u64,
     /// Send times omitted because a whole interval was missed.
     pub(super) skipped: u64,
@@ -104,7 +103,6 @@ impl Consumer {
         }
     }
 
-    /// Connection id.
     pub(super) const fn id(&self) -> u32 {
         self.id
     }

@@ -12,7 +12,6 @@ use super::wire::{Command, Frame, Identity};
 
 /// Time over which devices spread their answers to a broadcast (volume 2, 2-4.2.2).
 const SPREAD: Duration = Duration::from_millis(500);
-/// Receive buffer.
 const BUFFER: usize = 2048;
 /// Limit of reported devices.
 const MOST: usize = 1024;

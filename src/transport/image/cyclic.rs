@@ -48,7 +48,6 @@ pub trait Bus: fmt::Debug + 'static {
 pub struct Cyclic<B> {
     bus: B,
     sizes: Sizes,
-    /// Current generation.
     generation: u32,
     /// Number of the change that is not sent yet.
     pending: Option<u64>,

@@ -270,7 +270,6 @@ fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> R
     Ok(record.to_vec())
 }
 
-/// Makes a call and waits for its outcome.
 fn exchange(calls: &Calls, client: &mut Client, blocks: &[u8]) -> Result<Outcome, ProfinetError> {
     calls.send(&client.call(calls.now(), operation::READ_IMPLICIT, blocks, TRIES))?;
     loop {

@@ -159,7 +159,7 @@ pub fn labels(first: &str, more: &[(&str, &str)]) -> String {
     all
 }
 
-/// Escapes a label value, and limits its length.
+/// Escapes and shortens a label value.
 fn escaped(value: &str) -> String {
     let value: String = value.chars().take(LONGEST).collect();
     escape::line(&value).replace('\\', "\\\\").replace('"', "\\\"")

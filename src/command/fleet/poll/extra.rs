@@ -31,7 +31,6 @@ pub struct Extra {
 /// A parsed command, or the error.
 pub type Read = Result<Box<dyn AnyCommand>, Failure>;
 
-/// Examples for error texts.
 const EXAMPLE: &str = "such as 'yerc var get B0..B9' or 'toyo counter get'";
 
 impl Extra {

@@ -312,7 +312,6 @@ impl Fleet {
         }
     }
 
-    /// A task has ended.
     async fn ended(&mut self, id: &RobotId) {
         if let Some(active) = self.active.remove(id) {
             self.tell.tell(Event::Gone(active.robot)).await;

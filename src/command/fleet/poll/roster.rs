@@ -15,7 +15,7 @@ use crate::settings::{Robot, Sources};
 /// Interval of the file check. A changed file is read after two equal checks, so that it is complete.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// The roster.
+/// Robots to poll: fixed, or read again when their inventory file changes.
 #[derive(Debug)]
 pub(super) struct Roster {
     robots: Vec<Robot>,

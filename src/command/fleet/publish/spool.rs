@@ -37,7 +37,6 @@ pub enum SpoolError {
     Io(io::Error),
 }
 
-/// A segment file.
 #[derive(Debug)]
 struct Segment {
     number: u64,

@@ -75,13 +75,11 @@ enum Mood {
     Lost,
 }
 
-/// A simulated broker.
 #[derive(Debug)]
 struct Fake {
     mood: RefCell<Mood>,
     /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
-    /// Times of connection attempts.
     attempts: RefCell<Vec<Instant>>,
     changed: Notify,
     start: Instant,

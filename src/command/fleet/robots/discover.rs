@@ -96,7 +96,6 @@ impl Discovered {
     }
 }
 
-/// Text for an empty result.
 const NOTHING: &str = "no answer, and no serial port found. Connect this computer to the network of the robots, or \
                        select a network with --broadcast 192.168.0.255";
 

@@ -28,7 +28,6 @@ const EVERY: Duration = Duration::from_millis(250);
 /// Longest backoff while the robot does not answer.
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// Result of a command.
 enum Done {
     /// Content of a point.
     Found(u32, Result<Value, Failure>),

@@ -28,7 +28,6 @@ pub(super) fn profiles() -> Vec<Profile> {
         .to_vec()
 }
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let node = options(&at)?;
     if purpose == Purpose::Look {
@@ -71,7 +70,6 @@ pub(super) fn adapter(node: &DeviceNet) -> Adapter {
     Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
 }
 
-/// Options of the URL.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of DeviceNet", at.bus))))
 }

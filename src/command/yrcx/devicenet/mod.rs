@@ -19,7 +19,6 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::devicenet::BUS;
 
-/// The board of a link.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(BUS)
 }

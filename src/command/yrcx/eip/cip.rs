@@ -22,7 +22,6 @@ pub struct EncapsulatedMessage {
     pub opened: Option<(u32, u32)>,
 }
 
-/// Names of encapsulation commands.
 const COMMANDS: [(Command, &str); 7] = [
     (Command::NOP, "NOP"),
     (Command::LIST_SERVICES, "ListServices"),
@@ -33,7 +32,6 @@ const COMMANDS: [(Command, &str); 7] = [
     (Command::SEND_RR_DATA, "SendRRData"),
 ];
 
-/// Names of services.
 const SERVICES: [(u8, &str); 6] = [
     (service::ATTRIBUTES_ALL, "read all attributes"),
     (service::ATTRIBUTE_SINGLE, "read an attribute"),

@@ -13,7 +13,6 @@ use crate::transport::eip::settings::{Multiplier, Role, Settings};
 use crate::transport::eip::wire::Key;
 use crate::transport::image::{Cause, ImageLink, LinkError};
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let eip = options(&at)?;
     if purpose == Purpose::Look && eip.role == EipRole::Owner {
@@ -30,7 +29,6 @@ pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
     Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
 }
 
-/// Options of the URL.
 fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
 }

@@ -116,7 +116,6 @@ impl Command for Set {
     }
 }
 
-/// Typed bytes.
 #[derive(Debug, Clone)]
 struct Bytes(Vec<u8>);
 

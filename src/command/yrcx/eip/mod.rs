@@ -20,7 +20,6 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::eip::SCHEME;
 
-/// The board of a link.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }

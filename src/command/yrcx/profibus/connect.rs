@@ -18,7 +18,6 @@ use crate::transport::profibus::port::{Port, Serial};
 use crate::transport::profibus::rates::Rate;
 use crate::transport::profibus::settings::Settings;
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profibus = options(&at)?;
     // A read must not take the outputs, and a slave sends its image only to its master.
@@ -43,7 +42,6 @@ const fn swapped(profibus: &Profibus) -> Swapped {
 /// Minimum time to listen, longer than the longest cycle of a master.
 const LISTEN: Duration = Duration::from_secs(3);
 
-/// Options of the URL.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profibus, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFIBUS", at.bus))))
 }

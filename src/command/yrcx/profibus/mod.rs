@@ -18,7 +18,6 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::profibus::SCHEME;
 
-/// The board of a link.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }

@@ -23,7 +23,6 @@ use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup, 
 use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::record::Parameter;
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profinet = options(at.bus)?;
     if purpose == Purpose::Look {
@@ -57,7 +56,6 @@ pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
     Ok(names.iter().map(|name| address(&profinet.interface, name)).collect())
 }
 
-/// Options of the URL.
 pub(super) fn options(bus: &Bus) -> Result<&Profinet, LinkError> {
     bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is not a URL of PROFINET"))))
 }
@@ -109,7 +107,6 @@ fn whole(time: Duration) -> Duration {
 struct Modules {
     layout: Layout,
     parameters: Vec<Parameter>,
-    /// Shortest cycle.
     shortest: Duration,
     startup: Startup,
 }
@@ -157,7 +154,6 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
     Err(LinkError::Settings(cause.advice(advice)))
 }
 
-/// Reads a GSDML file.
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let bytes = files::read(path, MOST_BYTES).map_err(|error| {

@@ -37,7 +37,6 @@ struct Stream {
     direction: Direction,
     /// Controller and device.
     link: (String, String),
-    /// Length of the data.
     length: usize,
     /// Offset and length of the image parts; a status follows each.
     places: Vec<(usize, usize)>,
@@ -257,7 +256,6 @@ fn say(message: &Message<'_>, direction: Direction, link: (String, String), text
     images.message(DecodedMessage { raw: hex(message.bytes), ..decoded(message, direction, link, text) });
 }
 
-/// Name of a call.
 fn name(header: &Header) -> &'static str {
     match header.operation {
         operation::CONNECT => "Connect",

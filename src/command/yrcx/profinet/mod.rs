@@ -30,7 +30,6 @@ use crate::transport::profinet::settings::Station;
 use crate::transport::profinet::wire::Mac;
 use crate::transport::profinet::wire::dcp::Block;
 
-/// The board of a link.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }

@@ -28,7 +28,6 @@ impl Allocation {
         }
     }
 
-    /// Allocation choice byte.
     pub(super) fn choice(&self) -> u8 {
         self.held.map_or(0, |(choice, _)| choice)
     }

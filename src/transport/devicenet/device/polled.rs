@@ -18,7 +18,6 @@ const TICK: u16 = 10;
 pub(super) enum State {
     /// Allocated. Polls are ignored.
     Configuring = 1,
-    /// Established.
     Established = 3,
     /// The watchdog expired.
     TimedOut = 4,
@@ -107,7 +106,6 @@ impl Polled {
 }
 
 impl<A: Application> Device<A> {
-    /// Handles a frame of a poll.
     pub(super) fn polled(&mut self, now: Now, bytes: &[u8]) {
         let size = usize::from(self.setup.size);
         let Some(polled) = self.polled.as_mut().filter(|polled| polled.is_established()) else { return };

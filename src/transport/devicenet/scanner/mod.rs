@@ -58,7 +58,6 @@ pub struct Identity {
 /// Observed state of the bus.
 #[derive(Debug)]
 pub(crate) struct Bus {
-    /// Health of the adapter.
     pub(crate) health: Health,
     /// Time of the last frame from each MAC.
     heard: [Option<Now>; 64],

@@ -21,7 +21,6 @@ const TRIES: u8 = 2;
 pub(super) enum Outcome {
     /// The slave answered.
     Answer(Answer),
-    /// The slave did not answer.
     Silent,
     /// The answer was invalid.
     Senseless(&'static str),
@@ -58,7 +57,6 @@ impl Requester {
         Self { own, slave, patience, xid: true, current: None, taken: None, outbox: VecDeque::new() }
     }
 
-    /// Whether a request is in progress.
     pub(super) const fn is_busy(&self) -> bool {
         self.current.is_some()
     }
@@ -76,7 +74,6 @@ impl Requester {
         self.begin(now);
     }
 
-    /// Cancels the current request.
     pub(super) fn cancel(&mut self) {
         self.current = None;
         self.outbox.clear();

@@ -135,7 +135,6 @@ pub enum Output {
     Discovered(SocketAddrV4, Vec<u8>),
 }
 
-/// A TCP connection.
 #[derive(Debug)]
 struct Client {
     address: Ipv4Addr,

@@ -85,7 +85,6 @@ pub struct Master {
     /// Whether this master may have locked the slave.
     locked: bool,
     jobs: VecDeque<Job>,
-    /// Whether the last job was a diagnosis request.
     is_diagnosing: bool,
     next_cycle: Now,
     /// Time of the last Operate telegram to all slaves.

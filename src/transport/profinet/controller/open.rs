@@ -48,7 +48,6 @@ impl Controller {
         self.call(now, operation::CONNECT, &blocks, 1);
     }
 
-    /// Blocks of Connect.
     fn requests(&self) -> Vec<Request> {
         let Some(ar) = &self.ar else { return Vec::new() };
         let (properties, class) = match self.settings.startup {

@@ -61,7 +61,6 @@ impl Address {
 }
 
 impl Controller {
-    /// Starts the search.
     pub(super) fn resolve(&mut self, now: Now) {
         self.device = None;
         if self.view.generation == 0 {

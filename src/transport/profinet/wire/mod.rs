@@ -154,7 +154,6 @@ impl Writer {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Appends zeros.
     fn zeros(&mut self, count: usize) {
         self.bytes.resize(self.bytes.len() + count, 0);
     }

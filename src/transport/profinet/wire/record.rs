@@ -17,7 +17,6 @@ pub mod index {
 
 /// Length of a record block before the data, without its header.
 const FIXED: usize = 60;
-/// Length of a block header.
 const BLOCK_HEADER: usize = 4;
 
 /// Record header of a Read or Write.

@@ -23,7 +23,6 @@ use super::wire::{
 const LETTERS: usize = 64;
 /// How long the line is reserved for the client that stops the robot.
 const STOP_FIRST: Duration = Duration::from_secs(10);
-/// Client limit.
 const MOST_CLIENTS: usize = 64;
 
 /// A session.
@@ -372,7 +371,6 @@ impl Host {
         }
     }
 
-    /// Whether the client stops the robot.
     fn is_stop(&self, id: u64) -> bool {
         self.clients.get(&id).is_some_and(|client| client.purpose == Purpose::Stop)
     }

@@ -30,7 +30,6 @@ use crate::settings::Robot;
 /// Minimum time between two births at the request of a host.
 const BIRTHS_MS: u64 = 1000;
 
-/// Record types.
 mod kind {
     /// Changed values of a device.
     pub const DATA: u8 = 1;

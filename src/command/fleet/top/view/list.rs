@@ -8,7 +8,6 @@ use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Severity, 
 use crate::output::painter::{self, Painter, after, line_of, width};
 use crate::output::view::Tone;
 
-/// A column of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,
