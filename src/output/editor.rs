@@ -5,9 +5,6 @@ use std::path::Path;
 use std::process::{Command, ExitStatus};
 
 /// Starts an editor, given by the words of its command line, on a file. Waits until it ends.
-///
-/// # Errors
-/// The editor cannot be started.
 pub fn wait_for(words: &[String], path: &Path) -> io::Result<ExitStatus> {
     let (program, arguments) = words.split_first().ok_or(io::ErrorKind::InvalidInput)?;
     Command::new(program).args(arguments).arg(path).status()

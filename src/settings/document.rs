@@ -14,9 +14,6 @@ const NO_ENTRY: Wrong = "the robot has no [[robot]] table of its own";
 
 impl Document {
     /// Parses a text.
-    ///
-    /// # Errors
-    /// Not valid TOML.
     pub fn parse(text: &str) -> Result<Self, TomlError> {
         text.parse().map(Self)
     }

@@ -258,9 +258,6 @@ impl Target {
     }
 
     /// Checks that the URL and all its options are valid for a family.
-    ///
-    /// # Errors
-    /// The reason.
     pub fn check(&self, family: Family) -> Result<(), String> {
         if !family.is_reached_over(self.scheme()) {
             return Err(format!("{family} is not reached over {}:", self.scheme()));

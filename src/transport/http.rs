@@ -95,9 +95,6 @@ pub struct Server {
 
 impl Server {
     /// Listens at an address.
-    ///
-    /// # Errors
-    /// The port is in use, or the address is not local.
     pub async fn bind(address: SocketAddr) -> io::Result<Self> {
         Ok(Self { listener: TcpListener::bind(address).await? })
     }

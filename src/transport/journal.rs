@@ -16,9 +16,6 @@ pub struct Journal {
 
 impl Journal {
     /// Connects to the journal socket.
-    ///
-    /// # Errors
-    /// No journal listens there.
     pub fn at(place: &Path) -> io::Result<Self> {
         let socket = UnixDatagram::unbound()?;
         socket.connect(place)?;
@@ -26,9 +23,6 @@ impl Journal {
     }
 
     /// Writes an entry. Field names consist of letters, digits and `_`, and start with a letter.
-    ///
-    /// # Errors
-    /// The datagram cannot be sent.
     pub fn write(&self, fields: &[(&str, &str)]) -> io::Result<()> {
         let mut entry = Vec::new();
         for (name, value) in fields {

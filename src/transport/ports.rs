@@ -106,9 +106,6 @@ fn usage(process: &Path, port: &Path) -> Option<Usage> {
 }
 
 /// All serial ports, sorted by name (`ttyUSB2` before `ttyUSB10`).
-///
-/// # Errors
-/// The system does not provide the list.
 pub fn ports() -> io::Result<Vec<PortInfo>> {
     // The `serialport` crate expects that this folder exists.
     if cfg!(target_os = "linux") {

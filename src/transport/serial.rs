@@ -77,9 +77,6 @@ pub struct Serial {
 
 impl Serial {
     /// Opens a port, and drops old received bytes.
-    ///
-    /// # Errors
-    /// [`OpenError`] has the reason.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
         Ok(Self { port: Threaded::new(open(line, MOST_OFF)?), pace: line.pace() })
     }

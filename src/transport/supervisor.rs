@@ -14,9 +14,6 @@ pub struct Supervisor {
 
 impl Supervisor {
     /// Finds the service manager in the environment.
-    ///
-    /// # Errors
-    /// The socket cannot be opened.
     #[cfg(unix)]
     pub fn find() -> io::Result<Self> {
         let Some(name) = std::env::var_os("NOTIFY_SOCKET").filter(|name| !name.is_empty()) else {
@@ -30,9 +27,6 @@ impl Supervisor {
     }
 
     /// Not supported on this system.
-    ///
-    /// # Errors
-    /// None.
     #[cfg(not(unix))]
     pub fn find() -> io::Result<Self> {
         Ok(Self::default())
@@ -44,25 +38,16 @@ impl Supervisor {
     }
 
     /// Reports that the service is ready, so that dependent services can start.
-    ///
-    /// # Errors
-    /// The datagram cannot be sent.
     pub fn ready(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("READY=1\nSTATUS={status}"))
     }
 
     /// Reports that the service is alive, with a status text.
-    ///
-    /// # Errors
-    /// The datagram cannot be sent.
     pub fn alive(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
     }
 
     /// Reports that the service stops.
-    ///
-    /// # Errors
-    /// The datagram cannot be sent.
     pub fn stopping(&self) -> io::Result<()> {
         self.tell("STOPPING=1")
     }

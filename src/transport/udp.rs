@@ -29,9 +29,6 @@ struct Open {
 
 impl Udp {
     /// Creates channels for the ports of `host`, in this order. A socket opens at its first use.
-    ///
-    /// # Errors
-    /// The host name cannot be resolved.
     pub async fn open(host: &str, ports: &[u16]) -> io::Result<Self> {
         let address = if let Ok(address) = host.parse::<IpAddr>() {
             address

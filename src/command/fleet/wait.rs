@@ -27,9 +27,6 @@ pub struct Wait {
 
 impl Wait {
     /// Repetition of `status` for this condition.
-    ///
-    /// # Errors
-    /// The condition is not valid.
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
         let until = Some(Condition::new(&self.condition)?);
         let every = given.every.or(Some(EVERY));

@@ -91,9 +91,6 @@ enum Mode {
 
 impl<A: Application + 'static> Hub<A> {
     /// Starts a hub, with or without a slave. `faults` are for frames to and from the slave.
-    ///
-    /// # Errors
-    /// An endpoint cannot be opened.
     pub fn start(
         bitrate: Bitrate,
         device: Option<Device<A>>,

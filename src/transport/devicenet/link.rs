@@ -154,9 +154,6 @@ pub struct Reading {
 
 impl Reading {
     /// Connects and reads the image for the first time.
-    ///
-    /// # Errors
-    /// The slave does not answer, or cannot be read.
     pub async fn open(network: &Network, slave: Mac, timeout: Duration, pause: Duration) -> Result<Self, Error> {
         let purpose = Purpose::Messages { with_poll: true };
         let connection = network.connect(Settings { slave, purpose, timeout }).await?;
@@ -220,9 +217,6 @@ const IMAGE: &str = "what it shows";
 const PRODUCED_PATH: u8 = 14;
 
 /// Finds the request that reads the image which the slave would produce. Its poll connection object has the path.
-///
-/// # Errors
-/// The path is missing or not valid.
 pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Error> {
     let instance = u16::from(connection::POLL_INSTANCE);
     let path = read(connection, mac, &Request::get(class::CONNECTION, instance, PRODUCED_PATH)).await?;
@@ -235,9 +229,6 @@ pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Erro
 }
 
 /// Reads an attribute.
-///
-/// # Errors
-/// The slave refuses or does not answer.
 pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Result<Vec<u8>, Error> {
     match connection.ask(request.clone()).await? {
         Answer::Done { data, .. } => Ok(data),

@@ -306,9 +306,6 @@ impl Connection {
     }
 
     /// Sends an explicit request. A refusal is an answer.
-    ///
-    /// # Errors
-    /// No valid answer.
     pub async fn ask(&self, request: Request) -> Result<Answer, Error> {
         let inner = &self.network.owner.inner;
         let token = Token(inner.last.fetch_add(1, Ordering::Relaxed));

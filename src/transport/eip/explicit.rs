@@ -38,9 +38,6 @@ impl Message {
     }
 
     /// Encodes the frame data.
-    ///
-    /// # Errors
-    /// The path or the data are too long.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
             let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");

@@ -91,9 +91,6 @@ pub struct Reading {
 
 impl Reading {
     /// Reads the assembly for the first time.
-    ///
-    /// # Errors
-    /// The assembly cannot be read.
     pub async fn open(client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
         let reader = Reader::open(client, assembly, pause).await?;
         Ok(Self { reader, size: assembly.size.into() })
@@ -133,9 +130,6 @@ impl ImageConnection for Reading {
 }
 
 /// First IPv4 address of a host.
-///
-/// # Errors
-/// The host is unknown or has no IPv4 address.
 pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     let found = tokio::net::lookup_host((host, port)).await;
     let mut addresses = found.map_err(|_| EipError::NotFound { host: host.to_owned() })?;

@@ -113,9 +113,6 @@ pub struct Originator {
 
 impl Originator {
     /// Creates a connection to the device at this TCP address. Images arrive on UDP port `port`.
-    ///
-    /// # Errors
-    /// The settings are invalid.
     pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
         settings.check()?;
         Ok(Self {

@@ -46,9 +46,6 @@ pub struct Client {
 
 impl Client {
     /// Connects and sends CONNECT. The first event is the broker's answer. `within` limits the whole procedure.
-    ///
-    /// # Errors
-    /// No connection, or the broker is not trusted.
     pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
         let by = Instant::now() + within;
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
@@ -80,17 +77,11 @@ impl Client {
     }
 
     /// See [`Session::publish`].
-    ///
-    /// # Errors
-    /// Nothing was sent.
     pub fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         self.session.publish(Instant::now(), message)
     }
 
     /// See [`Session::subscribe`].
-    ///
-    /// # Errors
-    /// A topic is not valid.
     pub fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
         self.session.subscribe(Instant::now(), topics)
     }

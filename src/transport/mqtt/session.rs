@@ -233,9 +233,6 @@ impl Session {
     }
 
     /// Subscribes to these topics.
-    ///
-    /// # Errors
-    /// A topic is not valid.
     pub fn subscribe(&mut self, now: Instant, topics: &[String]) -> Result<(), SendError> {
         let entry = |topic: &String| SubEntry::new(topic.as_str(), SubOpts::new().set_qos(Qos::AtLeastOnce));
         let entries = topics.iter().map(entry).collect::<Result<Vec<_>, _>>()?;

@@ -198,9 +198,6 @@ mod rustls_link {
 
     impl Tls {
         /// Reports that TLS is not available.
-        ///
-        /// # Errors
-        /// Always.
         pub fn new(_: &str, _: &Trust, _: Option<&Identity>) -> Result<Self, TlsError> {
             Err(TlsError::Setup("this armctl was built without TLS (feature plant-tls)".to_owned()))
         }

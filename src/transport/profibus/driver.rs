@@ -216,9 +216,6 @@ impl Record {
 }
 
 /// Runs a survey; blocks the thread.
-///
-/// # Errors
-/// The bus does not allow a survey, or the port is gone.
 pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
     let start = Instant::now();
     let mut record = tap.map(Record::new);

@@ -28,9 +28,6 @@ pub struct Hearing {
 
 impl Hearing {
     /// Opens the port.
-    ///
-    /// # Errors
-    /// The port cannot be opened.
     pub fn start(station: u8, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let mut port = opener()?;
         let (tell, news) = watch::channel(Ok(Heard::default()));

@@ -49,9 +49,6 @@ pub struct Slave {
 
 impl Master {
     /// Opens the port and the link. The resting image in the settings has the byte order of the controller.
-    ///
-    /// # Errors
-    /// The port or the link cannot be opened.
     pub async fn open(
         mut settings: Settings,
         swapped: Swapped,
@@ -120,9 +117,6 @@ pub struct Listening {
 
 impl Listening {
     /// Waits for the first exchange of this slave, at most `longest`.
-    ///
-    /// # Errors
-    /// No exchange was heard in that time.
     pub async fn open(
         station: u8,
         size: usize,

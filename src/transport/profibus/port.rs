@@ -49,9 +49,6 @@ pub struct Serial {
 
 impl Serial {
     /// Opens the port.
-    ///
-    /// # Errors
-    /// [`ProfibusError::Port`].
     pub fn open(path: &str, rate: Rate) -> Result<Self, ProfibusError> {
         let line = Line {
             path: path.to_owned(),

@@ -134,9 +134,6 @@ impl Settings {
     }
 
     /// Checks that the images have the sizes of a configuration.
-    ///
-    /// # Errors
-    /// The sizes are different.
     pub fn fits(&self, configuration: &Configuration) -> Result<(), ProfibusError> {
         let (input, output) = (configuration.input(), configuration.output());
         if (input, output) == (self.input_size, self.output_size) {

@@ -45,9 +45,6 @@ pub struct Found {
 }
 
 /// Finds all stations of a network.
-///
-/// # Errors
-/// The interface cannot be used.
 pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
     let frames = Frames::open(interface)?;
     let question = Dcp::identify_all(fastrand::u32(1..), SPREAD);
@@ -102,9 +99,6 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
 }
 
 /// Finds another station with the same name, and returns its MAC address.
-///
-/// # Errors
-/// The interface cannot be used.
 pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -141,9 +135,6 @@ pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
 }
 
 /// Sets a value at a station: name, address, blinking. The request is sent up to three times, which is harmless.
-///
-/// # Errors
-/// The interface cannot be used, or the station does not answer or refuses.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
     let frames = Frames::open(interface)?;
     let request = set(interface.mac, mac, fastrand::u32(1..), block);
@@ -196,9 +187,6 @@ pub fn settled(
 }
 
 /// MAC address that answers ARP for an IP address, other than `except`.
-///
-/// # Errors
-/// The interface cannot be used.
 pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
     // The system does not answer its own ARP request.
     if interface.ip.is_some_and(|own| own.address == address) {

@@ -110,9 +110,6 @@ pub struct Item {
 
 impl Gsdml {
     /// Parses a file in UTF-8 or ISO 8859-1.
-    ///
-    /// # Errors
-    /// The first problem in the file.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
         let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
         if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
@@ -144,9 +141,6 @@ impl Head {
     }
 
     /// Parameter records for that layout.
-    ///
-    /// # Errors
-    /// As in [`layout`](Self::layout).
     pub fn parameters(&self, chosen: &[(u16, &Fitting)]) -> Result<Vec<Parameter>, String> {
         let placed = self.placed(chosen)?;
         let parameters = placed.iter().flat_map(|(submodule, item)| {

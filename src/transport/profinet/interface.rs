@@ -43,9 +43,6 @@ enum Card {
 }
 
 /// Ethernet interfaces of this computer.
-///
-/// # Errors
-/// The system does not provide the list.
 pub fn all() -> io::Result<Vec<Interface>> {
     let mut found: Vec<Interface> = Vec::new();
     let entries: Vec<_> = nix::ifaddrs::getifaddrs().map_err(io::Error::from)?.collect();
@@ -104,9 +101,6 @@ impl Interface {
     }
 
     /// Checks that frames can pass.
-    ///
-    /// # Errors
-    /// The problem.
     pub fn check(&self) -> Result<(), ProfinetError> {
         let problem = match (self.is_up, self.has_carrier) {
             (false, _) => "is switched off",
@@ -117,18 +111,12 @@ impl Interface {
     }
 
     /// IP address, which RPC calls need.
-    ///
-    /// # Errors
-    /// It has none.
     pub fn address(&self) -> Result<IpSuite, ProfinetError> {
         let problem = "has no IPv4 address, which PROFINET needs beside its frames";
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
     /// Non-blocking socket for frames of one EtherType.
-    ///
-    /// # Errors
-    /// No permission, or not possible.
     pub fn raw_socket(&self, ether_type: u16) -> Result<Socket, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,

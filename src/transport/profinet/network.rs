@@ -62,9 +62,6 @@ struct Slot {
 
 impl Network {
     /// The shared network of this process on an interface.
-    ///
-    /// # Errors
-    /// The interface does not exist or cannot be used, or no sockets.
     pub fn shared(interface: &str) -> Result<Self, ProfinetError> {
         static SHARED: Mutex<Vec<Weak<Owner>>> = Mutex::new(Vec::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);

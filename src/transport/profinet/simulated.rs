@@ -151,9 +151,6 @@ impl Network {
     }
 
     /// Opens a connection.
-    ///
-    /// # Errors
-    /// The device does not answer or refuses.
     pub fn open(&self, settings: Settings) -> Result<Link, ProfinetError> {
         let controller = Controller::new(HERE, settings, Arc::new(Numbers::random()))?;
         let mut link = Link { controller, network: self.clone(), start: Now::ZERO };

@@ -31,9 +31,6 @@ pub(super) struct Sockets {
 
 impl Sockets {
     /// Opens the sockets of an interface. Also returns its IP address.
-    ///
-    /// # Errors
-    /// The interface cannot be used, or no sockets.
     pub fn open(interface: &Interface) -> Result<(Self, IpSuite), ProfinetError> {
         let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;

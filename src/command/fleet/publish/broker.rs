@@ -149,9 +149,6 @@ impl fmt::Debug for Secret {
 
 impl Broker {
     /// Reads files and environment.
-    ///
-    /// # Errors
-    /// A setting is not valid, or a file cannot be read.
     pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && !url.is_secure {

@@ -28,9 +28,6 @@ impl Levels {
     }
 
     /// Level of a robot.
-    ///
-    /// # Errors
-    /// The name cannot be a level.
     pub fn of(&self, robot: &Robot) -> Result<String, Failure> {
         if self.shared.contains(&robot.name) {
             return level(&format!("{}-{}", robot.name, robot.family));
@@ -43,9 +40,6 @@ impl Levels {
 const LONGEST: usize = 200;
 
 /// Encodes a name as a level.
-///
-/// # Errors
-/// The name is empty or too long.
 pub fn level(name: &str) -> Result<String, Failure> {
     let mut level = String::with_capacity(name.len());
     for (at, c) in name.char_indices() {

@@ -50,9 +50,6 @@ pub struct Watch {
 
 impl Io {
     /// Command for robots of any family.
-    ///
-    /// # Errors
-    /// No family accepts the words.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         let (id, verb, words) = match self {
             Self::Get(Get { signals }) => ("io.get", "get", signals.clone()),

@@ -36,9 +36,6 @@ pub struct SharedLine {
 
 impl SharedLine {
     /// Parses a line; `id` is its command id in envelopes and schemas.
-    ///
-    /// # Errors
-    /// No family accepts it.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
         let usual: Vec<(Family, Parsed)> =
             Family::ALL.into_iter().map(|family| (family, names::asking(|| parse(family, &words)).0)).collect();

@@ -44,9 +44,6 @@ pub fn size(simulator: Option<&str>) -> u16 {
 }
 
 /// Serves a controller as a slave.
-///
-/// # Errors
-/// An endpoint cannot be opened.
 pub fn serve(
     start: Start,
     setup: Setup,

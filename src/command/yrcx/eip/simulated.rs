@@ -36,9 +36,6 @@ const OUTPUT: u32 = 150;
 const CONFIGURATION: u32 = 1;
 
 /// Serves a controller as an adapter.
-///
-/// # Errors
-/// A port cannot be opened.
 pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);

@@ -284,9 +284,6 @@ pub trait CanPort: fmt::Debug + Send {
     fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
 
     /// Waits for the next event. Cancel safe.
-    ///
-    /// # Errors
-    /// The adapter is disconnected.
     fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>>;
 
     /// Last known health.

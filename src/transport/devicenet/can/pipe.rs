@@ -53,9 +53,6 @@ fn pair() -> (Pipe, End) {
 
 impl Pipe {
     /// Opens a pipe over a TCP connection, with two tasks on the current runtime.
-    ///
-    /// # Errors
-    /// The connection is already closed.
     pub fn tcp(stream: TcpStream) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         let (pipe, mut end) = pair();
@@ -95,9 +92,6 @@ impl Pipe {
     }
 
     /// Opens a pipe over a serial port.
-    ///
-    /// # Errors
-    /// The port cannot be cloned for the second direction.
     pub fn serial(mut writer: Box<dyn SerialPort>) -> io::Result<Self> {
         let mut reader = writer.try_clone()?;
         reader.set_timeout(SLICE)?;

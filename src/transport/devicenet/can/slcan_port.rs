@@ -43,9 +43,6 @@ pub struct SlcanPort {
 
 impl SlcanPort {
     /// Sets up an adapter: closes the channel, sets the bit rate, opens the channel (in listen-only mode if `listens`).
-    ///
-    /// # Errors
-    /// No valid answer, or the adapter refuses a command.
     pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool) -> Result<Self, PortError> {
         let mut port = Self {
             path,

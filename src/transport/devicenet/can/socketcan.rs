@@ -40,9 +40,6 @@ impl std::fmt::Debug for SocketCan {
 
 impl SocketCan {
     /// Opens an interface.
-    ///
-    /// # Errors
-    /// The interface does not exist, or the system has no CAN support.
     pub fn open(interface: &str) -> Result<Self, PortError> {
         let failed = |error: &io::Error| {
             let (why, advice) = match error.raw_os_error() {

@@ -99,9 +99,6 @@ pub struct Master {
 
 impl Master {
     /// Creates a master that starts at `now`.
-    ///
-    /// # Errors
-    /// The settings are invalid.
     pub fn new(now: Now, settings: Settings) -> Result<Self, ProfibusError> {
         let timing = settings.timing()?;
         let details = Details {

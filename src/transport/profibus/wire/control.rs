@@ -161,9 +161,6 @@ impl Control {
     }
 
     /// Decodes the byte.
-    ///
-    /// # Errors
-    /// The code is not defined.
     pub fn parse(byte: u8, offset: usize) -> Result<Self, WireError> {
         let wrong = WireError::value("function code", offset, byte);
         if byte & 0x80 != 0 {

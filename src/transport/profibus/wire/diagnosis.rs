@@ -125,9 +125,6 @@ const CHANNEL_ERRORS: [(u8, &str); 9] = [
 
 impl Diagnosis {
     /// Decodes a diagnosis.
-    ///
-    /// # Errors
-    /// The diagnosis or one of its blocks is too short.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let Some((&[first, second, third, master, high, low], rest)) = data.split_first_chunk::<FIXED>() else {
             return Err(WireError::short("diagnosis", 0, FIXED, data.len()));

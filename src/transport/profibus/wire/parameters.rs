@@ -88,9 +88,6 @@ impl Parameters {
     }
 
     /// Decodes the parameters.
-    ///
-    /// # Errors
-    /// The data is too short.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let Some((&[station, first, second, min_tsdr, high, low, groups], user)) = data.split_first_chunk() else {
             return Err(WireError::short("parameters", 0, FIXED, data.len()));
@@ -155,9 +152,6 @@ impl GlobalControl {
     pub const CLEAR: Self = Self { bits: 0x02, groups: 0 };
 
     /// Decodes a command.
-    ///
-    /// # Errors
-    /// The length is not two bytes.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         match *data {
             [bits, groups] => Ok(Self { bits, groups }),

@@ -136,9 +136,6 @@ pub struct Controller {
 
 impl Controller {
     /// Creates a connection.
-    ///
-    /// # Errors
-    /// The settings are invalid.
     pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
         settings.check()?;
         Ok(Self {

@@ -37,9 +37,6 @@ impl<A> fmt::Debug for Server<A> {
 impl<A: Application + Send + 'static> Server<A> {
     /// Starts a device with the MAC and IP address of the interface, instead of those in `setup`. DCP cannot change the
     /// IP address, because it belongs to the operator.
-    ///
-    /// # Errors
-    /// The interface or its sockets cannot be used.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
         let (sockets, ip) = Sockets::open(interface)?;
         let setup = Setup { mac: interface.mac, ip: Some(ip), takes_ip: false, ..setup };

@@ -156,9 +156,6 @@ pub struct Notification {
 
 impl Notification {
     /// Decodes a DATA frame.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let block = first_block(data)?;
         let priority = match block.kind {
@@ -234,9 +231,6 @@ pub struct Acknowledgement {
 
 impl Acknowledgement {
     /// Decodes a DATA frame.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let block = first_block(data)?;
         let fits = |priority: &Priority| block_type(*priority).answer() == block.kind;

@@ -64,9 +64,6 @@ pub struct Block<'a> {
 }
 
 /// Splits a call or answer into blocks.
-///
-/// # Errors
-/// A block is longer than the remaining data.
 pub fn walk(bytes: &[u8]) -> Result<Vec<Block<'_>>, WireError> {
     let mut reader = Reader::big(bytes);
     let mut blocks = Vec::new();
@@ -142,9 +139,6 @@ impl Control {
     }
 
     /// Decodes a block.
-    ///
-    /// # Errors
-    /// Too short.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
         let mut reader = Reader::big(block.body);
         reader.u16("reserved")?;

@@ -127,9 +127,6 @@ pub enum Request {
 
 impl Request {
     /// Decodes the blocks of a Connect in order.
-    ///
-    /// # Errors
-    /// A block is too short.
     pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
         block::walk(bytes)?.iter().map(Self::parse).collect()
     }
@@ -357,17 +354,11 @@ pub enum Response {
 
 impl Response {
     /// Decodes the blocks of an answer in order.
-    ///
-    /// # Errors
-    /// A block is too short.
     pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
         block::walk(bytes)?.iter().map(Self::parse).collect()
     }
 
     /// Decodes one block.
-    ///
-    /// # Errors
-    /// Too short.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
         let mut reader = Reader::big(block.body);
         let reader = &mut reader;

@@ -26,9 +26,6 @@ pub struct Cyclic<'a> {
 
 impl<'a> Cyclic<'a> {
     /// Decodes a payload with `length` bytes of data.
-    ///
-    /// # Errors
-    /// Too short.
     pub fn parse(payload: &'a [u8], length: usize) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         Ok(Self {

@@ -167,9 +167,6 @@ impl Dcp {
     }
 
     /// Decodes the payload of a frame.
-    ///
-    /// # Errors
-    /// Not DCP, or a block is too short.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         let service = match reader.u8("ServiceID")? {
@@ -229,9 +226,6 @@ impl Dcp {
     }
 
     /// Station data of an Identify or Get answer, or of a Hello.
-    ///
-    /// # Errors
-    /// A value is too short.
     pub fn station(&self) -> Result<Station, WireError> {
         let mut station = Station::default();
         for block in &self.blocks {
@@ -312,9 +306,6 @@ impl IpSuite {
     }
 
     /// Decodes the three addresses.
-    ///
-    /// # Errors
-    /// Fewer than 12 bytes.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         Self::read(&mut Reader::big(bytes))
     }
@@ -393,9 +384,6 @@ pub fn describe_error(error: u8) -> &'static str {
 }
 
 /// Checks a station name. The rules are those of host name labels in lower case.
-///
-/// # Errors
-/// The reason.
 pub fn check_name(name: &str) -> Result<(), String> {
     if name.is_empty() || name.len() > 240 {
         return Err(format!("it has {} characters; 1 to 240 are allowed", name.len()));

@@ -52,9 +52,6 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// Decodes a frame.
-    ///
-    /// # Errors
-    /// Not a PROFINET frame.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(bytes);
         let destination = reader.mac("destination")?;

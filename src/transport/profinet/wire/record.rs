@@ -40,9 +40,6 @@ pub struct Record {
 
 impl Record {
     /// Decodes the first block of a call or answer. Also returns the remaining bytes.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn parse(bytes: &[u8], kind: BlockType) -> Result<(Self, &[u8]), WireError> {
         let mut reader = Reader::big(bytes);
         let found = reader.u16("BlockType")?;
@@ -64,9 +61,6 @@ impl Record {
     }
 
     /// Decodes a Read answer. Also returns the record data.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn parse_answer(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::READ.answer())?;
         let length = usize::try_from(record.length).unwrap_or(usize::MAX);
@@ -95,9 +89,6 @@ impl Record {
     }
 
     /// Decodes a Write answer. Also returns its status and the remaining bytes.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn write_status(bytes: &[u8]) -> Result<(Self, u32, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::WRITE.answer())?;
         let mut reader = Reader { at: 44, ..Reader::big(bytes) };
@@ -144,9 +135,6 @@ pub fn write(ar: Uuid, sequence: u16, parameters: &[Parameter]) -> Vec<u8> {
 }
 
 /// Decodes a Write of one or several records.
-///
-/// # Errors
-/// Another block, or too short.
 pub fn parse_write(bytes: &[u8]) -> Result<(Record, Vec<Parameter>), WireError> {
     let (outer, data) = Record::parse(bytes, BlockType::WRITE)?;
     if outer.index != index::MULTIPLE_WRITE {
@@ -185,9 +173,6 @@ pub fn write_answer(outer: &Record, statuses: &[(Record, u32)]) -> Vec<u8> {
 }
 
 /// Decodes the status of each record from a Write answer.
-///
-/// # Errors
-/// Another block, or too short.
 pub fn parse_write_answer(bytes: &[u8]) -> Result<Vec<(Record, u32)>, WireError> {
     let (outer, status, mut rest) = Record::write_status(bytes)?;
     let mut all = vec![(outer, status)];
@@ -220,9 +205,6 @@ pub struct Im0 {
 
 impl Im0 {
     /// Decodes the record.
-    ///
-    /// # Errors
-    /// Another block, or too short.
     pub fn parse(record: &[u8]) -> Result<Self, WireError> {
         let blocks = block::walk(record)?;
         let found = blocks.iter().find(|block| block.kind == BlockType::IM0);
@@ -273,9 +255,6 @@ pub struct RealModule {
 }
 
 /// Decodes the record of real modules.
-///
-/// # Errors
-/// Another block, or too short.
 pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError> {
     let blocks = block::walk(record)?;
     let found = blocks.iter().find(|block| block.kind == BlockType::REAL_IDENTIFICATION);

@@ -200,9 +200,6 @@ pub struct Call<'a> {
 
 impl<'a> Call<'a> {
     /// Decodes a call.
-    ///
-    /// # Errors
-    /// A length exceeds the data.
     pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let (room, blocks) = read_ndr(body, order)?;
         Ok(Self { room, blocks })
@@ -227,9 +224,6 @@ pub struct Reply<'a> {
 
 impl<'a> Reply<'a> {
     /// Decodes an answer.
-    ///
-    /// # Errors
-    /// A length exceeds the data.
     pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let mut reader = Reader::big(body);
         reader.order = order;

@@ -186,9 +186,6 @@ pub struct Images {
 
 impl Images {
     /// Starts with the resting image.
-    ///
-    /// # Errors
-    /// The resting image has another size than the link.
     pub fn new(mut link: ImageLink, rules: Rules) -> Result<Self, String> {
         if rules.is_owner {
             link.show(&rules.resting).map_err(|trouble| trouble.to_string())?;
