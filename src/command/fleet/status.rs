@@ -1,4 +1,4 @@
-//! `armctl status`: one line per robot, of whichever family.
+//! `armctl status`: one line per robot of any family.
 
 use clap::Args;
 
@@ -14,15 +14,15 @@ use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
-/// Robots of any family, for what all of them can be asked.
+/// Robots of any family, for commands that all families support.
 #[derive(Debug)]
 pub struct Fleet;
 
 /// A connection to a robot of any family.
 pub enum Link {
-    /// One, and what its family can be asked.
+    /// An open connection with the face of its family.
     Open(&'static dyn Face, Box<dyn Connection>),
-    /// To nobody: this is why.
+    /// No connection, with the reason.
     Absent(Failure),
 }
 
@@ -35,7 +35,7 @@ impl Family for Fleet {
         let face = families::of(robot.family);
         match face.driver().connect(robot, access, screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
-            // A robot that is not there has a line as well.
+            // A robot that does not answer gets a line in the table as well.
             Err(failure) if failure.kind == Kind::NoAnswer => Ok(Link::Absent(failure)),
             Err(failure) => Err(failure),
         }
@@ -97,7 +97,7 @@ impl Command for Overview {
         Ok(report)
     }
 
-    /// `32 robots, 30 answer, 1 alarm`.
+    /// Summary line: `32 robots, 30 answer, 1 alarm`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let count = |field: &str| {
             let is_so = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
@@ -111,7 +111,7 @@ impl Command for Overview {
     }
 }
 
-/// How a robot is, asked among other lines of this process.
+/// Overview of a robot, with the connections of an interactive session.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
     let overview = Overview {};
     let access = Access::reading(overview.connect_mode());
