@@ -44,9 +44,6 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("backup DIR/new", Read, Read),
     ("restore DIR/backup --force", Destroy, Destroy),
     ("diff DIR/backup", Read, Read),
-    ("file backup DIR/new", Read, Read),
-    ("file restore DIR/backup --force", Destroy, Destroy),
-    ("file restore DIR/backup --force --differing", Destroy, Destroy),
     ("file cmos --start-only", Write, Write),
     ("position", Read, Read),
     ("axes", Read, Read),
@@ -102,7 +99,7 @@ fn prepare(folder: &std::path::Path) {
     let dump = json!({ "format": "armctl-variables", "version": 1, "model": "dx200", "encoding": "shift_jis",
                        "variables": variables });
     std::fs::write(path("dump.json"), dump.to_string()).unwrap();
-    Bench::new("sim:").data(&["file", "backup", &path("backup")]);
+    Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 
 /// The risk of a frame; bytes that an answer decides count as 0.
