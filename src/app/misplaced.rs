@@ -177,9 +177,8 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
         return None;
     }
     // A range is not part of a text.
-    if let Some(range) = values.iter().find(|value| value.contains("..")) {
-        let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
-        return has_flag.then(|| format!("type the range after its flag: --ranges {range}"));
+    if values.iter().any(|value| value.contains("..")) {
+        return None;
     }
     let takes_numbers =
         is_of_flag || command.get_positionals().last().is_some_and(|last| last.get_value_delimiter().is_some());
@@ -513,7 +512,6 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yrcx param get TOLE --axis 5", "write a number from 1 to 4"),
-            ("armctl yerc var dump points.csv P0..P9", "type the range after its flag: --ranges P0..P9"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
             ("armctl robots discover --for 3s", "robots discover ends by itself: leave --for out"),

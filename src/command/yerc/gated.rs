@@ -52,6 +52,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("teach P5", Destroy, Destroy),
     ("var get B0", Read, Read),
     ("var watch B0", Read, Read),
+    ("var list B0..B9", Read, Read),
     ("var set B0=1", Write, Write),
     ("var set B0=1 P1.tool=2", Destroy, Destroy),
     ("var set EX1=pulse:1=5", Destroy, Destroy),
