@@ -250,6 +250,12 @@ pub enum PortError {
         /// What it does not do.
         why: String,
     },
+    /// Nothing came from it.
+    #[error("{path}: no answer from the adapter")]
+    Mute {
+        /// Which.
+        path: String,
+    },
     /// It was there, and is gone.
     #[error("{path} is gone: {why}")]
     Gone {
