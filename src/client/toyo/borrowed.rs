@@ -55,9 +55,9 @@ impl Client {
         self.watcher.event(Event::TakesHost(true));
         let answer = match self.transact(&order, false).await {
             // The status tells what became of it.
-            Err(error @ Error::OutcomeUnknown(_)) => match self.status_of(&[HOST_PAGE]).await {
-                Ok(status) if status.host_on() => Answer::Done,
-                Ok(_) => {
+            Err(error @ Error::OutcomeUnknown(_)) => match self.is_host_on().await {
+                Ok(true) => Answer::Done,
+                Ok(false) => {
                     self.watcher.event(Event::TakesHost(false));
                     return Err(Error::NotSent(Box::new(error)));
                 }
@@ -153,9 +153,22 @@ impl Client {
         }
         self.host = Host::Unknown;
         let fenced = self.fence_at_end().await;
-        undone(self.transact(&Request::bare(Command::Hsof), false).await).map_err(Error::HostKept)?;
+        let answer = match self.transact(&Request::bare(Command::Hsof), false).await {
+            // The status tells what became of it.
+            Err(Error::OutcomeUnknown(_)) if matches!(self.is_host_on().await, Ok(false)) => Ok(Answer::Done),
+            answer => answer,
+        };
+        undone(answer).map_err(Error::HostKept)?;
         self.watcher.event(Event::TakesHost(false));
         fenced
+    }
+
+    /// Whether the host is ON after an order of this client to switch it: nobody else is told of.
+    async fn is_host_on(&mut self) -> Result<bool, Error> {
+        let before = std::mem::replace(&mut self.host, Host::Taken);
+        let status = self.status_of(&[HOST_PAGE]).await;
+        self.host = before;
+        Ok(status?.host_on())
     }
 
     /// A line that is still out of order shows in what follows; a no to an order that had a yes shows only here.
