@@ -1,4 +1,4 @@
-//! From the words of a command line to an exit code.
+//! Command line program: from arguments to an exit code.
 
 mod assigned;
 mod batch;
@@ -37,7 +37,7 @@ use crate::output::envelope::Envelope;
 use crate::output::{ColorChoice, Format, Screen, jq};
 use crate::settings::target::Family;
 
-/// Runs a command line, the program's name included, and says how the process ends.
+/// Runs a command line, including the program name. Returns the exit code.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
     if let Some(served) = guardian::serve(&args) {
@@ -47,7 +47,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         return exit(jq::worker::serve());
     }
     if let Some(answer) = complete::answer(&args) {
-        // A shell that does not listen has nothing to be told.
+        // If the shell has closed the pipe, the error does not matter.
         let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
         return ExitCode::SUCCESS;
     }
@@ -96,11 +96,11 @@ fn exit(done: Result<(), Kind>) -> ExitCode {
     done.map_or_else(|kind| ExitCode::from(kind.exit()), |()| ExitCode::SUCCESS)
 }
 
-/// Started under the name of a family (a link to the binary), the program is that subcommand.
+/// If the binary was started with the name of a family (through a link), inserts this subcommand.
 fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
     if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
-        // Usage lines begin with this name, and the word comes behind it.
+        // In usage lines, the family follows after this name.
         args[0] = "armctl".into();
         let asks_version = args.get(1).is_some_and(|word| word == "--version" || word == "-V");
         if !asks_version {
@@ -122,21 +122,22 @@ async fn run(cli: Cli) -> Result<(), RunError> {
     }
 }
 
-/// Runs it on this thread.
+/// Runs the command on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
     has_room()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().context("start")?;
     let done = runtime.block_on(done);
-    // A thread that waits for stdin or a name server must not hold up the end.
+    // A thread that waits for stdin or a name server must not delay the exit.
     runtime.shutdown_background();
     done
 }
 
-/// Files and sockets that a process needs open for the least that it does.
+/// File descriptors that the simplest command needs.
 #[cfg(unix)]
 const ROOM: usize = 20;
 
-/// Whether the process may open what it needs: the runtime and what listens for signals take it for granted.
+/// Checks that enough file descriptors are available, because the runtime and the signal handler would panic without
+/// them.
 #[cfg(unix)]
 fn has_room() -> Result<(), Failure> {
     let pairs: Result<Vec<_>, _> = (0..ROOM / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
@@ -163,7 +164,7 @@ fn screen(globals: &Globals) -> Screen {
         .with_questions(!globals.no_input)
 }
 
-/// Writes a failure once, in the form that was asked for, and says what kind it was.
+/// Prints a failure once, in the requested format. Returns its kind.
 fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
@@ -176,14 +177,13 @@ fn tell(screen: &Screen, RunError { failure, envelope, told }: RunError) -> Kind
     kind
 }
 
-/// What the parser has to say: help, version and the verbs of a noun on stdout, mistakes on stderr, as JSON if the line asks
-/// for it.
+/// Prints the result of the parser: help, version and lists of verbs to stdout, errors to stderr; as JSON if requested.
 fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
     let is_json = is_json || wants_json(args).unwrap_or_else(prepared::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
     match refusal {
-        // A noun without a verb lists its verbs, which a program that wants JSON did not ask for.
+        // A noun without a verb prints its list of verbs, except for JSON.
         Refusal::Verb(text, _) if !is_json => read(&screen, text),
         Refusal::Text(text) => read(&screen, text),
         Refusal::Mistake(error) if !is_json => {
@@ -194,13 +194,13 @@ fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> R
     }
 }
 
-/// A text to read, on stdout.
+/// Prints a text to stdout, with the pager.
 fn read(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
     let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
     screen.read(&text).map_err(|failure| tell(screen, failure.into()))
 }
 
-/// What a command line that was not parsed, such as that of a help, says about colour.
+/// Color option of a line that could not be parsed.
 fn color(args: &[OsString]) -> ColorChoice {
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
     let value = words.by_ref().find_map(|word| match word {
@@ -212,8 +212,7 @@ fn color(args: &[OsString]) -> ColorChoice {
     value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(ColorChoice::Auto)
 }
 
-/// Whether a command line that could not be parsed asks for JSON, in any of the forms that flags have; `None` where it
-/// asks for no format.
+/// Whether a line that could not be parsed asks for JSON; `None` if it has no format option.
 fn wants_json(args: &[OsString]) -> Option<bool> {
     let is_json = |format: &str| matches!(format.trim_start_matches('='), "json" | "jsonl");
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
@@ -224,7 +223,7 @@ fn wants_json(args: &[OsString]) -> Option<bool> {
             _ if word.starts_with("--") => {
                 ["--output=", "--format="].into_iter().find_map(|flag| word.strip_prefix(flag))
             }
-            // Short flags without a value may stand before the last one, whose value may be the next word.
+            // Short flags can be combined; the last one can have its value in the next word.
             _ => match word
                 .strip_prefix('-')
                 .and_then(|flags| flags.trim_start_matches(['q', 'v', 'y']).strip_prefix('o'))

@@ -209,10 +209,15 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
         assert!((0..LOOKS).any(|_| desk.data("toyo status")["running"] == false), "it does not stop");
         assert!(x() < 500.0, "{signal}: {}", x());
 
-        // Ten millimetres at a hundredth.
-        let desk = Desk::powered("yrcx");
-        let x = || desk.data("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
-        let start = x();
+        // Ten millimetres at a hundredth. Until the adapter misses its master, it takes no other.
+        let desk = Desk::new("yrcx");
+        let x = || {
+            let outputs = (0..LOOKS).map(|_| desk.run(&["yrcx", "position", "--yes", "--json"]));
+            let reached = outputs.filter(|output| output.status.success()).map(|output| output.stdout);
+            let envelopes = reached.map(|bytes| serde_json::from_slice::<Value>(&bytes).expect("an envelope"));
+            let found = envelopes.map(|envelope| envelope["data"]["positions"][0]["x_mm"].as_f64()).next();
+            found.flatten().expect("it is told where the robot is")
+        };
         let mut teach = desk.panel(&[]);
         teach.press("<<<+++");
         teach.shows("step 10 mm");
@@ -225,7 +230,7 @@ fn a_motion_is_stopped_when_the_program_is_killed_or_frozen() {
             (before - after).abs() < 1e-9
         };
         assert!((0..LOOKS).any(|_| stands()), "it does not stop");
-        assert!(x() < start + 10.0, "{signal}: {start} {}", x());
+        assert!(x() < 10.0, "{signal}: {}", x());
     }
 }
 

@@ -1,5 +1,5 @@
-//! Settings read the same everywhere: `NAME=VALUE`, also where a verb takes both as words of their own (`counter set 1 0`),
-//! or a value by a flag of its name (`point set 7 --mm 1,2,3,4`).
+//! Conversion of `NAME=VALUE` for commands with another form of their arguments: two words (`counter set 1 0`), or a
+//! flag (`point set 7 --mm 1,2,3,4`).
 
 use std::ffi::OsString;
 
@@ -8,7 +8,7 @@ use clap::Command;
 use super::typed::Typed;
 use crate::command::frame::setting::Pair;
 
-/// The line in the words that its command takes, if it has a setting that is typed otherwise.
+/// The line in the form that its command expects; `None` if no conversion is necessary.
 pub fn parted(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     if !args.iter().any(|word| word == "set") {
         return None;
@@ -22,7 +22,7 @@ pub fn parted(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     if let Some(Pair { name, is_list }) = Pair::of(verb) {
         let (word, value) = typed.rest.get(name)?.split_once('=')?;
         let values: Vec<&str> = if is_list { value.split(',').collect() } else { vec![value] };
-        // Nothing that is typed as a value becomes a flag.
+        // A value must not become a flag.
         if values.iter().any(|value| value.starts_with('-') && value.parse::<f64>().is_err()) {
             return None;
         }
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
 
-    /// Every verb that reads what has numbers, with the first and the last of some.
+    /// All verbs that read numbered items, with the ends of a range.
     const RANGES: &[(&str, &str, &str)] = &[
         ("toyo accel-table get", "1", "3"),
         ("toyo counter get", "1", "3"),
@@ -75,7 +75,7 @@ mod tests {
         ("yrcx var get", "SGI1", "SGI3"),
     ];
 
-    /// Verbs that read something else: names, one program, the numbers of an object.
+    /// Verbs that read something else: names, one program, numbers of an object.
     const NO_RANGES: [&str; 6] = [
         "toyo palletizing get",
         "toyo param get",
@@ -85,7 +85,7 @@ mod tests {
         "yrcx param get",
     ];
 
-    /// Every verb that sets something, in the words of the contract.
+    /// All verbs that set something, in the common form.
     const SETTINGS: &[&str] = &[
         "toyo accel-table set 5=0.25",
         "toyo counter set 1=0",
@@ -114,8 +114,8 @@ mod tests {
         "yrcx var set SGR1=-0.5",
     ];
 
-    /// Verbs that set the one thing they are about, what has numbers and no name, and settings of the inventory, which have a
-    /// test of their own.
+    /// Exceptions: verbs with a single object, numbered objects without a name, and inventory settings, which have
+    /// their own test.
     const NO_SETTINGS: [&str; 7] = [
         "names set",
         "robots set",
@@ -130,7 +130,7 @@ mod tests {
         shlex::split(&format!("armctl {line}")).unwrap().into_iter().map(Into::into).collect()
     }
 
-    /// Verbs of this name below a command.
+    /// Collects the verbs with this name below a command.
     fn verbs(command: &Command, path: &str, is_one: &dyn Fn(&Command) -> bool, found: &mut BTreeSet<String>) {
         for verb in command.get_subcommands() {
             let path = format!("{path} {}", verb.get_name());

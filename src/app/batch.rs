@@ -1,7 +1,7 @@
-//! `armctl batch`: the commands of a file, over links that stay open from one to the next.
+//! `armctl batch`: runs the commands of a file over links that stay open.
 //!
-//! The whole file is read and understood before anything is sent: words, flags, robots, and whether the gate would stay
-//! closed. Then the lines run one after the other, up to the first that fails.
+//! The whole file is checked before anything is sent: words, flags, robots, and the gate. Then the lines run in order,
+//! up to the first failure.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -26,7 +26,7 @@ use crate::failure::{Failure, Kind};
 use crate::files;
 use crate::output::{Format, Screen};
 
-/// Envelopes that are written all at once.
+/// Envelopes that are written together at the end.
 type Results = Rc<RefCell<Vec<Value>>>;
 
 /// Runs the lines of a file.
@@ -34,7 +34,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let text = read(&batch.file)?;
     catch_interrupts();
-    // A filter is for each envelope as it comes.
+    // A filter is applied to each envelope separately.
     let format = if globals.jq.is_some() { Some(Format::Jsonl) } else { globals.format };
     let globals = Globals { format, json: globals.json && globals.jq.is_none(), ..globals };
     let screen = screen(&globals);
@@ -51,7 +51,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     done
 }
 
-/// What is repeated is a line, not the file.
+/// Rejects repetition options, because they belong to a line and not to the file.
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(
@@ -78,7 +78,7 @@ struct Plan<'a> {
     results: Option<Results>,
 }
 
-/// A line that can run.
+/// A line that is ready to run.
 struct Planned {
     ready: PreparedCommand,
     origin: Origin,
@@ -86,7 +86,7 @@ struct Planned {
 }
 
 impl Plan<'_> {
-    /// All lines that are commands, or all that is wrong with them.
+    /// Prepares all lines, or returns all their errors.
     fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();
@@ -152,7 +152,6 @@ impl Plan<'_> {
         Ok(Some(Planned { ready, origin: origin.clone(), typed }))
     }
 
-    /// Runs them.
     async fn go(&self, lines: Vec<Planned>) -> Result<(), RunError> {
         let all = lines.len();
         let mut failed: Vec<(Origin, Failure)> = Vec::new();

@@ -1,4 +1,4 @@
-//! Global flags that mean nothing to a command are mistakes, not decoration.
+//! Check for global flags that have no effect on a command; they are errors.
 
 use super::prepared::Task;
 use crate::cli::Globals;
@@ -7,17 +7,16 @@ use crate::command::fleet::robots::Robots;
 use crate::failure::Failure;
 use crate::gate::OnInterrupt;
 
-/// Which global flags mean something to a command, beside those for output.
+/// Groups of global flags that a command uses, in addition to output flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a group of flags of its own")]
 struct Uses {
-    /// Which robot.
     robots: bool,
-    /// How to talk to it.
+    /// Link options.
     link: bool,
-    /// `--watch` and the like.
+    /// `--watch` and other repetition options.
     repeat: bool,
-    /// `--yes`, `--dry-run`.
+    /// `--yes` and `--dry-run`.
     gate: bool,
 }
 
@@ -56,7 +55,7 @@ impl Uses {
             Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
-            // What settings would be in force; what a check needs.
+            // These show the settings that would be used, or make a connection check.
             Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
             Common::Robots(_)
             | Common::Sim(_)
@@ -69,7 +68,7 @@ impl Uses {
     }
 }
 
-/// Refuses a flag of the line that means nothing to its command.
+/// Rejects a flag that has no effect on the command.
 pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
     let uses = Uses::of(task);
     match given(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
@@ -78,11 +77,10 @@ pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
     }
 }
 
-/// A flag as it is typed, if it was given, and whether it means something.
+/// A flag as typed, if present, and whether a command uses it.
 type Given = (Option<&'static str>, fn(Uses) -> bool);
 
-/// Each flag, if it was given, with whether it means something. `--for` is not among them: it comes with `--until`, or is
-/// the command's own.
+/// All flags of the line. `--for` is missing, because it belongs to `--until` or to the command itself.
 fn given(globals: &Globals) -> [Given; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
     let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;

@@ -1,4 +1,4 @@
-//! Every line of `command/leaves` held against the gate.
+//! Comparison of every line in `command/leaves` with the gate.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -28,7 +28,7 @@ use crate::settings::{Selection, Sources};
 const STOPS: [&str; 7] =
     ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
-/// Two robots of each family that are not there; the second ones are read-only.
+/// Two unreachable robots per family; the second is read-only.
 const ROBOTS: &str = r#"
 [[robot]]
 name = "yerc"
@@ -53,7 +53,7 @@ target = "tcp://127.0.0.1:2"
 read_only = true
 "#;
 
-/// A line where nobody can be asked, for robots that are chosen so.
+/// A non-interactive run for selected robots.
 fn run(selection: Selection) -> Run {
     let inventory = Inventory::parse(ROBOTS, "robots.toml").unwrap();
     Run {
@@ -73,7 +73,7 @@ fn named(name: &str) -> Selection {
     Selection { robots: vec![name.to_owned()], ..Selection::default() }
 }
 
-/// What the gate is told of a line, and what it says to it.
+/// Intent of a line, and the decisions of the gate.
 struct Seen {
     intent: Intent,
     alone: Result<(), Failure>,
@@ -137,7 +137,7 @@ fn every_command_is_held_by_the_gate() {
                     || !intent.text.is_empty(),
             ),
             ("nobody to ask", refused(&alone) == is_asked),
-            // What depends on the robot reads of a read-only one what reading alone can reach.
+            // Commands whose requests depend on the robot only read from a read-only robot.
             (
                 "a read-only robot",
                 refused(&read_only) == (*risk > Read && !is_stop)

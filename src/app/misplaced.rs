@@ -1,5 +1,5 @@
-//! Mistakes in a command line, with what to type instead: words in the wrong place or order (`armctl job select`, `armctl
-//! get file`), other words for them, values that are missing, or written with a comma or with blanks.
+//! Suggestions for mistyped command lines: words in the wrong place or order (`armctl job select`, `armctl get file`),
+//! synonyms, missing values, wrong separators.
 
 mod synonyms;
 
@@ -17,11 +17,11 @@ use crate::controller::Risk;
 use crate::failure::decimal_point;
 use crate::settings::target::Family;
 
-/// More ways than this help nobody.
+/// Limit of suggestions.
 const MOST: usize = 4;
 
-/// The error, with what to type instead, where that can be told. What moves a robot, or deletes or overwrites something,
-/// is never proposed: it is too easily typed again.
+/// Adds a suggestion to the error, if there is one. A command that moves a robot, deletes or overwrites is never
+/// suggested, because the line could be repeated without thought.
 pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let typed = Typed::new(args, whole);
     let tip = match error.kind() {
@@ -29,7 +29,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
             .or_else(|| of_families(&error, &typed))
             .or_else(|| place(&mut error, ContextKind::InvalidSubcommand, &typed, whole)),
         ErrorKind::UnknownArgument => {
-            // A flag is never meant as a value; a negative number is.
+            // A flag is never meant as a value, but a negative number can be.
             let is_flag = |value: &ContextValue| matches!(value, ContextValue::String(word) if word.starts_with("--"));
             if error.get(ContextKind::InvalidArg).is_some_and(is_flag) {
                 error.remove(ContextKind::Suggested);
@@ -52,7 +52,7 @@ pub fn explained(mut error: clap::Error, args: &[OsString], whole: &Command) -> 
     error
 }
 
-/// What there is instead of something that a family has not, whatever it is called.
+/// Alternative for something that a family does not have.
 fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
     let (path, word) = (typed.path.join(" "), typed.rest.first()?);
     let (.., instead) = synonyms::ABSENT.iter().find(|(of, words, _)| *of == path && words.contains(word))?;
@@ -60,7 +60,7 @@ fn absent(error: &mut clap::Error, typed: &Typed<'_>) -> Option<String> {
     Some((*instead).to_owned())
 }
 
-/// The families that know a code which none was named for.
+/// Families that have a code for which no family was given.
 fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
     let Some(ContextValue::String(code)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let bare = |code: &str| {
@@ -77,7 +77,7 @@ fn of_families(error: &clap::Error, typed: &Typed<'_>) -> Option<String> {
     Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
-/// A flag that is a value here, or a value that belongs to a flag.
+/// Suggestion for a flag that is a value here, or a value that belongs to a flag.
 fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let word = word.clone();
@@ -101,7 +101,7 @@ fn flag_or_value(error: &mut clap::Error, typed: &Typed<'_>, whole: &Command) ->
     (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
 }
 
-/// Where the wrong word belongs.
+/// Correct place of the wrong word.
 fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(kind) else { return None };
     let word = word.clone();
@@ -125,12 +125,12 @@ fn place(error: &mut clap::Error, kind: ContextKind, typed: &Typed<'_>, whole: &
     if lines.is_empty() || lines.len() > MOST {
         return None;
     }
-    // What is spelled right is not meant to be a word that only looks like it.
+    // The word is spelled correctly, so a similar word is not meant.
     error.remove(ContextKind::SuggestedSubcommand);
     Some(format!("the command is {}", lines.join(" or ")))
 }
 
-/// What a dangerous command does; none for others.
+/// Effect of a dangerous command; `None` for others.
 fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     let words = words_of(line);
     if !may_do_harm(&words, whole) {
@@ -144,7 +144,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     })
 }
 
-/// A value of several words that was meant as one, or numbers with blanks between them.
+/// Suggestion for a value with blanks, or for numbers separated by blanks.
 fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -159,14 +159,14 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     let is_number = |word: &&str| word.parse::<f64>().is_ok();
     let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
     let first = words[..at].iter().rposition(|word| !is_value(word) || typed.said.contains(word))? + 1;
-    // Only the last argument can have been meant to have blanks.
+    // Only the last argument can have been meant with blanks.
     let is_of_flag = words[first - 1].starts_with('-');
     let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
     let values: Vec<&str> = words[first..].iter().copied().take_while(is_value).skip(others).collect();
     if values.len() < 2 {
         return None;
     }
-    // A range is no part of a text.
+    // A range is not part of a text.
     if let Some(range) = values.iter().find(|value| value.contains("..")) {
         let has_flag = command.get_arguments().any(|argument| argument.get_long() == Some("ranges"));
         return has_flag.then(|| format!("type the range after its flag: --ranges {range}"));
@@ -184,7 +184,7 @@ fn joined(error: &clap::Error, args: &[OsString], typed: &Typed<'_>, whole: &Com
     })
 }
 
-/// The rest of a text with blanks, behind a `NAME=VALUE` that stands for itself: `S1=HELLO WORLD`.
+/// Suggestion for `NAME=VALUE` with an unquoted text: `S1=HELLO WORLD`.
 fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidValue) else { return None };
     let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
@@ -194,7 +194,7 @@ fn cut_off(error: &clap::Error, args: &[OsString]) -> Option<String> {
     Some(format!("put a value with spaces in quotes: {quote}{pair} {word}{quote}"))
 }
 
-/// The flag for a folder, where that of the format was taken for it.
+/// Suggestion for the format flag used as a folder flag.
 fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -202,7 +202,7 @@ fn folder(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<Str
     (has_folder && flag.starts_with("--output")).then(|| "use --dir for the folder; --output is the format".to_owned())
 }
 
-/// Which number to type instead of one that is refused.
+/// Suggestion for an invalid number.
 fn number(why: &str) -> Option<String> {
     if let Some((least, most)) = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..=")) {
         return Some(format!("write a number from {least} to {most}"));
@@ -214,14 +214,14 @@ fn number(why: &str) -> Option<String> {
     decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
 }
 
-/// All files are a pattern; `--all` is for robots.
+/// Suggestion for all files: a pattern, because `--all` selects robots.
 fn every_file(args: &[OsString], typed: &Typed<'_>) -> Option<String> {
     let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
     is_meant
         .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots of the inventory".to_owned())
 }
 
-/// What can stand where a value is missing.
+/// Suggestion for a missing value.
 fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -239,13 +239,13 @@ fn missing(error: &clap::Error, typed: &Typed<'_>, whole: &Command) -> Option<St
     }
 }
 
-/// Whether the command that these words begin is a dangerous one, by whichever of its names.
+/// Whether the words lead to a dangerous command, including its aliases.
 fn may_do_harm(words: &[&str], whole: &Command) -> bool {
     let (command, path) = found(words, whole);
     is_dangerous(&path, command.is_some_and(Command::has_subcommands))
 }
 
-/// The command that these words lead to, if they do, and the words with the commands' own names.
+/// The command of these words, and the words with its primary names.
 fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
     let mut command = Some(whole);
     let path = words.iter().map(|word| {
@@ -256,10 +256,10 @@ fn found<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec
     (command, path)
 }
 
-/// What reads is not meant to be what writes: `get` is no misspelled `set`.
+/// A read verb is never a misspelled write verb, such as `get` and `set`.
 const READS: [&str; 5] = ["get", "list", "show", "read", "ls"];
 
-/// Takes out of the similar words those of dangerous commands.
+/// Removes dangerous commands from the similar words.
 fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
     let typed = match error.get(ContextKind::InvalidSubcommand) {
@@ -287,7 +287,7 @@ fn leave_out_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) 
     }
 }
 
-/// A command line in which a word has its place, and what follows it there.
+/// A suggested command line, and what follows it.
 struct Suggestion(String, &'static str);
 
 impl Suggestion {
@@ -304,7 +304,7 @@ fn words_of(line: &str) -> Vec<&str> {
     line.split(' ').filter(|word| *word != "…" && !word.starts_with('-')).collect()
 }
 
-/// Command lines with the word in its place.
+/// Command lines with the word in its correct place.
 fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
     let words = typed.words();
     if word.parse::<Family>().is_ok() {
@@ -336,7 +336,7 @@ fn lines(word: &str, typed: &Typed<'_>, whole: &Command) -> Vec<Suggestion> {
     .unwrap_or_default()
 }
 
-/// The same words behind each family are one command, where that needs no family.
+/// Combines suggestions for each family into one, if a command for all families exists.
 fn for_all(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
     let shared = match &lines[..] {
         [Suggestion(first, _), _, ..] => first.split_once(' ').map(|(_, words)| words.to_owned()),
@@ -348,14 +348,14 @@ fn for_all(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
     if exists && lines.iter().all(is_same) { vec![Suggestion::new(shared)] } else { lines }
 }
 
-/// A verb before its noun.
+/// Suggestion for a verb before its noun.
 fn turned(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [verb, noun, ..] = words else { return Vec::new() };
     let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
     if exists { vec![Suggestion::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
 }
 
-/// Other words, from the table: the entry that has most of them.
+/// Suggestions from the table of synonyms: the entry with the most words.
 fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     let typed = |entry: &&(&str, &[&str])| words.starts_with(&entry.0.split(' ').collect::<Vec<_>>());
     let Some((_, ways)) = synonyms::LINES.iter().filter(typed).max_by_key(|(words, _)| words.len()) else {
@@ -366,7 +366,7 @@ fn said_otherwise(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     ways.iter().filter(fits).map(|way| Suggestion::new(*way)).collect()
 }
 
-/// A noun with another word for its verb.
+/// Suggestion for a noun with a synonym of its verb.
 fn other_verb(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [noun, verb, ..] = words else { return Vec::new() };
     let Some(command) = family.find_subcommand(noun) else { return Vec::new() };
@@ -375,7 +375,7 @@ fn other_verb(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     found.map(|verb| Suggestion::new(format!("{} {noun} {verb}", family.get_name()))).into_iter().collect()
 }
 
-/// Where a word is a command of a family, or the verb of one of its nouns.
+/// Suggestion for a word that is a command of a family, or a verb of one of its nouns.
 fn below(family: &Command, word: &str) -> Vec<Suggestion> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {

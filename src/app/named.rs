@@ -1,4 +1,4 @@
-//! Lines with names in place of addresses.
+//! Command lines with names in place of addresses.
 
 use std::ffi::OsString;
 
@@ -7,8 +7,8 @@ use super::prepared::{Need, sources};
 use crate::cli::{Cli, Globals, Top};
 use crate::command::frame::names;
 
-/// Reads a line, in which names may stand for addresses. `all` are the flags that were given to all lines, where it is
-/// one of several; `among` other lines of this process, simulators live on.
+/// Parses a line that can contain names for addresses. `all`: global flags for all lines, if there are several.
+/// `among`: other lines run in this process, where simulators live on.
 pub fn parse(parser: &mut Parser, args: &[OsString], all: Option<&Globals>, among: bool) -> Result<Cli, Refusal> {
     let (parsed, is_named) = names::asking(|| parser.parse(args));
     if !is_named {

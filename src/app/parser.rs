@@ -1,4 +1,4 @@
-//! From words to a command line.
+//! Parser for command lines.
 
 use std::ffi::OsString;
 
@@ -16,7 +16,7 @@ use crate::command::{families, verbs};
 use crate::failure::Failure;
 use crate::settings::target::Family;
 
-/// What a line says that asks for the version and for nothing else: there is nothing to lay out for it.
+/// Version text, if the line only asks for it. This avoids building the commands.
 pub fn version(args: &[OsString]) -> Option<String> {
     let [_, flag] = args else { return None };
     let version = match flag.to_str()? {
@@ -27,26 +27,26 @@ pub fn version(args: &[OsString]) -> Option<String> {
     Some(format!("armctl {version}\n"))
 }
 
-/// Reads command lines. To lay out all commands takes longer than all the rest of a short one, so a line is tried on the
-/// words that it names alone. What was laid out as a whole serves the next line, too.
+/// Parser. Building all commands takes longer than a short command, so it first builds only the commands named in the
+/// line. The complete tree is kept for the next line.
 #[derive(Debug, Default)]
 pub struct Parser {
     all: Option<Command>,
-    /// What was laid out for the last line alone.
+    /// Commands built for the last line only.
     last: Option<Command>,
 }
 
-/// Why a line is no command to run.
+/// Reason why a line is not a command.
 pub enum Refusal {
-    /// It asks for a text: a help, the version.
+    /// A request for a text: help or version.
     Text(StyledStr),
-    /// It ends before a verb: the help that lists them, and they alone.
+    /// The verb is missing: the help with the list of verbs, and the list alone.
     Verb(StyledStr, String),
-    /// It asks for help on something that is not there.
+    /// A help request for an unknown topic.
     Unknown(Failure),
-    /// It is wrong.
+    /// A syntax error.
     Mistake(clap::Error),
-    /// It names something that cannot be looked up.
+    /// A name that cannot be looked up.
     Failed(Failure),
 }
 
@@ -69,7 +69,7 @@ impl Refusal {
                 if path.iter().try_fold(&whole, |command, word| command.find_subcommand(word)).is_some() {
                     return Self::Text(page(&whole, &path, is_long));
                 }
-                // No command of the family: a topic, or a command of all.
+                // Not a command of the family, but a topic or a common command.
                 let words: Vec<String> = rest[1..].iter().map(|word| (*word).to_owned()).collect();
                 help::text(&words, true, Cli::command).map_or_else(Self::Unknown, |text| Self::Text(text.into()))
             }
@@ -82,7 +82,7 @@ impl Refusal {
         }
     }
 
-    /// As a failure.
+    /// The refusal as a failure.
     pub fn failure(&self) -> Failure {
         match self {
             Self::Text(_) => Failure::usage("this command prints a text").hint("run it in a terminal"),
@@ -99,20 +99,20 @@ impl Refusal {
     }
 }
 
-/// Whose command a word is.
+/// Owner of a command word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
-    /// That of a family.
+    /// A family.
     Family,
-    /// That of no single family, or the name of one.
+    /// All families, or the word is the name of a family.
     All,
-    /// No command.
+    /// Not a command.
     Nobody,
 }
 
 impl Parser {
-    /// Reads a line, the program's name included. What does not parse on the words it names is left to the whole, which
-    /// knows more to say about it.
+    /// Parses a line, including the program name. If the reduced tree fails, the complete tree produces the error,
+    /// because its text is better.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, Refusal> {
         let narrowed = match first(args) {
             Some(First::Family(family)) => named(&mut self.last, family, args).map(|words| words.into_top(Top::Family)),
@@ -128,7 +128,7 @@ impl Parser {
         read(all, args).map_err(|error| Refusal::new(error, args, all))
     }
 
-    /// Whose command a word is, where it may be one of this family.
+    /// Owner of a word, with this family first.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
         let all = laid_out::<Top>(&mut self.all);
         let of_family = family.and_then(|family| all.find_subcommand(family.name())?.find_subcommand(word));
@@ -141,8 +141,8 @@ impl Parser {
         }
     }
 
-    /// Goes without taking it all apart: it holds some thousand parts, the process is about to end, and to free them one
-    /// by one would be a quarter of all the work that a short command is.
+    /// Leaks the trees: freeing some thousand parts would take a quarter of the time of a short command, and the
+    /// process is about to exit.
     pub fn abandon(self) {
         std::mem::forget(self);
     }
@@ -161,7 +161,7 @@ fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words
     words.map_err(|error| error.format(command))
 }
 
-/// Whose the first word of a line is, as far as can be told without knowing which words are values of flags.
+/// Owner of the first word, as far as known without the values of flags.
 enum First {
     Family(Family),
     Common,
@@ -174,7 +174,7 @@ fn first(args: &[OsString]) -> Option<First> {
     })
 }
 
-/// The line, read on the words that it names; `None` where that is not enough.
+/// Parses with only the commands named in the line; `None` if that fails.
 fn named(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
     let word = families::of(family).lay_out(Command::new(family.name()), &is_named);
@@ -182,7 +182,7 @@ fn named(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Optio
     read(command, args).ok()
 }
 
-/// No words at all.
+/// A command without subcommands.
 enum Nothing {}
 
 impl Subcommand for Nothing {

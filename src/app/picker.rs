@@ -1,4 +1,4 @@
-//! A name that a line lacks, chosen at the terminal among what completion knows there.
+//! Interactive selection of a missing name from the completion candidates.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -18,12 +18,12 @@ use crate::command::leaves::is_dangerous;
 use crate::failure::Failure;
 use crate::output::{ColorChoice, Format, Screen};
 
-/// How long a controller may take to list what it has.
+/// Time limit for the list of a controller.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// A line that asks nothing.
+/// Flag that forbids questions.
 const NO_INPUT: &str = "--no-input";
 
-/// The line with the value that was chosen for it; `None` where nothing can be listed, or nobody can be asked.
+/// The line with the selected value; `None` without candidates or without a terminal.
 pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
     let Refusal::Mistake(error) = refusal else { return None };
     if !can_choose(args) {
@@ -41,7 +41,7 @@ pub fn completed(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsSt
     Some(chosen(args, &what, &found, has_first))
 }
 
-/// Whether a person can choose: not where a program reads, nor where the line or the environment forbids it.
+/// Whether a person can choose: no JSON output, and not forbidden by the line or the environment.
 fn can_choose(args: &[OsString]) -> bool {
     let is_json = wants_json(args).unwrap_or_else(super::prepared::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
@@ -49,7 +49,7 @@ fn can_choose(args: &[OsString]) -> bool {
     screen.with_questions(args.iter().all(|word| word != NO_INPUT)).can_choose()
 }
 
-/// What is missing at the end of a line: an argument without a flag, or the value of the flag there.
+/// The missing argument or flag value at the end of a line.
 fn missing(error: &clap::Error, args: &[OsString]) -> Option<String> {
     match (error.kind(), error.get(ContextKind::InvalidArg)?) {
         (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
@@ -67,7 +67,7 @@ fn missing(error: &clap::Error, args: &[OsString]) -> Option<String> {
     }
 }
 
-/// Whether a candidate is a whole value, and no flag.
+/// Whether a candidate is a complete value and not a flag.
 fn is_value(candidate: &Candidate) -> bool {
     !candidate.is_begun && !candidate.value.starts_with('-')
 }

@@ -1,4 +1,4 @@
-//! A command line with all that it needs, before anything is sent.
+//! Preparation of a command line, before anything is sent.
 
 use std::path::{Path, PathBuf};
 
@@ -28,26 +28,26 @@ use crate::settings::inventory::{Inventory, Location, Options};
 use crate::settings::target::Given;
 use crate::settings::{Selection, Sessions, Sources};
 
-/// What a command line asks for.
+/// Meaning of a command line.
 pub enum Invocation {
-    /// Something done.
+    /// A command.
     Task(Task),
-    /// The commands of a file.
+    /// A command file.
     Batch(Batch),
-    /// The panel with which keys move a robot.
+    /// The teach panel.
     Teach(Teach),
-    /// A prompt; these words stand before each line.
+    /// A prompt; these words precede each line.
     Prompt(Vec<String>),
-    /// Nothing but the name of a family was typed: a prompt, where somebody can type.
+    /// Only the name of a family: a prompt, if there is a terminal.
     Bare(Vec<String>),
 }
 
-/// What is to be done, and for whom.
+/// A command to run.
 #[allow(clippy::large_enum_variant, reason = "there are few in a process")]
 pub enum Task {
-    /// For robots of a family, and what was typed for all its commands.
+    /// A command of a family, with the options of the family.
     Family(Own, Box<dyn AnyCommand>),
-    /// Whatever all families share.
+    /// A command common to all families.
     Common(Common),
 }
 
@@ -70,21 +70,20 @@ impl From<Top> for Invocation {
     }
 }
 
-/// A command line, ready to run.
+/// A command that is ready to run.
 pub struct PreparedCommand {
-    /// How.
+    /// Settings of the run.
     pub run: Run,
-    /// What.
+    /// The command.
     pub task: Task,
 }
 
 impl PreparedCommand {
-    /// Reads flags, environment and inventory, once. `all` are the flags that were given to all lines, where it is one of
-    /// several.
+    /// Reads flags, environment and inventory once. `all`: global flags for all lines, if there are several.
     pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
         flags::check(&globals, &task)?;
         let globals = match all {
-            // The list is of the inventory, also in the prompt of a robot.
+            // Even at the prompt of a robot, this lists the whole inventory.
             Some(all) if matches!(task, Task::Common(Common::Robots(Robots::List))) => {
                 globals.within(&all.clone().without_robot())
             }
@@ -114,12 +113,12 @@ impl PreparedCommand {
         Ok(Self { run, task })
     }
 
-    /// Does it.
+    /// Runs the command.
     pub async fn go(self) -> Result<(), RunError> {
         self.task.go(&self.run).await
     }
 
-    /// Finds what would be refused without asking anybody: robots that are not there, a gate that is closed.
+    /// Checks what can be refused without a connection: missing robots, the gate.
     pub fn check_gate(&self) -> Result<(), Failure> {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
@@ -133,7 +132,7 @@ impl PreparedCommand {
         }
     }
 
-    /// Why this is nothing for a line of a file: it would never end, or writes something else than results.
+    /// Reason why the command is not possible in a command file: it does not end, or its output is not a result.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match &self.task {
             Task::Common(common) => common.why_not_in_batch(),
@@ -143,7 +142,7 @@ impl PreparedCommand {
 }
 
 impl Task {
-    /// Does it.
+    /// Runs the command.
     pub async fn go(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Family(_, command) => run.robots(&*command).await,
@@ -159,7 +158,7 @@ impl Task {
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
-            // The path of the inventory tells where alarms.toml is.
+            // The folder of the inventory also contains alarms.toml.
             Self::Common(Common::Explain(_)) => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -167,20 +166,20 @@ impl Task {
     }
 }
 
-/// What a command wants of inventory and environment.
+/// What a command needs from inventory and environment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Nothing: what is wrong in them is no matter, and `help` must tell how to set it right.
+    /// Nothing: mistakes there do not matter. `help` must work to explain them.
     Nothing,
-    /// Which robots are named, whatever the inventory says of them.
+    /// Names of robots, without their inventory entries.
     Names,
-    /// The inventory; one that is named must be there.
+    /// The inventory; a file named by the user must exist.
     Inventory,
-    /// The inventory, which is made if it is not there.
+    /// The inventory, which is created if it does not exist.
     InventoryOrNone,
 }
 
-/// Flags, environment and inventory, read once.
+/// Reads flags, environment and inventory.
 fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
     let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
@@ -200,7 +199,7 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     Ok(Run { screen, sources, gate, repeat, filter, trace, line, redraw: Redraw::default(), own: Own::default() })
 }
 
-/// Which robots, and their settings; `among` other lines of this process, simulators live on.
+/// Selected robots and their settings. `among`: other lines run in this process, where simulators live on.
 pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Failure> {
     let mut selection = Selection {
         sim: globals.sim,
@@ -222,7 +221,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     if let (Some(names), false) = (names, selection.has_flags()) {
         (selection.robots, selection.from_environment) = (names, true);
     }
-    // Also for a robot that is told by its address: the file says whether that may be changed.
+    // Also for a robot given by address, because its entry can be read-only.
     let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Usual(path.clone());
@@ -249,25 +248,24 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     Ok(Sources { selection, flags, environment, inventory })
 }
 
-/// Names or patterns of robots with commas between them.
+/// Parses names or patterns of robots, separated by commas.
 fn names(text: &str) -> Result<Vec<String>, String> {
     let names: Vec<String> = text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(Into::into).collect();
     if names.is_empty() { Err(format!("no robot name in '{text}'")) } else { Ok(names) }
 }
 
-/// `ARMCTL_OUTPUT`, where the line does not say how to print. What tells how to set it right, and what is for people alone,
-/// does not ask for it.
+/// `ARMCTL_OUTPUT`, if the line has no format option. Help and interactive commands ignore it.
 pub fn format_of_environment(cli: &Cli) -> Result<Option<Format>, Failure> {
     let asks = !cli.globals.says_format() && !matches!(cli.command, Top::Common(Common::Help(_) | Common::Top(_)));
     if asks { variable(OUTPUT, format) } else { Ok(None) }
 }
 
-/// Whether `ARMCTL_OUTPUT` is a form of JSON.
+/// Whether `ARMCTL_OUTPUT` is a JSON format.
 pub fn wants_json() -> bool {
     matches!(variable(OUTPUT, format), Ok(Some(Format::Json | Format::Jsonl)))
 }
 
-/// How to print data.
+/// Environment variable with the output format.
 const OUTPUT: &str = "ARMCTL_OUTPUT";
 
 fn format(name: &str) -> Result<Format, String> {
@@ -275,7 +273,7 @@ fn format(name: &str) -> Result<Format, String> {
         .map_err(|_| format!("unknown output format '{name}'; use table, json, jsonl, csv or value"))
 }
 
-/// Where the inventory is.
+/// Location of the inventory.
 fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
     Ok(Location::find(match config {
         Some(path) => Some(path),
@@ -283,7 +281,7 @@ fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
     }))
 }
 
-/// A variable of the environment; an empty one counts as not set, a wrong one is an error that names it.
+/// Value of an environment variable. An empty one counts as not set. An invalid one is an error with its name.
 fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
     let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
     let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));

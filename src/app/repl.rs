@@ -1,8 +1,8 @@
-//! `armctl repl`: command lines one after the other, over a link that stays open.
+//! `armctl repl`: command lines over a link that stays open.
 //!
-//! At a terminal there is a prompt; a line that fails is told, and the next one may be typed. What comes from a pipe is a
-//! script: it ends at the first line that fails, with its exit code. A line is parsed and run exactly as a process of its
-//! own would be; only the flags of the REPL stand before its own.
+//! At a terminal it is interactive: after an error, the next line can be typed. Input from a pipe is a script: it stops
+//! at the first error, with its exit code. A line is parsed and executed like a separate process, with the flags of the
+//! REPL before its own.
 
 mod assistant;
 mod editor;
@@ -38,12 +38,12 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
-/// Whether somebody sits at a terminal who can type.
+/// Whether stdin is a terminal.
 pub fn can_type() -> bool {
     std::io::stdin().is_terminal()
 }
 
-/// Nothing but the name of a family was typed where nobody can type: what its commands are.
+/// Prints the commands of a family that was named without a terminal for a prompt.
 pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     if let Err(Refusal::Text(help)) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help);
@@ -52,7 +52,7 @@ pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     RunError { told: true, ..Failure::usage("a command is missing").into() }
 }
 
-/// Runs lines until somebody leaves, or the script ends.
+/// Runs lines until the user leaves or the script ends.
 pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     catch_interrupts();
@@ -61,22 +61,21 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> 
     if can_type() { Box::pin(repl.read_lines()).await } else { Box::pin(repl.script()).await }
 }
 
-/// What all lines have in common.
+/// Common state of all lines.
 struct Repl {
     globals: Globals,
     screen: Screen,
     meaning: Meaning,
-    /// Whom lines are for that name nobody, if that is one robot of a known family.
+    /// Robot for lines without a selection, if it is one robot of a known family.
     robot: Option<Robot>,
 }
 
-/// What becomes of the lines after one.
+/// What to do after a line.
 enum Next {
-    /// The next one.
+    /// Run the next line.
     Line,
-    /// This one has failed, and that has been told.
+    /// The line failed, and the error was printed.
     Failed(Kind),
-    /// It wants to leave.
     Leave,
 }
 
@@ -86,7 +85,7 @@ impl Repl {
         let sources = sources(globals.clone(), Need::Inventory, true)?;
         let names_nobody = sources.selection.names_nobody() && sources.inventory.default.is_none();
         let robots = if names_nobody { Vec::new() } else { sources.robots(family)? };
-        // A bare simulator is one of every family, until a line says of which.
+        // A simulator without a family can be of any family, until a line names one.
         let is_any = family.is_none() && sources.selection.sim;
         let robot = match &robots[..] {
             [robot] if !sources.selection.is_plural() && !is_any => Some(robot.clone()),
@@ -98,7 +97,7 @@ impl Repl {
         Ok(Self { screen: screen(&globals), globals, meaning: Meaning::new(prefix), robot })
     }
 
-    /// Lines from a terminal.
+    /// Runs lines from a terminal.
     async fn read_lines(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
@@ -114,7 +113,7 @@ impl Repl {
         terminal: &Terminal,
         manager: &SessionManager,
     ) -> Result<(), RunError> {
-        // What stops the robot when it ends is taken by the command that needs it, once that was confirmed.
+        // If the end of a connection stops the robot, the command that needs it opens it after a confirmation.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
             && !matches!(families::of(robot.family).driver().entry(robot, ConnectMode::Control), Entry::Stops(_))
@@ -122,7 +121,7 @@ impl Repl {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
         self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D leaves.");
-        // Ctrl-C puts a line away; where there is none, it is not yet the wish to leave, but twice is.
+        // Ctrl-C clears a line. On an empty line, only a second one leaves.
         let mut is_second = false;
         let mut is_new = true;
         loop {
@@ -140,7 +139,7 @@ impl Repl {
                 typed = editor.read(prompt) => typed,
                 how = asked_to_end() => {
                     terminal.take_back().await;
-                    // The cursor still stands behind what was being typed.
+                    // The cursor is still after the typed text.
                     self.screen.ask_note("");
                     return Err(ended(how));
                 }
@@ -157,7 +156,7 @@ impl Repl {
                 Typed::Failed(failure) => return Err(failure.into()),
             };
             is_second = false;
-            // What is pasted may be several lines.
+            // Pasted text can have several lines.
             for line in text.lines() {
                 match Box::pin(self.run_line(line, manager)).await {
                     Next::Line => {}
@@ -171,7 +170,7 @@ impl Repl {
         }
     }
 
-    /// Lines from a pipe or a file, up to the first that fails.
+    /// Runs lines from a pipe or file, up to the first error.
     async fn script(mut self) -> Result<(), RunError> {
         let screen = self.screen;
         let (manager, thread): (SessionManager, ManagerThread) = host::start(move |text| screen.note(text))?;
@@ -200,7 +199,6 @@ impl Repl {
         }
     }
 
-    /// Runs a line, and tells if it fails.
     async fn run_line(&mut self, text: &str, manager: &SessionManager) -> Next {
         let words = match words::split(text) {
             Ok(words) => words,
@@ -220,7 +218,7 @@ impl Repl {
         let Words { globals, command } = match named::parse(&mut self.meaning.parser, &args, Some(&self.globals), true)
         {
             Ok(words) => words,
-            // A script wants something done.
+            // In a script, a missing verb is an error.
             Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
             Err(error) => {
                 return refuse(&args, &error, self.screen.is_json(), false).map_or_else(Next::Failed, |()| Next::Line);
@@ -248,9 +246,9 @@ impl Repl {
     }
 }
 
-/// The next line of a script; `None` at its end.
+/// Next line of a script; `None` at its end.
 async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
-    /// More than any command takes: what has no line ends is no script.
+    /// Line limit; input without line ends is not a script.
     const LONGEST: u64 = 1 << 20;
 
     let mut bytes = Vec::new();

@@ -1,5 +1,5 @@
-//! Teaching has one manner and several spellings: `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`,
-//! `toyo point teach 5` and `yrcx point set 19 here` are `teach`; `yrcx point set 19 @FILE` is `--position FILE`.
+//! Other spellings of `teach`: `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`, `toyo point
+//! teach 5` and `yrcx point set 19 here` mean `teach`. `yrcx point set 19 @FILE` means `--position FILE`.
 
 use std::ffi::OsString;
 
@@ -7,10 +7,10 @@ use clap::Command;
 
 use super::typed::Typed;
 
-/// What stands for the position of the robot.
+/// Word for the current position of the robot.
 const HERE: &str = "here";
 
-/// The line in the words of its command, if it is spelled in another way.
+/// The line in the form of its command; `None` if it has no other spelling.
 pub fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     let typed = Typed::new(args, whole);
     let (family, path) = typed.path.split_first()?;
@@ -28,7 +28,7 @@ pub fn taught(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     for (at, word) in typed.at.iter().zip(replaced) {
         *line.get_mut(*at)? = word.map(OsString::from);
     }
-    // `position teach` and `point teach` lose their noun, `var set` and `point set` become the verb.
+    // `position teach` and `point teach` lose their noun; `var set` and `point set` become the verb.
     let path: &[Option<&str>] = if is_file {
         &[]
     } else if typed.path.len() == 2 {

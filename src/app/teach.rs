@@ -1,4 +1,4 @@
-//! `armctl teach`: types the lines that the keys of the panel stand for, over a link that stays open.
+//! `armctl teach`: runs the command lines of the panel over a link that stays open.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -26,7 +26,7 @@ use crate::gate::{Gate, Intent};
 use crate::output::Format;
 use crate::settings::Robot;
 
-/// Shows the panel until somebody leaves.
+/// Shows the panel until the user leaves.
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let screen = screen(&globals);
@@ -36,7 +36,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     begin_trace(globals.trace.as_deref())?;
     let gate = Gate { yes: globals.yes, dry_run: false, on_interrupt: globals.on_interrupt };
     authority::pass(gate, &screen, &robot, &intent(&teach, &robot)).await?;
-    // Whatever happens to links is said by the lines that need them: nothing may be written over the picture.
+    // Link messages would damage the screen. The commands report link errors.
     let (manager, thread) = host::start(|_| {})?;
     let lines = Lines { globals: each(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
     let panel = families::of(robot.family).panel();
@@ -48,7 +48,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     Ok(ended?)
 }
 
-/// The one robot that keys move.
+/// The one robot of the panel.
 fn the_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
@@ -79,7 +79,7 @@ fn fits(globals: &Globals, screen: &crate::output::Screen) -> Result<(), Failure
     Ok(())
 }
 
-/// One yes for all keys, and for what the link does by being there.
+/// One confirmation for all keys, including the effects of the link itself.
 fn intent(teach: &Teach, robot: &Robot) -> Intent {
     let intent = teach.intent();
     match families::of(robot.family).driver().entry(robot, ConnectMode::Control) {
@@ -88,12 +88,12 @@ fn intent(teach: &Teach, robot: &Robot) -> Intent {
     }
 }
 
-/// The flags of each line: the yes is given, data comes as JSON, nothing is said beside it.
+/// Flags of each line: confirmed, JSON output, quiet.
 fn each(globals: &Globals) -> Globals {
     Globals { yes: true, json: true, format: None, quiet: true, verbose: 0, ..globals.clone() }
 }
 
-/// Runs lines of the robot's family.
+/// Runs command lines of the robot's family.
 struct Lines {
     globals: Globals,
     manager: SessionManager,

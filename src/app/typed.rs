@@ -1,26 +1,26 @@
-//! What the words of a command line are: those of a command, and those that stand behind it.
+//! Words of a command line: those of the command, and the rest.
 
 use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// The words of a command line, without flags and their values.
+/// Words of a command line, without flags and their values.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Typed<'a> {
-    /// Those that lead to a command, by their own names.
+    /// Words of the command, by their primary names.
     pub path: Vec<&'a str>,
-    /// The same as they were typed: another word may stand for one.
+    /// Words of the command, as typed (can be aliases).
     pub said: Vec<&'a str>,
-    /// Where in the line those stand.
+    /// Their positions in the line.
     pub said_at: Vec<usize>,
-    /// What follows them.
+    /// Words after the command.
     pub rest: Vec<&'a str>,
-    /// Where in the line that stands.
+    /// Their positions in the line.
     pub at: Vec<usize>,
 }
 
 impl<'a> Typed<'a> {
-    /// Of a line, the program's name included.
+    /// Analyzes a line, including the program name.
     pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
         let mut commands = vec![whole];
@@ -46,13 +46,13 @@ impl<'a> Typed<'a> {
         typed
     }
 
-    /// All of them.
+    /// All words, as typed.
     pub fn words(&self) -> Vec<&'a str> {
         [&self.said[..], &self.rest].concat()
     }
 }
 
-/// Whether the word behind a flag is its value.
+/// Whether the word after a flag is its value.
 fn takes_next(flag: &str, commands: &[&Command]) -> bool {
     let known = |is_it: &dyn Fn(&Arg) -> bool| {
         let found = commands.iter().flat_map(|command| command.get_arguments()).find(|argument| is_it(argument));

@@ -1,16 +1,16 @@
-//! A line of text as the words of a command line: what a shell would make of it.
+//! Splitting of a line into words, as a shell does.
 
 use crate::command::frame::batch::is_name;
 
-/// The words of a line: quotes, backslashes and `#` as in a shell. None for a line that is empty or a comment alone.
+/// Splits a line: quotes, backslashes and `#` as in a shell. Empty for an empty line or a comment.
 pub fn split(line: &str) -> Result<Vec<String>, String> {
     let words = shlex::split(line).ok_or("a closing quote, or the character after a backslash, is missing")?;
-    // What somebody copied from a page of the manual.
+    // For lines copied from the documentation.
     let named = words.first().is_some_and(|word| word == "armctl");
     Ok(words.into_iter().skip(usize::from(named)).collect())
 }
 
-/// A word with `${NAME}` replaced by what `value` knows of the name; `$${` stands for `${`.
+/// Replaces `${NAME}` in a word by its value; `$${` means `${`.
 pub fn expanded<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>) -> Result<String, String> {
     let mut done = String::new();
     let mut rest = word;

@@ -1,4 +1,4 @@
-//! What a client may send.
+//! Authorization: the highest risk that a client may send.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -7,15 +7,15 @@ use std::sync::{Arc, OnceLock};
 use armctl_controller::Risk;
 use thiserror::Error;
 
-/// The most that may leave through a client. Clones are the same grant: whoever keeps one can raise it, and the client
-/// checks it before every request.
+/// The highest risk that a client may send. Clones share one limit: raising one raises all. The client checks the
+/// limit before every request.
 #[derive(Debug, Clone)]
 pub struct Grant(Arc<Granted>);
 
 #[derive(Debug)]
 struct Granted {
     most: AtomicU8,
-    /// Called before a motion is sent.
+    /// Called before each motion is sent.
     on_motion: OnceLock<Hook>,
 }
 
@@ -27,36 +27,36 @@ impl fmt::Debug for Hook {
     }
 }
 
-/// Something riskier than what was granted. Nothing was sent.
+/// A request above the authorized risk. Nothing was sent.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what} ({}) is not authorized; nothing was sent", .risk.name())]
 pub struct NotAuthorized {
-    /// What would have been sent.
+    /// Name of the request.
     pub what: String,
-    /// What it does.
+    /// Its risk.
     pub risk: Risk,
 }
 
 const RISKS: [Risk; 4] = [Risk::Read, Risk::Write, Risk::Destroy, Risk::Motion];
 
 impl Grant {
-    /// Lets through what is not riskier than this.
+    /// Authorizes this risk and everything below it.
     pub fn of(risk: Risk) -> Self {
         Self(Arc::new(Granted { most: AtomicU8::new(risk as u8), on_motion: OnceLock::new() }))
     }
 
-    /// The most that may leave.
+    /// The highest authorized risk.
     pub fn get(&self) -> Risk {
-        // Only `raise` writes it, and it writes the number of a risk.
+        // `raise` and `of` are the only writers, and both store the number of a risk.
         RISKS[usize::from(self.0.most.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
     }
 
-    /// Lets this through from now on as well.
+    /// Raises the limit; it is never lowered.
     pub fn raise(&self, risk: Risk) {
         self.0.most.fetch_max(risk as u8, Ordering::Relaxed);
     }
 
-    /// The last check before something leaves: whether `what` may.
+    /// Checks one request, as the last step before it is sent. Calls the motion hook if it is an authorized motion.
     pub fn check(&self, risk: Risk, what: &str) -> Result<(), NotAuthorized> {
         if risk > self.get() {
             return Err(NotAuthorized { what: what.to_owned(), risk });
@@ -67,14 +67,14 @@ impl Grant {
         Ok(())
     }
 
-    /// Has `hook` called each time before a motion is sent. The first hook of a grant stays.
+    /// Sets the hook that runs before each motion is sent. Only the first hook of a grant counts.
     pub fn on_motion(&self, hook: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.on_motion.set(Hook(Box::new(hook)));
     }
 }
 
 impl Default for Grant {
-    /// To read.
+    /// Read only.
     fn default() -> Self {
         Self::of(Risk::Read)
     }

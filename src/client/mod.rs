@@ -1,19 +1,18 @@
-//! Clients of robot controllers: each connects to one, asks, orders and transfers, and says as a typed error what went
-//! wrong.
+//! Clients of robot controllers. A client connects to one controller, sends requests, transfers files and returns
+//! typed errors.
 //!
-//! A client is the one driver between the sessions of its family, which know the protocol and neither sockets nor clock,
-//! and a transport, which moves bytes and knows no meaning. It knows nothing of a command line: no settings, no questions,
-//! no prose. What happens on the line, others are told by a [`Watcher`].
+//! A client drives the sessions of its family (protocol only, without sockets or clock) over a transport (bytes
+//! only). It has no settings, prompts or output texts. A [`Watcher`] observes the frames and events.
 //!
-//! Three rules hold in all of them:
+//! Three rules hold in every client:
 //!
-//! - **Nothing leaves that was not granted.** Every request is held against a [`Grant`] first; without one a client reads.
-//!   A stop is always allowed.
-//! - **"No" is an answer.** What a controller refuses is data with a code. `try_ask` returns it; `ask` makes an error of it
-//!   for who has no use for a refusal.
-//! - **What changes something leaves once.** When its answer is lost, the error says that the outcome is unknown.
+//! - **Authorization.** Every request is checked against a [`Grant`] first. The default grant allows only reads. A
+//!   stop is always allowed.
+//! - **A refusal is an answer.** A refusal by the controller is data with a code. `try_ask` returns it; `ask` turns
+//!   it into an error.
+//! - **A change is sent once.** If its answer is lost, the error says that the outcome is unknown.
 //!
-//! A client can be one of a dry run: it notes in a [`Plan`] what it would send, and has no answers.
+//! A client in a dry run records in a [`Plan`] what it would send. It has no answers.
 
 use std::time::Duration;
 
@@ -24,11 +23,11 @@ mod watcher;
 pub mod yerc;
 pub mod yrcx;
 
-/// The silence after which a stop is sent again.
+/// Repeat interval of an unconfirmed stop.
 const STOP_EVERY: Duration = Duration::from_millis(200);
-/// How often a stop is sent that nobody confirms.
+/// Attempts to send an unconfirmed stop.
 const STOP_TRIES: u32 = 15;
-/// How long a stop is tried that nobody confirms.
+/// Time limit for the confirmation of a stop.
 const STOP_WITHIN: Duration = STOP_EVERY.saturating_mul(STOP_TRIES);
 
 pub use grant::{Grant, NotAuthorized};

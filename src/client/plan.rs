@@ -1,45 +1,45 @@
-//! What a dry run notes instead of sending it.
+//! Plan of a dry run: the frames that would be sent.
 
 use serde_json::{Value, json};
 
-/// What would be sent, in the order of sending.
+/// The frames of a dry run, in the order of sending.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
-    /// Each under the key of its family (`hex`, `wi`, `bits`, `text`), beside `about` and `depends_on` where there is a
-    /// [`Reason`].
+    /// One object per frame: its bytes under the key of its family (`hex`, `wi`, `bits`, `text`), and `about` and
+    /// `depends_on` if there is a [`Reason`].
     pub frames: Vec<Value>,
-    /// What a long work would do with each of its files or parts, in the form of the command.
+    /// The planned action for each file or part of a long task, in the format of the command.
     pub items: Vec<Value>,
-    /// What follows that cannot be shown, in words.
+    /// A description of later steps whose frames are not known yet.
     pub then: Option<String>,
 }
 
-/// What an order would do about the frames before it.
+/// Why a frame of a plan is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reason<'a> {
-    /// What it is for.
+    /// Its purpose.
     pub about: Option<&'a str>,
-    /// What of the answers before it decides how it looks, or whether it is sent.
+    /// The earlier answer that decides its content, or whether it is sent.
     pub depends_on: Option<&'a str>,
 }
 
 impl<'a> Reason<'a> {
-    /// What a frame is for.
+    /// A frame with this purpose.
     pub fn about(about: &'a str) -> Self {
         Self { about: Some(about), depends_on: None }
     }
 
-    /// What of the answers before a frame decides how it looks, or whether it is sent.
+    /// Adds the earlier answer that decides the content of the frame, or whether it is sent.
     #[must_use]
     pub fn depending_on(self, what: &'a str) -> Self {
         Self { depends_on: Some(what), ..self }
     }
 }
 
-/// A field of an order that moves something, in words: `("speed", "50.0 mm/s")`.
+/// Name and readable value of a field of a motion request: `("speed", "50.0 mm/s")`.
 pub type FieldInWords = (String, String);
 
-/// A frame with its fields in words, if it has any.
+/// Adds the readable fields, if there are any, to a frame.
 pub fn with_fields(mut frame: Value, fields: &[FieldInWords]) -> Value {
     if let Some(frame) = frame.as_object_mut().filter(|_| !fields.is_empty()) {
         let field = |(name, value): &FieldInWords| json!({ "name": name, "value": value });
@@ -48,7 +48,7 @@ pub fn with_fields(mut frame: Value, fields: &[FieldInWords]) -> Value {
     frame
 }
 
-/// Fields of two orders, of which nothing is known where both differ.
+/// Merges the fields of two variants of a request: a value that differs becomes `?`.
 pub fn in_common(one: Vec<FieldInWords>, other: &[FieldInWords]) -> Vec<FieldInWords> {
     let of = |(index, (name, value)): (usize, FieldInWords)| {
         let is_same = other.get(index).is_some_and(|(_, other)| *other == value);
@@ -58,7 +58,7 @@ pub fn in_common(one: Vec<FieldInWords>, other: &[FieldInWords]) -> Vec<FieldInW
 }
 
 impl Plan {
-    /// Notes a frame: `frame` has the key of its family.
+    /// Records a frame, which already has the key of its family.
     pub fn note(&mut self, mut frame: Value, reason: Reason<'_>) {
         if let Some(frame) = frame.as_object_mut() {
             for (key, text) in [("about", reason.about), ("depends_on", reason.depends_on)] {
@@ -70,7 +70,7 @@ impl Plan {
         self.frames.push(frame);
     }
 
-    /// Says in words what follows that cannot be shown.
+    /// Adds a description of later steps whose frames are not known yet.
     pub fn then(&mut self, what: &str) {
         let what = match self.then.take() {
             Some(before) => format!("{before}; {what}"),

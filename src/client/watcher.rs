@@ -1,26 +1,25 @@
-//! Who is told what happens on a line.
+//! Observer of the frames and events of a client.
 
 use std::fmt::Debug;
 use std::net::SocketAddr;
 
 use armctl_transport::tap::Direction;
 
-/// Own and other address of a connection.
+/// Local and remote address of a connection.
 pub type Ends = (SocketAddr, SocketAddr);
 
-/// Looks on: a trace, a log, a counter. `E` is what a client of the family notices beside frames. Nobody needs to: a client
-/// that nobody watches does the same.
+/// An observer: a trace, a log, a counter. `E` is the event type of the family. A watcher does not change the
+/// behaviour of the client.
 pub trait Watcher<E>: Debug + Send {
-    /// These bytes left, or arrived.
+    /// A frame was sent or received.
     fn frame(&mut self, direction: Direction, ends: Ends, bytes: &[u8]) {
         let _ = (direction, ends, bytes);
     }
 
-    /// This was noticed.
+    /// An event occurred.
     fn event(&mut self, event: E) {
         let _ = event;
     }
 }
 
-/// Nobody.
 impl<E> Watcher<E> for () {}

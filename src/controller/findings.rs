@@ -1,38 +1,38 @@
-//! What there is to say about a text that somebody wrote: a program, a table of points, a file of parameters.
+//! Findings (errors, warnings, notes) of a user-written text: a program, a table of points, a parameter file.
 
 use std::fmt;
 
-/// Errors that are kept; a file with more is something else altogether.
+/// Limit of stored errors; a file with more is probably of another type.
 const MOST: usize = 100;
 
-/// Something to say about a place of a text.
+/// A finding at a position of the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
     /// How bad it is.
     pub severity: Severity,
-    /// From 1.
+    /// Line, from 1.
     pub line: usize,
-    /// In characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
-    /// What is wrong, and what is expected.
+    /// The problem, and what is expected.
     pub message: String,
-    /// What to do, or what may have been meant.
+    /// What to do, or a suggestion.
     pub hint: Option<String>,
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// The text cannot be used.
     Error,
-    /// Probably not what was meant.
+    /// Probably a mistake.
     Warning,
-    /// Worth to know.
+    /// Information.
     Note,
 }
 
 impl Severity {
-    /// In words.
+    /// Name in messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
@@ -50,7 +50,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// A place in a text: line and column, both from 1.
+/// Line and column in a text, both from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SourceLocation {
     /// Line.
@@ -59,7 +59,7 @@ pub struct SourceLocation {
     pub column: usize,
 }
 
-/// Findings, gathered in any order.
+/// Collection of findings, in any order.
 #[derive(Debug, Default)]
 pub struct Findings {
     list: Vec<Finding>,
@@ -87,24 +87,24 @@ impl Findings {
         self.add(Severity::Note, at, message.into(), None);
     }
 
-    /// How many errors there are, those that are not shown included.
+    /// Number of errors, also those above the limit.
     pub const fn errors(&self) -> usize {
         self.errors
     }
 
-    /// Whether more errors would not be shown.
+    /// Whether the limit of stored errors is reached.
     pub const fn is_full(&self) -> bool {
         self.errors >= MOST
     }
 
-    /// The errors alone, in the order of the text.
+    /// Only the errors, in text order.
     pub fn into_errors(self) -> Vec<Finding> {
         let mut errors = self.sorted();
         errors.retain(|finding| finding.severity == Severity::Error);
         errors
     }
 
-    /// In the order of the text.
+    /// All findings, in text order.
     pub fn sorted(mut self) -> Vec<Finding> {
         self.list.sort_by_key(|finding| (finding.line, finding.column, finding.severity));
         self.list

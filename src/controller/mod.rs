@@ -1,8 +1,8 @@
-//! What each controller understands.
+//! Protocols of the controllers, without I/O.
 //!
-//! Nothing in here opens a socket, reads a clock or knows the command line. A session is a state machine that is handed
-//! time and bytes and says what to do next; a driver elsewhere moves the bytes. The same session therefore runs against
-//! a socket, a simulator in this process, and a fault injector in virtual time.
+//! Nothing here opens a socket, reads a clock or uses the command line. A session is a state machine: it receives
+//! time and bytes and returns the next step. A driver elsewhere moves the bytes. So the same session runs against a
+//! socket, a simulator in this process, and a fault injector in virtual time.
 
 use std::time::Duration;
 
@@ -21,24 +21,24 @@ pub mod units;
 pub mod yerc;
 pub mod yrcx;
 
-/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+/// Time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;
 
-/// What a command does to the world; the higher one wins where a command does several things.
+/// Effect of a command. A command with several effects has the highest one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Risk {
-    /// Reads only: may be repeated at will.
+    /// Reads only; can be repeated.
     Read,
-    /// Changes what can be set again: a variable, a signal, a counter, a selection, an alarm reset.
+    /// Changes a value that can be set again: a variable, a signal, a counter, a selection, an alarm reset.
     Write,
-    /// Deletes or overwrites what a person wrote or taught: jobs, programs, files, points, parameters.
+    /// Deletes or overwrites work of a person: jobs, programs, files, points, parameters.
     Destroy,
-    /// Moves the robot, or gives it power or a job to move by.
+    /// Moves the robot, or powers it, or starts a job.
     Motion,
 }
 
 impl Risk {
-    /// As messages name it.
+    /// Name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Read => "read",
@@ -49,30 +49,30 @@ impl Risk {
     }
 }
 
-/// What a session wants its driver to do next.
+/// Next action of a driver for a session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step<T> {
-    /// Send these bytes to the peer as one datagram (or one write), then poll again.
+    /// Send these bytes as one datagram or one write, then poll again.
     Send(Vec<u8>),
-    /// Take this piece of incoming payload; pieces come in order, each exactly once. Then poll again.
+    /// Take this piece of received payload, then poll again. Pieces come in order, each exactly once.
     Data(Vec<u8>),
-    /// Provide the next piece of outgoing payload through the session's own `feed`, then poll again.
+    /// Pass the next piece of outgoing payload to `feed` of the session, then poll again.
     Feed,
-    /// Nothing to do before this moment, unless bytes arrive.
+    /// Wait until this time, or until bytes arrive.
     Wait(Now),
-    /// The session has ended with this outcome; polling again yields the same step.
+    /// The session has ended with this outcome. Further polls return the same step.
     Done(T),
 }
 
-/// A conversation with one peer, without sockets and without a clock.
+/// A protocol exchange with one peer, without sockets and without a clock.
 pub trait Session {
-    /// How the conversation ends, good or bad.
+    /// Result of the session.
     type Outcome;
 
-    /// Says what to do at `now`. Call until it answers [`Step::Wait`] or [`Step::Done`].
+    /// Returns the next step at `now`. Call it until it returns [`Step::Wait`] or [`Step::Done`].
     fn poll(&mut self, now: Now) -> Step<Self::Outcome>;
 
-    /// Takes bytes that arrived from the peer at `now`. Bytes that do not belong here are counted and ignored. Hand
-    /// over one datagram, then poll to the end before the next: what comes in between may be passed over as lost.
+    /// Takes bytes that arrived at `now`; bytes of other exchanges are counted and ignored. Pass one datagram, then
+    /// poll until [`Step::Wait`] before the next: a datagram in between may be dropped.
     fn handle(&mut self, now: Now, bytes: &[u8]);
 }

@@ -1,12 +1,12 @@
-//! Names that people gave to signals, variables, registers and the like: which address each stands for.
+//! User-defined names of signals, variables, registers and the like, with their addresses.
 //!
-//! A name is looked up only where a text is no address: it never hides one. Names of the inventory come before those
-//! that the controller keeps. Upper and lower case count where two names differ in nothing else.
+//! A name is looked up only if a text is not an address, so it never hides an address. Names of the inventory have
+//! priority over names of the controller. Case matters only between names that differ in nothing else.
 
 use std::collections::HashMap;
 use std::fmt;
 
-/// What a name can stand for.
+/// Kind of a named object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// A signal, or a word of signals.
@@ -30,7 +30,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// As messages and reports name it.
+    /// Word in messages and reports.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Signal => "signal",
@@ -46,7 +46,7 @@ impl Kind {
     }
 }
 
-/// Where a name comes from.
+/// Origin of a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Source {
     /// `robots.toml`.
@@ -64,30 +64,30 @@ impl fmt::Display for Source {
     }
 }
 
-/// A name and what it stands for.
+/// A name and its address.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Name {
-    /// What that is.
+    /// Kind of the object.
     pub kind: Kind,
-    /// Which one, as its family writes it: `#27010`, `B5`, `SO(20)`.
+    /// Address in the notation of the family: `#27010`, `B5`, `SO(20)`.
     pub address: String,
     /// The name.
     pub name: String,
-    /// Where it comes from.
+    /// Origin of the name.
     pub source: Source,
 }
 
-/// What the addresses of a family look like.
+/// Address notation of a family.
 #[derive(Debug, Clone, Copy)]
 pub struct Grammar {
-    /// Reads an address, and gives it as the family writes it; `None` for what is none.
+    /// Parses an address and returns it in the notation of the family; `None` for other text.
     pub address: fn(&str) -> Option<(Kind, String)>,
-    /// What addresses begin with before their number.
+    /// Prefixes of addresses.
     pub prefixes: &'static [&'static str],
 }
 
 impl Grammar {
-    /// Whether a text is an address, or looks like one that does not exist: no name may.
+    /// Whether a text has the form of an address, even of a nonexistent one. A name must not.
     pub fn is_shaped(self, text: &str) -> bool {
         let text = text.trim_start_matches('#');
         let digits = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
@@ -99,10 +99,10 @@ impl Grammar {
     }
 }
 
-/// Longest name, in bytes: four times what a pendant takes.
+/// Maximum length of a name in bytes: four times the limit of a pendant.
 pub const LONGEST: usize = 128;
 
-/// Why a text cannot be typed as a name; `None` where it can.
+/// Why a text cannot be used as a name; `None` if it can.
 pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     if text.trim().is_empty() || text.trim() != text {
         Some("it is empty, or has blanks at an end")
@@ -119,14 +119,14 @@ pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     }
 }
 
-/// What a text stands for.
+/// Result of a name lookup.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Found<'a> {
-    /// This.
+    /// One match.
     One(&'a Name),
     /// All of these have the name.
     Several(Vec<&'a Name>),
-    /// Nothing has it.
+    /// No match.
     None,
 }
 
@@ -136,12 +136,12 @@ pub struct Names {
     all: Vec<Name>,
     /// The first name of each address.
     by_address: HashMap<(Kind, String), usize>,
-    /// By their letters, whether those are capitals or not.
+    /// Indexes by lower-case name.
     by_name: HashMap<String, Vec<usize>>,
 }
 
 impl Names {
-    /// In their order; of two names of an address the first is shown.
+    /// Keeps the order. The label of an address is its first name.
     pub fn new(all: Vec<Name>) -> Self {
         let mut by_address = HashMap::with_capacity(all.len());
         let mut by_name: HashMap<String, Vec<usize>> = HashMap::with_capacity(all.len());
@@ -152,17 +152,17 @@ impl Names {
         Self { all, by_address, by_name }
     }
 
-    /// All of them.
+    /// All items, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Name> {
         self.all.iter()
     }
 
-    /// Whether there are none.
+    /// Whether the list is empty.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()
     }
 
-    /// The name of an address as its family writes it.
+    /// The name of an address in the notation of the family.
     pub fn label(&self, kind: Kind, address: &str) -> Option<&str> {
         if self.all.is_empty() {
             return None;
@@ -171,12 +171,12 @@ impl Names {
         self.all.get(*at).map(|name| name.name.as_str())
     }
 
-    /// What a name stands for among these kinds.
+    /// Looks up a name among these kinds.
     pub fn find(&self, kinds: &[Kind], text: &str) -> Found<'_> {
         let alike = self.by_name.get(&text.to_lowercase()).map(Vec::as_slice).unwrap_or_default();
         let alike = || alike.iter().filter_map(|at| self.all.get(*at)).filter(|name| kinds.contains(&name.kind));
         let is_own = |name: &Name| name.source == Source::Inventory;
-        // Those of the inventory first, whatever their letters; of each, those that are written so.
+        // Names of the inventory first; within each source, exact case first.
         let steps = [(true, true), (true, false), (false, true), (false, false)];
         for (own, exact) in steps {
             let mut found: Vec<&Name> = Vec::new();

@@ -1,8 +1,8 @@
-//! What a mistyped word was meant to be.
+//! Suggestion for a mistyped word.
 
-/// The nearest of `known` to a word, if it is near enough to be meant. Case does not matter.
+/// The most similar word in `known`, if it is similar enough. Ignores case.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    // Nothing is learnt from comparing long words, and it takes time.
+    // Long words are not typing mistakes, and the comparison would be slow.
     if word.len() > 64 {
         return None;
     }
@@ -11,7 +11,7 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, other)| other)
 }
 
-/// One slip of the fingers counts more than any likeness: short words have little of it.
+/// Similarity. A single typing mistake adds 1: short words have a low similarity otherwise.
 fn likeness(word: &str, other: &str) -> f64 {
     let slip = if word.len() > 2 && strsim::osa_distance(word, other) == 1 { 1.0 } else { 0.0 };
     strsim::jaro_winkler(word, other) + slip

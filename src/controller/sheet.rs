@@ -1,9 +1,9 @@
-//! Tables that people keep in a spreadsheet: a line of column names, and a row a line, with commas, semicolons or tabs
-//! between the cells (CSV).
+//! CSV tables for spreadsheets: a header line, then one line per row, with commas, semicolons or tabs between the
+//! cells.
 //!
-//! Columns come in any order, and cells may be quoted. Columns whose name begins with `comment` are a person's own.
-//! Where the cells are not parted by commas, numbers may have a decimal comma; but not some this and some that, as a point
-//! could then stand between thousands.
+//! Columns can be in any order, and cells can be quoted. Columns whose name begins with `comment` are ignored. If the
+//! separator is not a comma, numbers may have a decimal comma. Points and commas must not be mixed: a point could
+//! then be a thousands separator.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -12,10 +12,10 @@ use crate::findings::{Findings, SourceLocation};
 use crate::nearest::nearest;
 use crate::source;
 
-/// How columns that a person has for himself begin.
+/// Prefix of ignored columns.
 pub const COMMENT: &str = "comment";
 
-/// What parts cells and decimals.
+/// Separator and decimal mark.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dialect {
     separator: char,
@@ -23,12 +23,11 @@ pub struct Dialect {
 }
 
 impl Dialect {
-    /// Commas between cells, points in numbers.
+    /// Comma separator, decimal point.
     pub const COMMAS: Self = Self { separator: ',', decimal_comma: false };
-    /// Semicolons between cells, commas in numbers.
+    /// Semicolon separator, decimal comma.
     pub const DECIMAL_COMMA: Self = Self { separator: ';', decimal_comma: true };
 
-    /// A row.
     fn row<'c>(self, cells: impl IntoIterator<Item = Cow<'c, str>>) -> String {
         let mut text = String::new();
         for (index, cell) in cells.into_iter().enumerate() {
@@ -45,7 +44,6 @@ impl Dialect {
         text
     }
 
-    /// A cell of a column.
     fn cell<'c>(self, column: &Column, text: &'c str) -> Cow<'c, str> {
         if column.is_number && self.decimal_comma {
             Cow::Owned(text.replace('.', ","))
@@ -62,23 +60,23 @@ impl Dialect {
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// Whether its cells are numbers, with a point.
+    /// Whether the cells are numbers, with a decimal point.
     pub is_number: bool,
 }
 
 impl Column {
-    /// Of numbers.
+    /// A column of numbers.
     pub fn number(name: impl Into<String>) -> Self {
         Self { name: name.into(), is_number: true }
     }
 
-    /// Of texts.
+    /// A column of text.
     pub fn text(name: impl Into<String>) -> Self {
         Self { name: name.into(), is_number: false }
     }
 }
 
-/// Columns and rows as a text.
+/// Formats a table.
 pub fn write(dialect: Dialect, columns: &[Column], rows: &[Vec<String>]) -> String {
     let mut text = dialect.row(columns.iter().map(|column| Cow::Borrowed(&*column.name))) + "\n";
     for row in rows {
@@ -88,7 +86,7 @@ pub fn write(dialect: Dialect, columns: &[Column], rows: &[Vec<String>]) -> Stri
     text
 }
 
-/// A table that was read.
+/// A parsed table.
 #[derive(Debug)]
 pub struct Sheet {
     dialect: Dialect,
@@ -99,7 +97,7 @@ pub struct Sheet {
 /// A row of a table.
 #[derive(Debug)]
 pub struct Row {
-    /// Its line, from 1.
+    /// Line number, from 1.
     pub line: usize,
     cells: Vec<Cell>,
 }
@@ -107,23 +105,23 @@ pub struct Row {
 #[derive(Debug)]
 struct Cell {
     text: String,
-    /// Where it begins, in characters from 1.
+    /// Start, in characters from 1.
     column: usize,
 }
 
 impl Row {
-    /// The place of a cell; that of the row behind the last one.
+    /// Position of a cell; after the last cell, the start of the row.
     pub fn place(&self, index: usize) -> SourceLocation {
         SourceLocation { line: self.line, column: self.cells.get(index).map_or(1, |cell| cell.column) }
     }
 
-    /// What a cell says, without blanks around it.
+    /// Text of a cell without surrounding blanks.
     pub fn text(&self, index: usize) -> &str {
         self.whole(index).trim()
     }
 
-    /// What a cell says, to the last blank if it is quoted; the apostrophe is no part of it that keeps a spreadsheet from
-    /// computing it.
+    /// Text of a cell with the blanks inside quotes, and without the apostrophe that protects text from being computed
+    /// as a formula.
     pub fn string(&self, index: usize) -> &str {
         let text = self.whole(index);
         text.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(text)
@@ -135,7 +133,7 @@ impl Row {
 }
 
 impl Sheet {
-    /// Reads a table; nothing where it is none, which the findings tell.
+    /// Parses a table; `None` after an error, which is added to the findings.
     pub fn read(bytes: &[u8], expected: &str, findings: &mut Findings) -> Option<Self> {
         let before = findings.errors();
         let lines = source::lines(bytes, findings);
@@ -156,7 +154,7 @@ impl Sheet {
                 break;
             }
             let Some(row) = row(line, number, separator, findings) else { continue };
-            // Spreadsheets leave lines of nothing but commas.
+            // Spreadsheets leave lines of separators only.
             if row.cells.iter().all(|cell| cell.text.trim().is_empty()) {
                 continue;
             }
@@ -168,13 +166,13 @@ impl Sheet {
             }
         }
         let mut sheet = Self { dialect: Dialect { separator, decimal_comma: false }, head, rows };
-        // Empty ones are usual in files with semicolons: those have decimal commas wherever nothing says otherwise.
+        // Empty cells are common in files with semicolons: without other evidence these have decimal commas.
         sheet.dialect.decimal_comma = separator == ';' && !sheet.own_cells().any(|text| is_decimal(text, '.'))
             || separator != ',' && sheet.own_cells().any(|text| is_decimal(text, ','));
         Some(sheet)
     }
 
-    /// What stands in columns that are not comments.
+    /// Text of the cells that are not comments.
     fn own_cells(&self) -> impl Iterator<Item = &str> {
         let of = |row| {
             let cells = self.head.cells.iter().zip(row).filter(|(head, _)| !is_comment(&head.text));
@@ -188,17 +186,17 @@ impl Sheet {
         &self.rows
     }
 
-    /// The names of the columns.
+    /// Names of the columns.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.head.cells.iter().map(|cell| cell.text.trim())
     }
 
-    /// Where a column is, whatever others there are.
+    /// Index of a column.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.head.cells.iter().position(|cell| cell.text.trim().eq_ignore_ascii_case(name))
     }
 
-    /// Where each of these columns is, if it is there. Others but comments are mistakes.
+    /// Index of each of these columns, if present. Any other column except a comment is an error.
     pub fn columns<S: AsRef<str>>(&self, known: &[S], expected: &str, findings: &mut Findings) -> Vec<Option<usize>> {
         let mut places = vec![None; known.len()];
         for (at, Cell { text: name, .. }) in self.head.cells.iter().enumerate() {
@@ -221,13 +219,13 @@ impl Sheet {
         places
     }
 
-    /// The place behind the column names.
+    /// Position after the column names.
     pub fn end_of_head(&self) -> SourceLocation {
         let behind = |cell: &Cell| cell.column + cell.text.chars().count();
         SourceLocation { line: self.head.line, column: self.head.cells.last().map_or(1, behind) }
     }
 
-    /// A cell as a number with a point, where it is one.
+    /// A cell as a number with a decimal point.
     pub fn number<'r>(&self, row: &'r Row, index: usize) -> Result<Cow<'r, str>, &'static str> {
         let text = row.text(index);
         match (self.dialect, text.contains(',')) {
@@ -241,9 +239,8 @@ impl Sheet {
     }
 }
 
-/// A table with new values in its rows: its comments, the order of its rows and columns, and rows without a new value stay
-/// as they are, byte for byte. Rows that it does not have come behind them. `columns` begin with what tells a row, and
-/// `canonical` gives that one spelling.
+/// Updates the rows of a table. Comments, order, and rows without a new value stay unchanged, byte for byte. New rows
+/// are appended. The first of `columns` identifies a row; `canonical` normalizes that key.
 pub fn update(
     bytes: &[u8],
     columns: &[Column],
@@ -266,7 +263,7 @@ pub fn update(
         let new = |at: usize| {
             let index = places.iter().position(|place| *place == Some(at))?;
             let (column, cell) = (columns.get(index)?, row.get(index)?);
-            // No comment takes one away that a person wrote.
+            // An empty comment does not replace one that the user wrote.
             let is_none = cell.is_empty() && is_comment(&column.name);
             (!is_none).then(|| sheet.dialect.cell(column, cell).into_owned())
         };
@@ -294,7 +291,7 @@ pub fn update(
     Some(updated)
 }
 
-/// Whether a spreadsheet would compute a text, or take its apostrophe away.
+/// Whether a spreadsheet would compute the text as a formula, or remove its apostrophe.
 fn is_formula(text: &str) -> bool {
     let rest = text.trim_start_matches('\'');
     rest.starts_with(['=', '+', '-', '@']) && (rest.len() < text.len() || text.parse::<f64>().is_err())
@@ -304,20 +301,20 @@ fn is_comment(name: &str) -> bool {
     name.trim().get(..COMMENT.len()).is_some_and(|start| start.eq_ignore_ascii_case(COMMENT))
 }
 
-/// What stands between the column names.
+/// The most frequent separator of the header line.
 fn separator(line: &str) -> char {
     let count = |separator| line.matches(separator).count();
     [',', ';', '\t'].into_iter().rev().max_by_key(|separator| count(*separator)).unwrap_or(',')
 }
 
-/// Whether a text is a number with this between its whole and its decimals.
+/// Whether a text is a number with this decimal mark.
 fn is_decimal(text: &str, mark: char) -> bool {
     let digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let Some((whole, decimals)) = text.split_once(mark) else { return false };
     digits(whole.trim_start_matches(['+', '-'])) && !decimals.is_empty() && digits(decimals)
 }
 
-/// The cells of a line; a quote that is not closed, or not at the edge of a cell, is told.
+/// The cells of a line. An unclosed or misplaced quote is added to the findings.
 fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> Option<Row> {
     let column = |at: usize| line.get(..at).map_or(1, |before| before.chars().count() + 1);
     let told = cells(line, separator).map_err(|at| {
@@ -327,7 +324,7 @@ fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> O
     Some(Row { line: number, cells: cells.collect() })
 }
 
-/// The cells of a line, each with the byte it begins at; where a quote is wrong, its place.
+/// The cells of a line with their byte offsets, or the offset of a wrong quote.
 fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usize> {
     let trimmed =
         |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();
@@ -356,7 +353,7 @@ fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usiz
     }
 }
 
-/// The text of a quoted cell, and where it ends.
+/// The text of a quoted cell, and its end.
 fn quoted(line: &str, start: usize) -> Result<(String, usize), usize> {
     let mut text = String::new();
     let mut at = start + 1;
@@ -406,7 +403,7 @@ mod tests {
             "comment_2;y_mm;x_mm;point\n\"3,14; \"\"x\"\"\";20;-1,5;1\n",
         ] {
             let mut rows = read(text);
-            // In the order of the columns that were asked for.
+            // Cells are in the order of the requested columns.
             rows.iter_mut().flatten().for_each(|row| assert_eq!(row.len(), 3, "{text}"));
             assert_eq!(rows, expected, "{text}");
         }

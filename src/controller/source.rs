@@ -1,4 +1,4 @@
-//! The lines of a file: its bytes as text, and what is wrong with them.
+//! Lines of a text file, and encoding errors.
 
 use std::borrow::Cow;
 
@@ -6,7 +6,8 @@ use crate::findings::{Findings, SourceLocation};
 
 const START: SourceLocation = SourceLocation { line: 1, column: 1 };
 
-/// The lines of a text without their ends. Where it is not UTF-8, the replacement character stands; that was told then.
+/// Splits a text into lines without their ends. Invalid UTF-8 becomes the replacement character and adds an error to
+/// the findings.
 pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
     if text.starts_with(&[0xFF, 0xFE]) || text.starts_with(&[0xFE, 0xFF]) {
         findings.error(START, "the file is UTF-16", Some("save it as UTF-8".to_owned()));
@@ -58,7 +59,7 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
     lines
 }
 
-/// The place behind the front of a line.
+/// Position after the first part of a line.
 fn place(line: usize, front: &[u8]) -> SourceLocation {
     SourceLocation { line, column: String::from_utf8_lossy(front).chars().count() + 1 }
 }

@@ -1,22 +1,20 @@
-//! What tests of all families share: moments, bytes, and steps of sessions in virtual time.
+//! Test helpers of all families: times, bytes, and steps of sessions in virtual time.
 
 use std::fmt::Debug;
 use std::time::Duration;
 
 use crate::{Now, Session, Step};
 
-/// A moment.
 pub(crate) const fn ms(millis: u64) -> Now {
     Duration::from_millis(millis)
 }
 
-/// Bytes from hexadecimal digits.
 #[track_caller]
 pub(crate) fn hex(digits: &str) -> Vec<u8> {
     crate::text::unhex(digits).unwrap_or_else(|| panic!("no bytes: {digits}"))
 }
 
-/// The frame a session sends now.
+/// The frame that a session sends now.
 #[track_caller]
 pub(crate) fn sent<S: Session<Outcome: Debug>>(session: &mut S, now: Now) -> Vec<u8> {
     match session.poll(now) {
@@ -25,7 +23,7 @@ pub(crate) fn sent<S: Session<Outcome: Debug>>(session: &mut S, now: Now) -> Vec
     }
 }
 
-/// How a session has ended by now.
+/// The outcome of a session that has ended.
 #[track_caller]
 pub(crate) fn done<S: Session<Outcome: Debug>>(session: &mut S, now: Now) -> S::Outcome {
     match session.poll(now) {
@@ -34,7 +32,7 @@ pub(crate) fn done<S: Session<Outcome: Debug>>(session: &mut S, now: Now) -> S::
     }
 }
 
-/// Until when a session waits.
+/// The deadline of a waiting session.
 #[track_caller]
 pub(crate) fn waits<S: Session<Outcome: Debug>>(session: &mut S, now: Now) -> Now {
     match session.poll(now) {

@@ -1,9 +1,9 @@
-//! Text as controllers store it: one encoding a robot, chosen by the language of its pendant.
+//! Text encodings of controllers. A robot has one encoding, which depends on the language of its pendant.
 //!
-//! Decoding never fails: a byte that is no text is shown as `\xNN`. Encoding never guesses: a character that the
-//! encoding lacks is an error that names it. ASCII is the same in every encoding here, 0x5C (backslash) and 0x7E (tilde)
-//! included. Names of files and jobs go through [`Encoding::name`], which keeps the bytes where the text alone would not
-//! lead back to them.
+//! Decoding never fails: an invalid byte becomes `\xNN`. Encoding never guesses: a character that is missing in the
+//! encoding is an error that names it. ASCII is the same in every encoding here, including 0x5C (backslash) and 0x7E
+//! (tilde). [`Encoding::name`] is for names of files and jobs: it keeps the bytes if the text does not encode to
+//! them.
 
 use std::fmt::{self, Write as _};
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use std::str::FromStr;
 use encoding_rs as rs;
 use thiserror::Error;
 
-/// A character encoding. The default, `Shift_JIS`, shows Japanese controllers right and leaves ASCII as it is.
+/// A character encoding. The default, `Shift_JIS`, suits Japanese controllers and leaves ASCII unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Encoding {
     /// Japanese, with the extensions of Windows code page 932.
@@ -25,7 +25,7 @@ pub enum Encoding {
     Big5,
     /// Korean.
     EucKr,
-    /// Western Europe, ISO 8859-1: byte and code point are the same number.
+    /// Western Europe, ISO 8859-1: each byte is a code point.
     Latin1,
     /// Western Europe, Windows.
     Windows1252,
@@ -37,7 +37,7 @@ pub enum Encoding {
     Utf8,
 }
 
-/// Encoding, the name it is shown by, other names it is known by. Names are compared without case, `-`, `_` and blanks.
+/// Encodings with their names and aliases. Comparison ignores case, `-`, `_` and blanks.
 const NAMES: [(Encoding, &str, &[&str]); 10] = [
     (Encoding::ShiftJis, "shift_jis", &["sjis", "cp932", "ms932", "windows-31j", "ms_kanji"]),
     (Encoding::EucJp, "euc-jp", &["ujis"]),
@@ -51,66 +51,66 @@ const NAMES: [(Encoding, &str, &[&str]); 10] = [
     (Encoding::Utf8, "utf-8", &["unicode"]),
 ];
 
-/// A name that is no encoding.
+/// An unknown encoding name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("unknown text encoding '{name}'; there are {}", Encoding::names().collect::<Vec<_>>().join(", "))]
 pub struct UnknownEncoding {
-    /// What was given.
+    /// The unknown name.
     pub name: String,
 }
 
-/// A text that cannot be sent in an encoding.
+/// A text that cannot be encoded.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum EncodeError {
-    /// The encoding has no such character.
+    /// A character that is missing in the encoding.
     #[error("'{}' (U+{:04X}), character {position} of the text, does not exist in {encoding}", .character.escape_debug(), u32::from(*.character))]
     Character {
         /// The character.
         character: char,
-        /// Its place, counted in characters from 1.
+        /// Position in characters, from 1.
         position: usize,
         /// The encoding that lacks it.
         encoding: Encoding,
     },
-    /// A NUL, which ends a text on the controller.
+    /// A NUL, which would end the text on the controller.
     #[error("character {position} of the text is a NUL, which would cut the text there")]
     Nul {
-        /// Its place, counted in characters from 1.
+        /// Position in characters, from 1.
         position: usize,
     },
-    /// Longer than its field.
+    /// The text is longer than its field.
     #[error("the text takes {len} bytes in {encoding}, but there is room for {max}")]
     TooLong {
-        /// Bytes it takes.
+        /// Length in bytes.
         len: usize,
-        /// Bytes there are.
+        /// Size of the field in bytes.
         max: usize,
         /// The encoding it was measured in.
         encoding: Encoding,
     },
 }
 
-/// A name as a controller stores it, in text, and in bytes where the text does not lead back to them.
+/// A name of a controller: text, and bytes if the text does not encode to them.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Name {
-    /// The name to show. Control characters are still in it; the output neutralises them.
+    /// Text of the name. It may contain control characters; the output escapes them.
     pub text: String,
-    /// The bytes in hexadecimal, if encoding [`text`](Self::text) gives other bytes than the ones received.
+    /// The bytes in hexadecimal, if [`text`](Self::text) encodes to other bytes.
     pub hex: Option<String>,
 }
 
 impl Encoding {
-    /// The names that help texts and errors list.
+    /// Names for help texts and errors.
     pub fn names() -> impl Iterator<Item = &'static str> {
         NAMES.into_iter().map(|(_, name, _)| name)
     }
 
-    /// The name in settings, inventories and JSON.
+    /// Name in settings, inventories and JSON.
     pub fn label(self) -> &'static str {
         NAMES.into_iter().find(|(encoding, ..)| *encoding == self).map_or("", |(_, name, _)| name)
     }
 
-    /// Bytes as text. A byte that belongs to no character becomes `\xNN`; NULs stay, see [`until_nul`].
+    /// Decodes bytes. An invalid byte becomes `\xNN`; NULs stay, see [`until_nul`].
     pub fn decode(self, bytes: &[u8]) -> String {
         let Some(table) = self.table() else {
             return bytes.iter().copied().map(char::from).collect();
@@ -120,7 +120,7 @@ impl Encoding {
         let mut read = 0;
         loop {
             let rest = bytes.get(read..).unwrap_or_default();
-            // Room for the worst case, so that one call decodes up to the next malformed byte.
+            // Worst-case capacity, so that one call decodes up to the next invalid byte.
             text.reserve(decoder.max_utf8_buffer_length_without_replacement(rest.len()).unwrap_or(0));
             let (result, used) = decoder.decode_to_string_without_replacement(rest, &mut text, true);
             read += used;
@@ -138,7 +138,7 @@ impl Encoding {
         }
     }
 
-    /// Text as bytes, without a terminating NUL.
+    /// Encodes text, without a terminating NUL.
     pub fn encode(self, text: &str) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::with_capacity(text.len());
         for (index, character) in text.chars().enumerate() {
@@ -148,7 +148,7 @@ impl Encoding {
         Ok(bytes)
     }
 
-    /// Text as bytes for a field of `max` bytes that a NUL ends early.
+    /// Encodes text for a NUL-terminated field of `max` bytes.
     pub fn encode_within(self, text: &str, max: usize) -> Result<Vec<u8>, EncodeError> {
         if let Some(index) = text.chars().position(|c| c == '\0') {
             return Err(EncodeError::Nul { position: index + 1 });
@@ -160,12 +160,12 @@ impl Encoding {
         Ok(bytes)
     }
 
-    /// Whether a text can be sent in a field of `max` bytes.
+    /// Whether a text fits a field of `max` bytes.
     pub fn fits(self, text: &str, max: usize) -> bool {
         self.encode_within(text, max).is_ok()
     }
 
-    /// The name that bytes of a controller stand for.
+    /// Decodes a name.
     pub fn name(self, bytes: &[u8]) -> Name {
         let text = self.decode(bytes);
         let exact = self.encode(&text).is_ok_and(|back| back == bytes);
@@ -173,8 +173,7 @@ impl Encoding {
         Name { text, hex }
     }
 
-    /// The bytes of a name as it was shown: `\x80` to `\xff` stand for bytes that are no text, as [`decode`](Self::decode)
-    /// writes them; everything else is encoded.
+    /// Encodes a name as displayed. `\x80` to `\xff` are single bytes, as [`decode`](Self::decode) writes them.
     pub fn encode_name(self, shown: &str) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::with_capacity(shown.len());
         let mut rest = shown;
@@ -194,8 +193,8 @@ impl Encoding {
         Ok(bytes)
     }
 
-    /// Appends the bytes of a character, if it has bytes that lead back to it. Tables that send a look-alike instead
-    /// (the yen sign as a backslash) would damage names.
+    /// Appends the bytes of a character if they decode to it. Some tables send a similar character (a backslash for the
+    /// yen sign), which would damage names.
     fn push(self, character: char, bytes: &mut Vec<u8>) -> Option<()> {
         if character.is_ascii() {
             bytes.push(u8::try_from(character).ok()?);
@@ -215,7 +214,7 @@ impl Encoding {
         Some(())
     }
 
-    /// The conversion table; none for ISO 8859-1, which needs none (the web's "latin1" is Windows-1252).
+    /// The conversion table; `None` for ISO 8859-1 (the "latin1" of the web is Windows-1252).
     fn table(self) -> Option<&'static rs::Encoding> {
         match self {
             Self::ShiftJis => Some(rs::SHIFT_JIS),
@@ -251,20 +250,20 @@ impl fmt::Display for Encoding {
     }
 }
 
-/// The bytes before the first NUL, or all of them: text fields may fill their width.
+/// The bytes before the first NUL, or all bytes: a text may fill its field.
 pub fn until_nul(bytes: &[u8]) -> &[u8] {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     bytes.get(..end).unwrap_or(bytes)
 }
 
-/// Bytes of an escape such as `\x80`.
+/// Length of an escape such as `\x80`.
 const ESCAPE_LEN: usize = 4;
 
 fn push_escaped(text: &mut String, byte: u8) {
     write!(text, "\\x{byte:02x}").expect("writing to a String does not fail");
 }
 
-/// The byte that an escape at the start of `text` stands for. ASCII is never escaped, so its codes are no escapes.
+/// The byte of an escape at the start of `text`. ASCII is never escaped.
 fn escaped(text: &str) -> Option<u8> {
     let digits = text.strip_prefix("\\x")?.get(..2)?;
     let lower_hex = digits.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'));
@@ -272,7 +271,7 @@ fn escaped(text: &str) -> Option<u8> {
     (lower_hex && byte >= 0x80).then_some(byte)
 }
 
-/// Bytes as lower-case hexadecimal digits.
+/// Lower-case hexadecimal digits.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::with_capacity(bytes.len() * 2), |mut text, byte| {
         write!(text, "{byte:02x}").expect("writing to a String does not fail");
@@ -280,14 +279,14 @@ pub fn hex(bytes: &[u8]) -> String {
     })
 }
 
-/// Bytes from pairs of hexadecimal digits of either case.
+/// Parses pairs of hexadecimal digits, in any case.
 pub fn unhex(digits: &str) -> Option<Vec<u8>> {
     let (pairs, []) = digits.as_bytes().as_chunks::<2>() else { return None };
     let digit = |byte: u8| char::from(byte).to_digit(16).and_then(|digit| u8::try_from(digit).ok());
     pairs.iter().map(|[high, low]| Some(digit(*high)? << 4 | digit(*low)?)).collect()
 }
 
-/// An encoding's name as names are compared.
+/// Normalized name for comparison.
 fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
@@ -409,7 +408,7 @@ mod tests {
         assert_eq!(Encoding::ShiftJis.name(b"\x82\xC4.JBI"), Name { text: "て.JBI".into(), hex: None });
         let odd = Encoding::ShiftJis.name(b"\x85\x41.JBI");
         assert_eq!((odd.text.as_str(), odd.hex.as_deref()), ("\\x85A.JBI", Some("85412e4a4249")));
-        // Two places of the same character in Windows' table: only one of them is what the text encodes to.
+        // The Windows table has this character twice, and the text encodes to only one of the codes.
         let twin = Encoding::ShiftJis.name(b"\x87\x90");
         assert_eq!((twin.text.as_str(), twin.hex.as_deref()), ("≒", Some("8790")));
     }
@@ -444,7 +443,7 @@ mod tests {
 
         #[test]
         fn utf8_shows_every_byte(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
-            // A literal escape in the name would be taken for the byte; keep backslashes out.
+            // A literal escape in the name would count as a byte, so the test uses no backslashes.
             prop_assume!(!bytes.contains(&b'\\'));
             prop_assert_eq!(Encoding::Utf8.encode_name(&Encoding::Utf8.decode(&bytes)).unwrap(), bytes);
         }

@@ -1,5 +1,5 @@
-//! Numbers, ranges and settings as people type them: `0x1F`, `1..5`, `B0=7`, `on`. All families and commands read them
-//! here, and object in the same words.
+//! Parser of user input: `0x1F`, `1..5`, `B0=7`, `on`. All families and commands use it, with the same error
+//! messages.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -8,11 +8,11 @@ use std::ops::RangeInclusive;
 
 use thiserror::Error;
 
-/// A range whose last end comes first.
+/// A range with its ends in the wrong order.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the range ends before it begins; did you mean {meant}?")]
 pub struct RangeError {
-    /// The same the other way round.
+    /// The range in the right order.
     pub meant: String,
 }
 
@@ -22,7 +22,7 @@ impl From<RangeError> for String {
     }
 }
 
-/// A whole number: decimal digits, or hexadecimal ones after `0x`, with a sign before them or without.
+/// Parses an integer: decimal, or hexadecimal after `0x`, with an optional sign.
 pub fn integer(text: &str) -> Option<i64> {
     let (is_negative, digits) = match text.as_bytes() {
         [b'-', ..] => (true, &text[1..]),
@@ -40,13 +40,13 @@ pub fn integer(text: &str) -> Option<i64> {
     Some(if is_negative { -magnitude } else { magnitude })
 }
 
-/// The same without a sign, as far as the type holds it.
+/// Parses an integer without a sign; `None` if it does not fit the type.
 pub fn unsigned<T: TryFrom<i64>>(text: &str) -> Option<T> {
     let starts_with_digit = text.starts_with(|first: char| first.is_ascii_digit());
     integer(text).filter(|_| starts_with_digit).and_then(|number| T::try_from(number).ok())
 }
 
-/// A code in hexadecimal digits, after `0x` or without.
+/// Parses a hexadecimal code, with or without `0x`.
 pub fn code<T: TryFrom<u32>>(text: &str) -> Option<T> {
     let digits = after_0x(text).unwrap_or(text);
     let is_hex = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
@@ -57,10 +57,10 @@ fn after_0x(text: &str) -> Option<&str> {
     text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"))
 }
 
-/// One of a kind, or a range with both its ends: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
+/// Parses one item or a range with both ends included: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
 ///
 /// # Errors
-/// What `read` says of an end, or that the last one comes first.
+/// An error of `read`, or ends in the wrong order.
 pub fn range<T: PartialOrd, E: From<RangeError>>(
     text: &str,
     read: impl Fn(&str) -> Result<T, E>,
@@ -68,7 +68,7 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
     let separators = ["..", "-"];
     let ends = separators.into_iter().find_map(|separator| Some((separator, text.split_once(separator)?)));
     let Some((separator, (first_text, last_text))) = ends else { return Ok(read(text)?..=read(text)?) };
-    // The last end may leave out what both begin with.
+    // The second end may omit the common prefix.
     let begins = if last_text.starts_with(|first: char| first.is_ascii_digit()) { letters(first_text) } else { "" };
     let last_text = format!("{begins}{last_text}");
     let (first, last) = (read(first_text)?, read(&last_text)?);
@@ -78,10 +78,11 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
     Ok(first..=last)
 }
 
-/// The same of names that end in a number, `DO2` or `DO2..DO5`: all that `read` knows between two of them.
+/// Parses a name that ends in a number, or a range of such names: `DO2`, `DO2..DO5`. A range contains only names that
+/// `read` accepts.
 ///
 /// # Errors
-/// What `read` says of the whole, or that the last one comes first.
+/// An error of `read` for the whole text, or ends in the wrong order.
 pub fn series<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
     let wrong = match read(text) {
         Ok(one) => return Ok(vec![one]),
@@ -97,18 +98,18 @@ pub fn series<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result
     Ok(numbers.filter_map(|number| read(&format!("{begins}{number}")).ok()).collect())
 }
 
-/// What a name begins with, before its number.
+/// Letters before the number of a name.
 fn letters(name: &str) -> &str {
     &name[..name.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(name.len())]
 }
 
-/// What was given, each once and in that order.
+/// Removes duplicates and keeps the order.
 pub fn once<T: Copy + Eq + Hash>(given: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut seen = HashSet::new();
     given.into_iter().filter(|item| seen.insert(*item)).collect()
 }
 
-/// Numbers in the order given, those that follow each other as a range: `7, 2..5`.
+/// Formats numbers, with ranges for consecutive ones: `7, 2..5`.
 pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> String {
     let mut runs: Vec<(T, T)> = Vec::new();
     for &number in numbers {
@@ -123,18 +124,18 @@ pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> St
     runs.iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
-/// A name and its value, as in `B0=7`.
+/// Splits a name and its value: `B0=7`.
 ///
 /// # Errors
-/// Says that `name` and `value` are expected, and shows the example.
+/// The message names both parts and shows the example.
 pub fn setting<'t>(text: &'t str, name: &str, value: &str, example: &str) -> Result<(&'t str, &'t str), String> {
     text.split_once('=').ok_or_else(|| format!("{name}, '=' and {value} are expected, as in {example}"))
 }
 
-/// The state of a signal: `on` or `1`, `off` or `0`.
+/// Parses the state of a signal: `on` or `1`, `off` or `0`.
 ///
 /// # Errors
-/// Anything else.
+/// Any other text.
 pub fn state(text: &str) -> Result<bool, String> {
     match text {
         "on" | "1" => Ok(true),

@@ -1,7 +1,7 @@
-//! Exact conversion between decimal text and the integers on the wire.
+//! Exact conversion between decimal text and protocol integers.
 //!
-//! No floating point is involved: what is typed is what is sent, or it is refused. The constants are the steps of the
-//! Yaskawa controllers (FS and DX 3.3.39); other families define theirs where they differ.
+//! It uses no floating point: a value is sent exactly as typed, or rejected. The constants are the resolutions of
+//! Yaskawa controllers (FS and DX 3.3.39); other families define their own.
 
 use std::fmt;
 
@@ -9,70 +9,69 @@ use thiserror::Error;
 
 use super::typed::integer;
 
-/// A decimal unit: the symbol, and how many digits after the point one step of the wire is.
+/// A decimal unit: symbol, and number of decimals of a protocol step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Unit {
-    /// As shown to people.
+    /// Symbol for display.
     pub symbol: &'static str,
-    /// Digits after the decimal point; the wire integer is the value times ten to this power.
+    /// Digits after the decimal point. The protocol integer is the value times ten to this power.
     pub decimals: u8,
 }
 
-/// Millimetres, in steps of 0.001.
+/// Millimetres, resolution 0.001.
 pub const MILLIMETRE: Unit = Unit { symbol: "mm", decimals: 3 };
-/// Degrees, in steps of 0.0001.
+/// Degrees, resolution 0.0001.
 pub const DEGREE: Unit = Unit { symbol: "deg", decimals: 4 };
-/// Percent, in steps of 0.01.
+/// Percent, resolution 0.01.
 pub const PERCENT: Unit = Unit { symbol: "%", decimals: 2 };
-/// Millimetres a second, in steps of 0.1.
+/// Millimetres per second, resolution 0.1.
 pub const MILLIMETRE_PER_SECOND: Unit = Unit { symbol: "mm/s", decimals: 1 };
-/// Degrees a second, in steps of 0.1.
+/// Degrees per second, resolution 0.1.
 pub const DEGREE_PER_SECOND: Unit = Unit { symbol: "deg/s", decimals: 1 };
-/// Encoder pulses, whole.
+/// Encoder pulses.
 pub const PULSE: Unit = Unit { symbol: "pulses", decimals: 0 };
 
-/// A text that is no value of its unit.
+/// A text that is not a valid value of its unit.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum UnitError {
-    /// Not an optional sign, digits, and optionally a point with digits.
+    /// Not a number: optional sign, digits, optional point with digits.
     #[error("'{text}' is not a number{}", of_unit(symbol))]
     Malformed {
-        /// What was given.
+        /// The text.
         text: String,
-        /// The unit wanted.
+        /// Symbol of the unit.
         symbol: &'static str,
     },
-    /// More digits than the controller can take.
+    /// More decimals than the resolution.
     #[error("'{text}' has more than {decimals} digits after the point, the resolution{} here", of_unit(symbol))]
     TooFine {
-        /// What was given.
+        /// The text.
         text: String,
-        /// Digits allowed.
+        /// Allowed decimals.
         decimals: u8,
-        /// The unit wanted.
+        /// Symbol of the unit.
         symbol: &'static str,
     },
-    /// Does not fit 32 bits.
+    /// The value does not fit 32 bits.
     #[error("'{text}' {symbol} is out of range; {lowest} to {highest} fit")]
     Range {
-        /// What was given.
+        /// The text.
         text: String,
-        /// The unit wanted.
+        /// Symbol of the unit.
         symbol: &'static str,
-        /// Least value in this unit.
+        /// Minimum in this unit.
         lowest: String,
-        /// Greatest value in this unit.
+        /// Maximum in this unit.
         highest: String,
     },
 }
 
-/// What is counted, where it has a name.
 fn of_unit(symbol: &str) -> String {
     if symbol.is_empty() { String::new() } else { format!(" of {symbol}") }
 }
 
 impl Unit {
-    /// Reads decimal text into the integer of the wire: `"100.000"` mm is 100000.
+    /// Converts decimal text to the protocol integer: `"100.000"` mm is 100000.
     pub fn parse(self, text: &str) -> Result<i32, UnitError> {
         let malformed = || UnitError::Malformed { text: shorten(text), symbol: self.symbol };
         let (negative, digits) = match text.as_bytes() {
@@ -93,7 +92,7 @@ impl Unit {
         }
         let padding = usize::from(self.decimals) - fraction.len();
         let digits = whole.bytes().chain(fraction.bytes()).chain(std::iter::repeat_n(b'0', padding));
-        // Saturation stands for "out of range" below, so a thousand digits cannot overflow.
+        // Saturation means "out of range" below, so a thousand digits cannot overflow.
         let magnitude = digits.fold(0_i64, |sum, digit| sum.saturating_mul(10).saturating_add(i64::from(digit - b'0')));
         i32::try_from(if negative { -magnitude } else { magnitude }).map_err(|_| UnitError::Range {
             text: shorten(text),
@@ -103,7 +102,7 @@ impl Unit {
         })
     }
 
-    /// As [`Unit::parse`]; what is counted in whole steps, such as pulses, may be hexadecimal after `0x`.
+    /// [`Unit::parse`], which also accepts hexadecimal after `0x` for units without decimals, such as pulses.
     pub fn parse_steps(self, text: &str) -> Result<i32, UnitError> {
         let is_hex = text.trim_start_matches(['-', '+']).get(..2).is_some_and(|head| head.eq_ignore_ascii_case("0x"));
         let steps = integer(text).filter(|_| is_hex && self.decimals == 0);
@@ -113,18 +112,18 @@ impl Unit {
         }
     }
 
-    /// The value with all its digits: 100000 is `100.000` in millimetres.
+    /// Formats a protocol integer with all decimals: 100000 is `100.000` in millimetres.
     pub const fn show(self, value: i32) -> Quantity {
         Quantity { unit: self, value: value as i64 }
     }
 
-    /// Like [`Unit::show`], for words that carry no sign.
+    /// [`Unit::show`] for unsigned words.
     pub const fn show_unsigned(self, value: u32) -> Quantity {
         Quantity { unit: self, value: value as i64 }
     }
 }
 
-/// A wire integer with its unit; displays as plain decimal text without the symbol.
+/// A protocol integer with its unit; displays as decimal text without the symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantity {
     unit: Unit,
@@ -146,7 +145,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// Error messages stay on a line, however long the junk is.
+/// Limits the length of a text in an error message.
 fn shorten(text: &str) -> String {
     const LONGEST: usize = 40;
     if text.chars().count() <= LONGEST {

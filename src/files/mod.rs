@@ -1,6 +1,6 @@
-//! The one way to read local files: only regular ones, and never more than there is room for. A device or a pipe may be
-//! endless, or never say anything; a file that is too large is none that was meant. And the one way to replace them:
-//! from drafts beside them, which no run leaves behind for good.
+//! Safe access to local files. Reading accepts only regular files with a size limit, because a device or a pipe may
+//! be endless or block. Writing replaces a file from a temporary draft next to it; drafts of killed runs are removed
+//! later.
 
 mod program;
 
@@ -14,36 +14,36 @@ use tempfile::NamedTempFile;
 
 pub use self::program::this_program;
 
-/// Room for settings and lists that people write: inventories, files of commands, states of simulators.
+/// Size limit of user-written files: inventories, command files, simulator states.
 pub const SETTINGS: u64 = 16 << 20;
 
-/// Opens a regular file to be read.
+/// Opens a regular file for reading.
 ///
 /// # Errors
-/// `IsADirectory` for a folder, `Unsupported` for anything else that is no regular file.
+/// `IsADirectory` for a folder, `Unsupported` for another file that is not regular.
 pub fn open(path: &Path) -> io::Result<File> {
-    // Looked at before: to open a device or a pipe may already do something, or wait.
+    // Checked before, because opening a device or a pipe may have effects or block.
     regular(&path.metadata()?)?;
     let file = waiting_for_nobody(path)?;
-    // What is at a path may have become something else since.
+    // Checked again, because the path may lead to another file now.
     regular(&file.metadata()?)?;
     Ok(file)
 }
 
-/// An error of the system without its number, which tells a technician nothing.
+/// An error of the system without its number, which does not help a technician.
 pub fn plain(error: &io::Error) -> String {
     error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }
 
-/// The bytes of a regular file of at most so many.
+/// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`open`]; `FileTooLarge` if there are more.
+/// As [`open`]; `FileTooLarge` above the limit.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     bounded(open(path)?, most)
 }
 
-/// The text of a regular file of at most so many bytes.
+/// Reads a text file of at most `most` bytes.
 ///
 /// # Errors
 /// As [`read`]; `InvalidData` if it is not UTF-8.
@@ -51,11 +51,11 @@ pub fn text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "this is not UTF-8"))
 }
 
-/// What stands on stdin, whatever that is, up to so many bytes. It is kept: a command that asks is planned before it runs,
-/// and finds the same both times.
+/// Reads stdin, up to a limit. The bytes are kept, because a command that asks for confirmation is planned first and
+/// reads its input twice.
 ///
 /// # Errors
-/// `FileTooLarge` if there are more.
+/// `FileTooLarge` above the limit.
 pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
     static KEPT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -67,7 +67,7 @@ pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a regular file, or of stdin for `-`, up to so many.
+/// Reads a regular file, or stdin for `-`, up to a limit.
 ///
 /// # Errors
 /// As [`read`] and [`stdin`].
@@ -95,7 +95,7 @@ fn regular(found: &std::fs::Metadata) -> io::Result<()> {
     }
 }
 
-/// Opens a path; should it have become a pipe meanwhile, without waiting for its other end.
+/// Opens a path without blocking, in case it has become a pipe.
 #[cfg(unix)]
 fn waiting_for_nobody(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt as _;
@@ -109,16 +109,16 @@ fn waiting_for_nobody(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// What the names of drafts begin and end with.
+/// Prefix and suffix of draft names.
 const DRAFT: (&str, &str) = (".armctl-", ".part");
-/// How often a draft is begun anew that somebody swept away as it was made.
+/// Attempts to create a draft while another process removes it.
 const TRIES: u32 = 10;
 
-/// What is done before a draft is made.
+/// Called before the first draft is created.
 static BEFORE_DRAFT: OnceLock<fn()> = OnceLock::new();
 
-/// Has this done before every draft of this process: it sees to it that a signal does not end the process while a draft
-/// is there. The first one counts.
+/// Sets a function that runs before each draft of this process: it keeps a signal from ending the process while a
+/// draft exists. Only the first call counts.
 pub fn before_drafts(prepare: fn()) {
     BEFORE_DRAFT.get_or_init(|| prepare);
 }
@@ -126,15 +126,15 @@ pub fn before_drafts(prepare: fn()) {
 /// Drafts of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the drafts of this process that are there yet, which is about to end at once.
+/// Removes the drafts of this process, just before it exits.
 pub fn remove_drafts() {
     for path in DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-        // It may have become a file.
+        // The draft may have become a file already.
         let _ = std::fs::remove_file(path);
     }
 }
 
-/// A temporary file that later has the rights of any new file, not those of a secret. While it lives, it is locked.
+/// Creates a draft, locked while it exists. It has the permissions of a normal new file, not those of a secret one.
 pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
     static SWEPT: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
 
@@ -158,27 +158,26 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
         tries += 1;
         {
             let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
-            // The others have become files.
+            // The missing ones have become files.
             drafts.retain(|path| path.exists());
             drafts.push(file.path().to_owned());
         }
-        // Between its making and its locking, another run may have taken it for a dead one's.
+        // Before the lock, another run may have removed the draft as abandoned.
         if (lock(file.as_file()) && is_there(file.as_file())) || tries >= TRIES {
             return Ok(file);
         }
     }
 }
 
-/// Removes the drafts of runs that were killed, those that nobody has locked. Returns how many were removed, and how many
-/// could not be.
+/// Removes the drafts of killed runs: those that no process has locked. Returns how many were removed, and how many
+/// could not be removed.
 pub fn sweep(folder: &Path) -> (usize, usize) {
     let drafts = abandoned_drafts(folder);
-    // What cannot be removed is in nobody's way.
+    // A draft that cannot be removed does no harm.
     let removed = drafts.iter().filter(|path| std::fs::remove_file(path).is_ok()).count();
     (removed, drafts.len() - removed)
 }
 
-/// The drafts of runs that were killed: those that nobody has locked.
 fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let drafts = entries.map(|entry| entry.path()).filter(|path| {
@@ -192,8 +191,8 @@ fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     drafts.filter(is_dead).collect()
 }
 
-/// Replaces the content of a file, or makes it with its folder: what is there keeps its rights, and a link that leads to
-/// it stays one.
+/// Replaces the content of a file, or creates it with its folder. An existing file keeps its permissions, and a
+/// symbolic link stays one.
 pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = folder_of(&path);
@@ -208,7 +207,7 @@ pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// The folder of a path, `.` for a bare name.
+/// The folder of a path; `.` for a bare name.
 pub fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
@@ -216,14 +215,14 @@ pub fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// What one process at a time does with a file, from reading it to replacing it; until dropped.
+/// Exclusive access to a file, from reading to replacing it; released when dropped.
 #[derive(Debug)]
 pub struct Turn {
     _folder: Option<File>,
 }
 
-/// Waits for this process's turn with a file. The folder is locked that the file is in, so that nothing lies about
-/// afterwards; where that cannot be, as on some network drives, everybody goes on at once.
+/// Waits for exclusive access to a file. Locks its folder, so that no lock file remains. If the folder cannot be
+/// locked, as on some network drives, access is not exclusive.
 pub fn turn(path: &Path) -> io::Result<Turn> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = folder_of(&path);
@@ -243,16 +242,16 @@ fn locked_folder(_: &Path) -> Option<File> {
     None
 }
 
-/// A folder that is this process's, until dropped.
+/// Exclusive use of a folder; released when dropped.
 #[derive(Debug)]
 pub struct Claim {
     _folder: Option<File>,
 }
 
-/// Takes a folder for this process alone. Where folders cannot be locked, as on some network drives, everybody gets it.
+/// Locks a folder for this process. If folders cannot be locked, as on some network drives, every process gets it.
 ///
 /// # Errors
-/// [`ErrorKind::WouldBlock`] if another process has it.
+/// [`ErrorKind::WouldBlock`] if another process holds the lock.
 #[cfg(unix)]
 pub fn claim(folder: &Path) -> io::Result<Claim> {
     let file = File::open(folder)?;
@@ -263,16 +262,16 @@ pub fn claim(folder: &Path) -> io::Result<Claim> {
     }
 }
 
-/// Takes a folder for this process alone: here everybody gets it.
+/// Without folder locks on this system, every process gets the folder.
 ///
 /// # Errors
-/// If it is not there.
+/// The folder does not exist.
 #[cfg(not(unix))]
 pub fn claim(folder: &Path) -> io::Result<Claim> {
     folder.metadata().map(|_| Claim { _folder: None })
 }
 
-/// Locks a file, unless another process has it.
+/// Locks a file, unless another process holds the lock.
 #[cfg(unix)]
 fn lock(file: &File) -> bool {
     rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok()
@@ -283,7 +282,7 @@ fn lock(_: &File) -> bool {
     true
 }
 
-/// Whether a lock goes with its process.
+/// Whether the system releases a lock when its process ends.
 const fn can_tell_the_dead() -> bool {
     cfg!(unix)
 }
@@ -299,7 +298,7 @@ fn is_there(_: &File) -> bool {
     true
 }
 
-/// `16 MiB`.
+/// Formats a size: `16 MiB`.
 fn size(bytes: u64) -> String {
     match bytes {
         bytes if bytes >= 1 << 20 => format!("{} MiB", bytes >> 20),

@@ -1,16 +1,16 @@
-//! Work that nothing can interrupt from within: a filter that is waited for, a table that is laid out, a reader of stdout
-//! that does not read. Who hears signals looks here whether the rest of the process can still hear him.
+//! Registration of blocking work: a filter, the layout of a table, a reader of stdout that does not read. The signal
+//! handler uses it to detect that the process cannot react.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 static DEPTH: AtomicUsize = AtomicUsize::new(0);
 static TURN: AtomicU64 = AtomicU64::new(0);
 
-/// Such work, until dropped.
+/// Blocking work, until it is dropped.
 #[derive(Debug)]
 pub struct Busy(());
 
-/// Begins such work; it may nest.
+/// Registers blocking work; can be nested.
 pub fn busy() -> Busy {
     if DEPTH.fetch_add(1, Ordering::SeqCst) == 0 {
         TURN.fetch_add(1, Ordering::SeqCst);
@@ -24,7 +24,7 @@ impl Drop for Busy {
     }
 }
 
-/// The number of the work that is under way, if any is: the same number later is the same work still.
+/// Number of the current blocking work. The same number later means that it is still the same work.
 pub fn under_way() -> Option<u64> {
     (DEPTH.load(Ordering::SeqCst) > 0).then(|| TURN.load(Ordering::SeqCst))
 }

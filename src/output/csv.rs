@@ -1,8 +1,9 @@
-//! Reports as CSV (RFC 4180): a row for each entry of a list, columns from the schema of the report, never from its data.
+//! Reports as CSV (RFC 4180): one row per list entry. The columns come from the schema of the report, never from its
+//! data.
 //!
-//! A field keeps its name, and fields of a nested object follow it behind `_`: `error_code`. A list with a greatest length
-//! is a column for each place (`axes_1`), a list of plain values is one cell, and a list of objects inside a row is left
-//! to the JSON. Where a report has several lists, their names stand before those of their fields.
+//! A column has the name of its field; fields of a nested object are joined with `_`: `error_code`. A list with a
+//! maximum length has one column per entry (`axes_1`). A list of plain values is one cell. A list of objects in a row
+//! is omitted. If a report has several lists, their names precede the field names.
 
 use std::collections::BTreeSet;
 
@@ -10,42 +11,42 @@ use serde_json::Value;
 
 use super::escape;
 
-/// How deep fields are followed. What nests deeper is one cell.
+/// Limit of nesting. Deeper values are one cell.
 const DEEPEST: usize = 5;
-/// The column of what an entry holds.
+/// Column with the value of an entry.
 const VALUE: &str = "value";
-/// The longest list that is a column for each place.
+/// Longest list with one column per entry.
 const LONGEST: u64 = 16;
 
-/// What the rows of a report are.
+/// Rows of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowsOf {
-    /// The entries of every list of objects that the report always has. Without such a list the report is one row.
+    /// Entries of all required lists of objects. Without such a list, the report is one row.
     Lists,
-    /// The entries of this list, without the fields beside it.
+    /// Entries of this list, without the other fields.
     List(&'static str),
-    /// The report: one row.
+    /// The report is one row.
     Report,
 }
 
-/// The columns of a report.
+/// Columns of a report.
 #[derive(Debug, Clone)]
 pub struct Sheet {
-    /// Fields of the report itself: in every row.
+    /// Fields of the report itself, in every row.
     common: Vec<Column>,
-    /// Its lists, each with the fields of its entries.
+    /// Lists of the report, with the fields of their entries.
     lists: Vec<(String, Vec<Column>)>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Column {
     name: String,
-    /// A JSON pointer, from the report or the entry.
+    /// JSON pointer, relative to the report or the entry.
     pointer: String,
 }
 
 impl Sheet {
-    /// The columns of a report with this schema.
+    /// Columns of a report with this schema.
     pub fn of(schema: &Value, rows: RowsOf) -> Self {
         let mut sheet = Self { common: Vec::new(), lists: Vec::new() };
         let all = fields(schema, &[schema]);
@@ -83,26 +84,26 @@ impl Sheet {
         sheet
     }
 
-    /// Whether a column has this name.
+    /// Whether a column with this name exists.
     pub fn has(&self, name: &str) -> bool {
         self.columns().any(|column| column == name)
     }
 
-    /// The names of all columns, in order.
+    /// Names of all columns, in order.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
         let listed = self.lists.iter().flat_map(|(_, columns)| columns);
         self.common.iter().chain(listed).map(|column| column.name.as_str())
     }
 
-    /// The line of names, with the names of other columns before them.
+    /// Header line, with the names of other columns first.
     pub fn header(&self, before: &[&str]) -> String {
         let mut out = String::new();
         line(&mut out, before.iter().copied().chain(self.columns()));
         out
     }
 
-    /// Adds the values of a report alone, with tabs between them: a line, or one for each entry of its lists. Of entries
-    /// that have a value, that is all, and of positions what can be typed; how each was answered is no value.
+    /// Appends only the values of a report, separated by tabs: one line, or one per list entry. An entry with a value
+    /// has only that; a position has what can be typed. The outcome fields are omitted.
     pub fn values(&self, before: &[&str], data: &Value, out: &mut String) {
         let mut add = |columns: &[Column], entry: &Value| {
             let is_position = columns.iter().any(|column| column.name == "frame");
@@ -127,7 +128,7 @@ impl Sheet {
         }
     }
 
-    /// Adds the rows of a report: one, or one for each entry of its lists. `before` are the cells of other columns.
+    /// Appends the rows of a report. `before` are the cells of other columns.
     pub fn rows(&self, before: &[&str], data: &Value, out: &mut String) {
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
             columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
@@ -152,7 +153,7 @@ impl Sheet {
     }
 }
 
-/// Adds the columns of a field: its own, if a plain value may stand there, and those of what is nested in it.
+/// Adds the columns of a field: its own if it can be a plain value, and those of nested fields.
 fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize, columns: &mut Vec<Column>) {
     let leaf = || Column { name: name.to_owned(), pointer: place.to_owned() };
     let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf()) };
@@ -172,7 +173,7 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     }
 }
 
-/// The properties that a value of one of these schemas may have, each with its schemas, in order.
+/// Properties of values with these schemas, each with its own schemas, in order.
 fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a Value>)> {
     let mut all: Vec<(String, Vec<&Value>)> = Vec::new();
     for schema in variants.iter().flat_map(|one| expanded(root, one)) {
@@ -186,13 +187,12 @@ fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a V
     all
 }
 
-/// Whether a report of this schema always has this field.
 fn is_required(root: &Value, name: &str) -> bool {
     let lists = expanded(root, root).into_iter().filter_map(|schema| schema["required"].as_array());
     lists.flatten().any(|required| required == name)
 }
 
-/// The schemas of what a list holds.
+/// Schemas of the items of a list.
 fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
     let lists = expanded(root, schema).into_iter().filter(|one| is_list(one));
     lists
@@ -200,7 +200,7 @@ fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
         .collect()
 }
 
-/// A schema with references followed and alternatives taken apart.
+/// The schema with references and alternatives resolved.
 fn expanded<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
     let mut found = Vec::new();
     let mut open = vec![(schema, DEEPEST)];
@@ -210,7 +210,7 @@ fn expanded<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
         let reference = schema["$ref"].as_str().and_then(|reference| reference.strip_prefix('#'));
         let alternatives = ["allOf", "anyOf", "oneOf"].into_iter().filter_map(|kind| schema[kind].as_array()).flatten();
         let below: Vec<_> = reference.and_then(|place| root.pointer(place)).into_iter().chain(alternatives).collect();
-        // The last one in is the first one out.
+        // The stack is last in, first out.
         open.extend(below.into_iter().rev().map(|schema| (schema, depth)));
     }
     found
@@ -220,7 +220,7 @@ fn is_list(schema: &Value) -> bool {
     types(schema).any(|name| name == "array")
 }
 
-/// Whether a value of this schema may be a single cell. A map without known keys is one, too.
+/// Whether a value can be a single cell. A map without known keys also can.
 fn is_plain(schema: &Value) -> bool {
     let is_scalar = types(schema).any(|name| ["string", "number", "integer", "boolean"].contains(&name));
     let is_map = types(schema).any(|name| name == "object") && schema.get("properties").is_none();
@@ -229,7 +229,7 @@ fn is_plain(schema: &Value) -> bool {
     is_scalar || is_map || is_any || schema.get("enum").is_some() || schema.get("const").is_some()
 }
 
-/// The types that a schema names itself.
+/// Types that a schema names directly.
 fn types(schema: &Value) -> impl Iterator<Item = &str> {
     let named = &schema["type"];
     named.as_str().into_iter().chain(named.as_array().into_iter().flatten().filter_map(Value::as_str))
@@ -239,12 +239,12 @@ fn pointer(place: &str, field: &str) -> String {
     format!("{place}/{}", field.replace('~', "~0").replace('/', "~1"))
 }
 
-/// A value as a cell. What has columns of its own leaves this one empty.
+/// Value of a cell; empty if the value has its own columns.
 fn cell(value: &Value) -> String {
     harmless(&text(value))
 }
 
-/// A value on a line that has tabs between values.
+/// Value in a tab-separated line.
 fn plain(value: &Value) -> String {
     escape::line(&text(value)).into_owned()
 }
@@ -263,15 +263,15 @@ fn text(value: &Value) -> String {
     }
 }
 
-/// A text that does nothing on a terminal, and nothing in a spreadsheet: OWASP's apostrophe before what would be a
-/// formula. Signed numbers are none, nor is the dash that stands for nothing.
+/// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
+/// Signed numbers and a single dash are not formulas.
 pub(super) fn harmless(text: &str) -> String {
     let shown = escape::lines(text);
     let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
-/// Adds a line of fields, quoted where they need it.
+/// Appends a line of fields, quoted if necessary.
 pub(super) fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
     for (index, field) in fields.enumerate() {
         if index > 0 {

@@ -1,4 +1,4 @@
-//! The one envelope of every JSON answer.
+//! Envelope of all JSON answers.
 
 use jiff::Timestamp;
 use schemars::JsonSchema;
@@ -73,7 +73,7 @@ impl From<Failure> for ErrorBody {
 }
 
 impl Envelope {
-    /// The answer of one robot.
+    /// Answer of one robot.
     pub fn of(robot: &Robot, command: &str, result: Result<Value, Failure>) -> Self {
         let (data, error) = match result {
             Ok(data) => (Some(data), None),
@@ -94,7 +94,7 @@ impl Envelope {
         }
     }
 
-    /// The answer of a command that is about no robot.
+    /// Answer of a command without a robot.
     pub fn local(command: &str, data: Value) -> Self {
         Self {
             time: None,
@@ -111,7 +111,7 @@ impl Envelope {
         }
     }
 
-    /// A failure before any robot was chosen.
+    /// Failure before a robot was selected.
     pub fn failed(command: Option<&str>, failure: Failure) -> Self {
         Self {
             time: None,

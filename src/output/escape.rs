@@ -1,8 +1,8 @@
-//! Text from outside made harmless for a terminal.
+//! Escaping of untrusted text for terminals.
 //!
-//! Names and messages of a controller may hold any character. Printed as they are, some of them move the cursor, set
-//! the window title, reverse the direction of a line or hide text. [`line()`] and [`lines()`] turn them into visible
-//! escapes for people; [`Safe`] writes them as `\uXXXX` in JSON, which parses to the same value.
+//! Names and messages of a controller can contain any character. Printed unchanged, some of them move the cursor, set
+//! the window title, reverse the direction of a line or hide text. [`line()`] and [`lines()`] make them visible escapes
+//! for people. [`Safe`] writes them as `\uXXXX` in JSON, which parses to the same value.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -12,28 +12,28 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
 
-/// One line of text: every character that a terminal does not simply draw becomes `\n`, `\x1b`, `\u{202e}`.
-/// A backslash stays a backslash; the result is for reading, not for parsing.
+/// Escapes one line of text: characters that a terminal does not simply draw become `\n`, `\x1b`, `\u{202e}`.
+/// Backslashes are not escaped, because the result is for reading and not for parsing.
 pub fn line(text: &str) -> Cow<'_, str> {
     neutralise(text, is_hidden)
 }
 
-/// Several lines of text: as [`line()`], but line feeds stay.
+/// Escapes several lines: as [`line()`], but line feeds are kept.
 pub fn lines(text: &str) -> Cow<'_, str> {
     neutralise(text, |character| character != '\n' && is_hidden(character))
 }
 
-/// A value as JSON on one line, safe to print to a terminal.
+/// Compact JSON, safe for a terminal.
 pub fn json_line<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
     json(value, CompactFormatter)
 }
 
-/// A value as indented JSON, safe to print to a terminal.
+/// Indented JSON, safe for a terminal.
 pub fn json_pretty<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
     json(value, PrettyFormatter::new())
 }
 
-/// Writes a value as JSON like the two above, without holding the text.
+/// Writes JSON without building the text in memory.
 pub fn json_to<T: Serialize + ?Sized>(writer: impl io::Write, value: &T, pretty: bool) -> serde_json::Result<()> {
     if pretty {
         value.serialize(&mut Serializer::with_formatter(writer, Safe(PrettyFormatter::new())))
@@ -42,12 +42,12 @@ pub fn json_to<T: Serialize + ?Sized>(writer: impl io::Write, value: &T, pretty:
     }
 }
 
-/// A JSON formatter that writes hidden characters inside strings as `\uXXXX`, and the rest as the formatter in it does.
+/// JSON formatter that writes hidden characters in strings as `\uXXXX`, and everything else like the inner formatter.
 #[derive(Debug, Clone, Default)]
 pub struct Safe<F>(pub F);
 
 impl<F: Formatter> Formatter for Safe<F> {
-    /// What arrives here has been through the escapes that JSON demands; this adds those that terminals need.
+    /// The fragment already has the JSON escapes. This adds those for terminals.
     fn write_string_fragment<W: ?Sized + io::Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
         let mut rest = fragment;
         while let Some((at, character)) = rest.char_indices().find(|(_, character)| is_hidden(*character)) {
@@ -102,8 +102,8 @@ impl<F: Formatter> Formatter for Safe<F> {
     }
 }
 
-/// Characters beyond the controls that are drawn as nothing, steer the text around them, or break lines: Unicode's
-/// format characters (Cf), line and paragraph separators, and what it calls default-ignorable. Ascending.
+/// Non-ASCII characters that are invisible, affect the surrounding text, or break lines, in ascending order. These are
+/// Unicode format characters (Cf), line and paragraph separators, and default-ignorable characters.
 const HIDDEN: &[RangeInclusive<char>] = &[
     '\u{00AD}'..='\u{00AD}',   // soft hyphen
     '\u{034F}'..='\u{034F}',   // grapheme joiner
@@ -132,7 +132,7 @@ const HIDDEN: &[RangeInclusive<char>] = &[
     '\u{E0000}'..='\u{E0FFF}', // tags and more variation selectors
 ];
 
-/// Whether a terminal does something else with a character than draw it.
+/// Whether a terminal does anything but draw the character.
 fn is_hidden(character: char) -> bool {
     if character.is_ascii() {
         return character.is_ascii_control();
@@ -245,7 +245,7 @@ mod tests {
         assert_eq!(json_pretty(&value).unwrap(), serde_json::to_string_pretty(&value).unwrap());
     }
 
-    /// Text rich in the characters that matter here.
+    /// Text with many special characters.
     fn nasty() -> impl Strategy<Value = String> {
         let character = prop_oneof![
             any::<char>(),

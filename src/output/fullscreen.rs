@@ -1,5 +1,5 @@
-//! The whole terminal as one picture that changes. It is left as it was found on every way out: also after a panic, and
-//! while the process is suspended.
+//! Full-screen mode of the terminal. The terminal is restored on every exit, also after a panic and during a
+//! suspension.
 
 use std::io::{self, BufWriter, Stdout, Write as _};
 use std::mem::ManuallyDrop;
@@ -22,24 +22,24 @@ use super::leave;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
-/// Whether the terminal is not as it was found.
+/// Whether the terminal is in full-screen mode.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
-/// A panic restores the terminal before it says anything.
+/// Installs a panic hook that restores the terminal before it prints.
 static BEFORE_PANICS: Once = Once::new();
 
-/// Room for a picture, which then leaves in one piece.
+/// Buffer for a screen update, so that it is written at once.
 const PICTURE: usize = 64 * 1024;
-/// How often the thread that waits for keys looks whether it is still wanted.
+/// Interval at which the key thread checks for its end.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// The terminal, taken until dropped.
+/// The terminal in full-screen mode, until it is dropped.
 #[derive(Debug)]
 pub struct Fullscreen {
-    /// Never dropped: [`restore`] gives the terminal back, and where that is gone, the drop of this would break down.
+    /// Never dropped. [`restore`] restores the terminal; the drop of this value would panic on a closed terminal.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stdout>>>>,
 }
 
-/// Keys and changes of size, on their way from a thread of their own until dropped.
+/// Thread that reads keys and size changes, until it is dropped.
 #[derive(Debug)]
 pub struct Keys {
     is_over: Arc<AtomicBool>,
@@ -47,19 +47,19 @@ pub struct Keys {
 }
 
 impl Screen {
-    /// Whether stdout is a terminal that can be drawn on.
+    /// Whether stdout is a terminal with cursor control.
     pub fn can_fill(&self) -> bool {
         self.is_stdout_terminal() && !is_dumb()
     }
 
-    /// Whether the terminal shows more than ASCII, as far as the locale and the kind of terminal tell.
+    /// Whether the terminal can show more than ASCII, according to locale and terminal type.
     pub fn is_unicode(&self) -> bool {
         let given = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
         let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(given);
         is_unicode(given("TERM").as_deref(), locale.as_deref())
     }
 
-    /// Takes the terminal.
+    /// Enters full-screen mode.
     pub fn fullscreen(&self) -> Result<Fullscreen, Failure> {
         BEFORE_PANICS.call_once(|| {
             let usual = std::panic::take_hook();
@@ -81,15 +81,15 @@ impl Screen {
 }
 
 impl Fullscreen {
-    /// Draws what is different from the last picture.
+    /// Draws the differences to the last screen.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> Result<(), Failure> {
         self.terminal.draw(render).map(|_| ()).map_err(|error| lost(&error))
     }
 
-    /// Takes the terminal anew, and forgets what it shows: somebody else may have written on it.
+    /// Enters full-screen mode again and redraws everything, because another program can have written on the terminal.
     pub fn refresh(&mut self) -> Result<(), Failure> {
         restore();
-        // Not `clear`, which asks the terminal where its cursor is: the answer would come among the keys.
+        // `clear` would ask the terminal for its cursor position, and the answer would appear among the keys.
         let mut anew = || {
             take()?;
             let size = self.terminal.size()?;
@@ -98,7 +98,7 @@ impl Fullscreen {
         anew().map_err(|error| lost(&error))
     }
 
-    /// Gives the terminal back and suspends the process, as Ctrl-Z does. Returns when it goes on.
+    /// Restores the terminal and suspends the process, as Ctrl-Z does. Returns when the process continues.
     #[cfg(unix)]
     pub fn suspend(&mut self) -> Result<(), Failure> {
         restore();
@@ -106,7 +106,7 @@ impl Fullscreen {
         self.refresh()
     }
 
-    /// There is no such thing here.
+    /// Not supported on this system.
     #[cfg(not(unix))]
     pub fn suspend(&mut self) -> Result<(), Failure> {
         Ok(())
@@ -120,13 +120,13 @@ impl Drop for Fullscreen {
 }
 
 impl Keys {
-    /// Waits for keys and changes of size, and tells each until it is told `false`.
+    /// Reads keys and size changes, and passes them to `tell` until it returns `false`.
     pub fn listen(mut tell: impl FnMut(Event) -> bool + Send + 'static) -> Self {
         let is_over = Arc::new(AtomicBool::new(false));
         let watched = Arc::clone(&is_over);
         let thread = std::thread::spawn(move || {
-            // Where hanging up is ignored, as under `nohup`, no signal tells that the terminal is gone; and what waits for
-            // keys there spins for ever.
+            // If SIGHUP is ignored, as under `nohup`, no signal reports a closed terminal. Waiting for keys would then
+            // be a busy loop.
             while !watched.load(Ordering::Relaxed) && is_terminal_there(GLANCE) {
                 match event::poll(Duration::ZERO) {
                     Ok(false) => {}
@@ -137,7 +137,7 @@ impl Keys {
                         }
                     }
                     Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                    // The terminal is gone; a signal says so as well.
+                    // The terminal is closed; a signal also reports that.
                     Err(_) => return,
                 }
             }
@@ -149,26 +149,26 @@ impl Keys {
 impl Drop for Keys {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
-        // Whoever reads keys next gets all of them. One that broke down has ended as well.
+        // Wait for the thread, so that the next reader gets all keys. A panic of the thread also ends it.
         let _ended = self.thread.take().map(JoinHandle::join);
     }
 }
 
-/// Whether there is still a terminal behind stdin, after a key or at most this time.
+/// Whether stdin is still a terminal. Waits for a key, at most `within`.
 #[cfg(unix)]
 fn is_terminal_there(within: Duration) -> bool {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     let stdin = io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
     let within = Timespec::try_from(within).ok();
-    // An interrupted wait has seen nothing, which is no sign of an end.
+    // An interrupted wait reports no events.
     let _seen = poll(&mut watched, within.as_ref());
     !watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL)
 }
 
 #[cfg(not(unix))]
 fn is_terminal_there(within: Duration) -> bool {
-    // Ends with the first key as well.
+    // Also returns at the first key.
     let _seen = event::poll(within);
     true
 }
@@ -179,10 +179,10 @@ fn take() -> io::Result<()> {
     execute!(io::stdout(), EnterAlternateScreen, Hide)
 }
 
-/// Leaves the terminal as it was found; what it does not take any more cannot be helped.
+/// Restores the terminal. Errors are ignored.
 pub fn restore() {
     if IS_TAKEN.swap(false, Ordering::Relaxed) {
-        // First what no other thread can hold up.
+        // First what no other thread can block.
         let _cooked = disable_raw_mode();
         let _shown = execute!(io::stdout(), ResetColor, LeaveAlternateScreen, Show);
         let _flushed = io::stdout().flush();

@@ -1,4 +1,4 @@
-//! `--jq` and `--until`: jq filters over the envelope.
+//! jq filters of `--jq` and `--until`, applied to envelopes.
 
 mod program;
 pub mod worker;
@@ -10,25 +10,25 @@ use crate::failure::{Failure, Kind};
 
 use self::worker::FilterError;
 
-/// A filter that compiles.
+/// A filter that has been compiled successfully.
 #[derive(Debug)]
 pub struct Filter {
     text: String,
 }
 
 impl Filter {
-    /// Compiles a filter; a mistake in it is a usage failure.
+    /// Compiles a filter; an error in it is a usage failure.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let filter = Self { text: text.to_owned() };
         filter.ask(None, |_| Ok(())).map(|()| filter)
     }
 
-    /// Hands over every value that the filter makes of `input`, as they come.
+    /// Passes every output of the filter to `take`.
     pub fn apply(&self, input: &Value, take: impl FnMut(Value) -> Result<(), Failure>) -> Result<(), Failure> {
         self.ask(Some(input), take)
     }
 
-    /// Whether the last value the filter makes is neither `false` nor `null`.
+    /// Whether the last output of the filter is neither `false` nor `null`.
     pub fn is_true(&self, input: &Value) -> Result<bool, Failure> {
         let mut last = Value::Null;
         self.apply(input, |value| {
@@ -56,11 +56,11 @@ impl Filter {
     }
 }
 
-/// In the process for filters.
+/// Runs in the worker process.
 #[cfg(not(test))]
 use worker::ask;
 
-/// In this process: that of tests is no armctl.
+/// Runs in this process, because the test binary is not armctl.
 #[cfg(test)]
 fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let program = program::Program::new(filter).map_err(FilterError::Mistake)?;
@@ -69,12 +69,12 @@ fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> 
     program.run(input, take).map_err(FilterError::from)
 }
 
-/// Where the process for filters writes its answers.
+/// Output of the worker process.
 fn answers() -> std::io::Stdout {
     std::io::stdout()
 }
 
-/// A failure to report what was changed is no mistake of the command line, which one would correct and repeat.
+/// Marks a report failure after a change, so that the user does not correct the line and repeat the change.
 #[must_use]
 pub fn after_a_change(failure: Failure) -> Failure {
     if failure.kind == Kind::PipeClosed {

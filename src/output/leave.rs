@@ -1,5 +1,4 @@
-//! The end of the process at once, from any thread, whatever the others do: what is wrong is told, and the terminal is
-//! left as it was found.
+//! Immediate exit from any thread: prints the reason, and restores the terminal.
 
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::Duration;
@@ -9,24 +8,24 @@ use super::{Screen, fullscreen, prompt};
 use crate::failure::{Failure, Kind, end};
 use crate::files;
 
-/// How failures are told, once that is known.
+/// Screen for the last message, once known.
 static SCREEN: Mutex<Option<Screen>> = Mutex::new(None);
 
-/// How long the last words may take: a terminal that is stopped takes none.
+/// Time limit for the last message, because a stopped terminal blocks.
 const LAST_WORDS: Duration = Duration::from_millis(200);
 
 impl Screen {
-    /// From here on the end of the process at once is told on this screen.
+    /// Uses this screen for the message of an immediate exit.
     pub fn tells_the_end(self) {
         *SCREEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self);
     }
 }
 
-/// Restores the terminal, says why, and ends the process as interrupted.
+/// Restores the terminal, prints the reason, and exits as interrupted.
 pub fn at_once(why: &str) -> ! {
     let (done, is_done) = mpsc::channel();
     let failure = Failure::new(Kind::Interrupted, why);
-    // Whoever holds stdout or stderr and does not get on must not hold up the end.
+    // On its own thread, because another thread can hold the lock of stdout or stderr.
     std::thread::spawn(move || {
         fullscreen::restore();
         prompt::restore();
@@ -43,18 +42,18 @@ pub fn at_once(why: &str) -> ! {
     end(Kind::Interrupted)
 }
 
-/// Suspends the process and those beside it, as a shell expects it of Ctrl-Z. Returns when it goes on; at once where no
-/// shell is there that could let it go on.
+/// Suspends the process group, as a shell expects of Ctrl-Z. Returns when it continues; at once without a shell that
+/// could continue it.
 #[cfg(unix)]
 pub fn suspend() {
     use nix::unistd::{getpgid, getpgrp, getppid, getsid};
     use rustix::process::{Signal, kill_current_process_group};
 
-    // In a container the leader of the session may be outside, and its number 0. rustix panics at that, nix does not.
+    // In a container, the session leader can be outside, with process id 0. rustix panics at that, nix does not.
     let parent = getppid();
     let is_beside = getsid(Some(parent)).is_ok_and(|its| getsid(None) == Ok(its));
     if is_beside && getpgid(Some(parent)).is_ok_and(|its| its != getpgrp()) {
-        // A process that hears SIGTSTP is not suspended by it.
+        // SIGTSTP would be handled by our own signal handler.
         let _ = kill_current_process_group(Signal::STOP);
     }
 }

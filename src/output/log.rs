@@ -1,26 +1,26 @@
-//! What a service says of itself as it runs: lines on stderr. Where that is the journal of systemd, each begins with its
-//! priority (`sd-daemon(3)`) and ends with its fields, so that `journalctl -p warning` and `grep robot=cell3` find it; whoever
-//! reaches the journal itself can write entries instead.
+//! Log of a service on stderr. If stderr is connected to the systemd journal, each line starts with its priority
+//! (`sd-daemon(3)`) and ends with its fields. So `journalctl -p warning` and `grep robot=cell3` find it. With direct
+//! access to the journal, entries are written instead.
 
 use std::fmt::Write as _;
 
 use super::{Screen, escape};
 
-/// How much a line matters.
+/// Level of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Something is wrong with this service.
+    /// A problem of this service.
     Error,
-    /// Something is wrong with what it looks after.
+    /// A problem of a robot or another watched object.
     Warning,
-    /// Something that happens now and then.
+    /// An occasional event.
     Notice,
-    /// Something that only who looks for a reason wants to read: from `-v` on.
+    /// Details for troubleshooting, from `-v` on.
     Detail,
 }
 
 impl Level {
-    /// The number of syslog(3).
+    /// Priority of syslog(3).
     pub fn priority(self) -> u8 {
         match self {
             Self::Error => 3,
@@ -39,17 +39,17 @@ impl Level {
     }
 }
 
-/// Longest value of a field, in characters.
+/// Longest field value, in characters.
 const LONGEST: usize = 200;
 
-/// The value of a field, as it can be shown and is not too long.
+/// Escapes a field value, and limits its length.
 pub fn value(text: &str) -> String {
     let text: String = text.chars().take(LONGEST).collect();
     escape::line(&text).into_owned()
 }
 
 impl Screen {
-    /// Whether somebody wants to read what matters so much.
+    /// Whether messages of this level are printed.
     pub fn wants(&self, level: Level) -> bool {
         match level {
             Level::Error | Level::Warning => true,
@@ -58,7 +58,7 @@ impl Screen {
         }
     }
 
-    /// Says what happens in a service, with fields for the journal.
+    /// Logs a message with journal fields.
     pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         if !self.wants(level) {
             return;
@@ -72,7 +72,7 @@ impl Screen {
     }
 }
 
-/// Fields as ` name=value`, with quotes where a value would not end by itself.
+/// Formats fields as ` name=value`, with quotes if necessary.
 fn list(fields: &[(&str, &str)]) -> String {
     let mut all = String::new();
     for (name, value) in fields {
@@ -87,7 +87,7 @@ fn list(fields: &[(&str, &str)]) -> String {
     all
 }
 
-/// Whether stderr is the journal: the variable may be one that a terminal has passed on.
+/// Whether stderr is the journal. The variable alone is not enough, because a terminal can have inherited it.
 #[cfg(unix)]
 fn is_journal() -> bool {
     let Some(named) = std::env::var_os("JOURNAL_STREAM") else { return false };
@@ -100,7 +100,7 @@ fn is_journal() -> bool {
     false
 }
 
-/// Whether stderr is the journal's own socket, and not a file that stands for it.
+/// Whether stderr is the journal's socket, and not a file in its place.
 #[cfg(unix)]
 pub fn is_journal_socket() -> bool {
     let is_socket = rustix::fs::fstat(std::io::stderr())

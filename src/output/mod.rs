@@ -1,6 +1,6 @@
-//! The only writer to stdout and stderr.
+//! Output: the only writer to stdout and stderr.
 //!
-//! stdout carries data only; prompts, progress, hints and logs go to stderr.
+//! stdout has only data; prompts, progress, hints and logs go to stderr.
 
 pub mod busy;
 pub mod csv;
@@ -45,7 +45,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Whether a report is written as rows whose columns come from its schema.
+    /// Whether a report is written as rows with columns from its schema.
     pub fn is_rows(self) -> bool {
         matches!(self, Self::Csv | Self::Value)
     }
@@ -62,15 +62,15 @@ pub enum ColorChoice {
     Never,
 }
 
-/// Where everything is written, and how.
+/// Output settings.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub struct Screen {
-    /// How data is written.
+    /// Format of data.
     pub format: Format,
-    /// Nothing on stderr but errors and questions.
+    /// Only errors and questions on stderr.
     pub quiet: bool,
-    /// `-v` 1 summary, `-vv` 2 frames, `-vvv` 3 bytes.
+    /// `-v` is 1: summary, `-vv` is 2: frames, `-vvv` is 3: bytes.
     pub verbosity: u8,
     color: ColorChoice,
     pager: bool,
@@ -79,30 +79,30 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Everything as flags and environment want it.
+    /// Settings of flags and environment.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
         Self { format, quiet, verbosity, color, pager: false, plain_errors: false, questions: true }
     }
 
-    /// With errors in words, although data is JSON: `--jq` alone.
+    /// Sets whether errors are plain text even if data is JSON; only for `--jq`.
     #[must_use]
     pub fn with_plain_errors(self, plain_errors: bool) -> Self {
         Self { plain_errors, ..self }
     }
 
-    /// With questions to a person, or without.
+    /// Sets whether questions are allowed.
     #[must_use]
     pub fn with_questions(self, questions: bool) -> Self {
         Self { questions, ..self }
     }
 
-    /// With a pager for long texts to read, or without.
+    /// Sets whether long texts use a pager.
     #[must_use]
     pub fn with_pager(self, pager: bool) -> Self {
         Self { pager, ..self }
     }
 
-    /// Nothing but errors, and those as JSON: for tests.
+    /// Only errors, as JSON; for tests.
     #[cfg(test)]
     pub const fn silent() -> Self {
         Self {
@@ -116,7 +116,7 @@ impl Screen {
         }
     }
 
-    /// The same, but silent about everything that is not an error.
+    /// The same, but only with errors.
     #[must_use]
     pub fn silenced(self) -> Self {
         Self { quiet: true, verbosity: 0, ..self }
@@ -132,37 +132,38 @@ impl Screen {
         io::stdout().is_terminal()
     }
 
-    /// Whether somebody can press Ctrl-C: stdin is a terminal.
+    /// Whether the user can press Ctrl-C: stdin is a terminal.
     pub fn can_interrupt(&self) -> bool {
         io::stdin().is_terminal()
     }
 
-    /// Whether a person can choose what was not named: where a person can be asked, and no program reads.
+    /// Whether the user can choose something that is missing in the line: questions are allowed, and the output is not
+    /// for a program.
     pub fn can_choose(&self) -> bool {
         self.can_ask() && !self.is_json() && std::env::var_os("CI").is_none_or(|value| value.is_empty())
     }
 
-    /// Whether a person can be asked: stdin and stderr are terminals.
+    /// Whether questions are possible: stdin and stderr are terminals.
     pub fn can_ask(&self) -> bool {
         self.questions && io::stdin().is_terminal() && io::stderr().is_terminal()
     }
 
-    /// Whether progress can redraw itself on stderr.
+    /// Whether progress on stderr can be redrawn.
     pub fn can_redraw(&self) -> bool {
         !self.quiet && io::stderr().is_terminal() && !is_dumb()
     }
 
-    /// Whether a table can replace the one before on stdout.
+    /// Whether a table on stdout can replace the previous one.
     pub fn can_replace(&self) -> bool {
         self.format == Format::Table && io::stdout().is_terminal() && !is_dumb()
     }
 
-    /// Columns that tables may fill.
+    /// Width of tables.
     pub fn width(&self) -> u16 {
         if io::stdout().is_terminal() { console_width() } else { 80 }
     }
 
-    /// Whether stdout is coloured.
+    /// Whether stdout has colors.
     pub fn stdout_color(&self) -> bool {
         self.wants_color(io::stdout().is_terminal())
     }
@@ -184,14 +185,14 @@ impl Screen {
         self.bytes(text.as_bytes())
     }
 
-    /// Writes data as it is.
+    /// Writes raw data.
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
         let _busy = busy::busy();
         let mut stdout = io::stdout().lock();
         Ok(stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout")?)
     }
 
-    /// Writes a value as JSON: a line in a pipe or as `jsonl`, indented on a terminal.
+    /// Writes a value as JSON: one line in a pipe or with `jsonl`, indented on a terminal.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
         let _busy = busy::busy();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
@@ -201,7 +202,7 @@ impl Screen {
         self.data(&text)
     }
 
-    /// The same for a value that is made as it is written.
+    /// Writes a value as JSON without building the text in memory.
     pub fn json_as_it_comes(&self, value: &impl Serialize) -> Result<(), Failure> {
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut stdout = io::BufWriter::new(io::stdout().lock());
@@ -210,14 +211,14 @@ impl Screen {
         Ok(ended.context("stdout")?)
     }
 
-    /// Says something on stderr, unless `--quiet`.
+    /// Prints a message on stderr, unless `--quiet`.
     pub fn note(&self, text: &str) {
         if !self.quiet {
             Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
-    /// Says on a terminal, once in a process, that what follows is of the simulator.
+    /// Prints once on a terminal that the output is from a simulator.
     pub fn note_simulator(&self) {
         static IS_TOLD: AtomicBool = AtomicBool::new(false);
 
@@ -226,21 +227,21 @@ impl Screen {
         }
     }
 
-    /// Says how far long work is where no bar does: off a terminal, unless stderr is for a program.
+    /// Prints progress of long work where no bar is possible, unless stderr is for a program.
     pub fn step(&self, text: &str) {
         if !self.can_redraw() && !self.is_json() {
             self.note(text);
         }
     }
 
-    /// Says something on stderr from `-v` times `level` on.
+    /// Prints a message on stderr, from verbosity `level` on.
     pub fn detail(&self, level: u8, text: &str) {
         if self.verbosity >= level {
             Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
-    /// Reports a failure on stderr: `error:`, then `hint:` after an empty line.
+    /// Prints a failure on stderr: `error:`, then `hint:` after an empty line.
     pub fn failure(&self, failure: &Failure) {
         if failure.kind == Kind::PipeClosed {
             return;
@@ -258,19 +259,19 @@ impl Screen {
         Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
     }
 
-    /// A word for stderr, in colour where that has any.
+    /// A word for stderr, with color if possible.
     fn paint_stderr(&self, code: &str, word: &str) -> String {
         let color = self.wants_color(io::stderr().is_terminal());
         if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() }
     }
 
-    /// What the parser of the command line has to say about a mistake.
+    /// Prints a usage error of the parser.
     pub fn usage(&self, text: &clap::builder::StyledStr) {
         let color = self.wants_color(io::stderr().is_terminal());
         Self::prose(&if color { text.ansi().to_string() } else { text.to_string() });
     }
 
-    /// A line of JSON on stderr.
+    /// Prints a line of JSON on stderr.
     pub fn failure_json(&self, value: &impl Serialize) {
         match escape::json_line(value) {
             Ok(text) => Self::stderr(&format!("{text}\n")),
@@ -278,7 +279,7 @@ impl Screen {
         }
     }
 
-    /// Text for people: on a terminal in lines that end between words.
+    /// Prints text for people, with line breaks between words on a terminal.
     fn prose(text: &str) {
         if io::stderr().is_terminal() {
             let (_, columns) = dialoguer::console::Term::stderr().size();
@@ -288,7 +289,7 @@ impl Screen {
         }
     }
 
-    /// What cannot be written to stderr cannot be reported anywhere; the exit code still tells.
+    /// An error here cannot be reported; the exit code remains.
     fn stderr(text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }

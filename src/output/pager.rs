@@ -1,4 +1,4 @@
-//! Long texts to read, through a pager.
+//! Pager for long texts.
 
 use std::ffi::OsString;
 use std::process::Command;
@@ -9,11 +9,11 @@ use super::wrap::wrapped;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
-/// What fits into a pipe before somebody reads from it.
+/// Limit of a text that fits into a pipe without a reader.
 const MOST: usize = 60_000;
 
 impl Screen {
-    /// Writes a text to read: through a pager where it is longer than the terminal.
+    /// Prints a text, with a pager if it is longer than the terminal.
     pub fn read(&self, text: &str) -> Result<(), Failure> {
         let (rows, _) = Term::stdout().size();
         let is_terminal = self.is_stdout_terminal();
@@ -24,7 +24,7 @@ impl Screen {
     }
 }
 
-/// Shows it, if there is a pager.
+/// Shows the text in a pager. Returns whether there is one.
 fn show(text: &str) -> bool {
     let words = match std::env::var("PAGER") {
         Ok(pager) => shlex::split(&pager).unwrap_or_default(),
@@ -34,14 +34,14 @@ fn show(text: &str) -> bool {
     let Some((program, arguments)) = words.split_first().filter(|(program, _)| *program != "cat") else { return false };
     let mut pager = Command::new(program);
     pager.args(arguments);
-    // Colours, and an end as soon as all of it has been seen: what git does.
+    // Colors, and exit if the text fits on one screen; as in git.
     if std::env::var_os("LESS").is_none() {
         pager.env("LESS", OsString::from("FRX"));
     }
     become_pager(pager, text)
 }
 
-/// The text waits in the pipe, and the process becomes the pager: keys and Ctrl-C are its own then.
+/// Writes the text into a pipe and replaces the process by the pager, so that keys and Ctrl-C go to the pager.
 #[cfg(unix)]
 fn become_pager(mut pager: Command, text: &str) -> bool {
     use std::io::Write as _;
@@ -60,7 +60,7 @@ fn become_pager(mut pager: Command, text: &str) -> bool {
     use std::io::Write as _;
 
     let Ok(mut child) = pager.stdin(std::process::Stdio::piped()).spawn() else { return false };
-    // Who leaves before the end has read enough.
+    // A write error means that the user has left the pager.
     let _ = child.stdin.take().map(|mut stdin| stdin.write_all(text.as_bytes()));
     child.wait().is_ok()
 }

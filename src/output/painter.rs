@@ -1,4 +1,4 @@
-//! Text in cells: cut where there is no room, harmless for a terminal, in colours that mean something.
+//! Text drawing for full-screen mode: cut to the available width, escaped, with colors by meaning.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -9,17 +9,17 @@ use ratatui::widgets::{Block, Clear, Widget as _};
 use super::escape;
 use super::view::Tone;
 
-/// What the terminal can show.
+/// Abilities of the terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Palette {
-    /// Colours; without them, bold, underlined and reversed.
+    /// Colors. Without them: bold, underlined and reversed.
     pub has_color: bool,
     /// More than ASCII.
     pub is_unicode: bool,
 }
 
 impl Palette {
-    /// How a tone is noticed.
+    /// Style of a tone.
     pub fn tone(self, tone: Tone) -> Style {
         let style = Style::new();
         match (tone, self.has_color) {
@@ -32,45 +32,45 @@ impl Palette {
         }
     }
 
-    /// What stands back: headings, units, what is off.
+    /// Style of less important text: headings, units, values that are off.
     pub fn quiet(self) -> Style {
         if self.has_color { Style::new().fg(Color::DarkGray) } else { Style::new() }
     }
 
-    /// Keys, and what is chosen.
+    /// Style of keys and of the selection.
     pub fn accent(self) -> Style {
         let bold = Style::new().add_modifier(Modifier::BOLD);
         if self.has_color { bold.fg(Color::Cyan) } else { bold }
     }
 
-    /// Headings of columns.
+    /// Style of column headings.
     pub fn heading(self) -> Style {
         self.quiet().add_modifier(Modifier::UNDERLINED)
     }
 }
 
-/// A key and what it does, for people.
+/// A key and its help.
 #[derive(Debug, Clone, Copy)]
 pub struct Explained {
-    /// The key as it is written.
+    /// Name of the key.
     pub key: &'static str,
-    /// For the last line of the screen; empty for keys that are only in the help.
+    /// Text for the last line of the screen; empty for keys that are only in the help.
     pub short: &'static str,
-    /// For the help.
+    /// Text for the help.
     pub full: &'static str,
 }
 
-/// Draws text into the buffer of a picture; what is outside of it is left out.
+/// Draws text into the buffer of a screen. Text outside of it is omitted.
 #[derive(Debug)]
 pub struct Painter<'a> {
-    /// Where to.
+    /// Buffer.
     pub buffer: &'a mut Buffer,
-    /// With what.
+    /// Colors.
     pub palette: Palette,
 }
 
 impl Painter<'_> {
-    /// Text at the left of a line; returns the columns that it took.
+    /// Draws text at the left of a line. Returns its width.
     pub fn left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
         let line = line.intersection(self.buffer.area);
         if line.is_empty() {
@@ -87,14 +87,14 @@ impl Painter<'_> {
         line.width
     }
 
-    /// Text at the right of a line; at the left, and cut, where it has no room.
+    /// Draws text at the right of a line. Text that does not fit is cut.
     pub fn right(&mut self, line: Rect, text: &str, style: Style) {
         let taken = u16::try_from(width(&escape::line(text))).unwrap_or(u16::MAX).min(line.width);
         let start = line.x + (line.width - taken);
         self.left(Rect { x: start, width: taken, ..line }, text, style);
     }
 
-    /// Parts of a line, one behind the other; returns the columns that they took.
+    /// Draws parts of a line in sequence. Returns their width.
     pub fn parts(&mut self, line: Rect, parts: &[(&str, Style)]) -> u16 {
         let mut taken = 0;
         for (text, style) in parts {
@@ -103,7 +103,7 @@ impl Painter<'_> {
         taken
     }
 
-    /// The last line of a screen: what keys do, as many as there is room for. The last two are always there.
+    /// Draws the last line of a screen: keys, as many as fit. The last two are always shown.
     pub fn keys(&mut self, line: Rect, keys: &[&Explained]) {
         let (accent, quiet) = (self.palette.accent(), self.palette.quiet());
         let columns = |key: &Explained| width(key.key) + width(key.short) + 3;
@@ -125,7 +125,7 @@ impl Painter<'_> {
         }
     }
 
-    /// All keys with what they do below a title, over everything else.
+    /// Draws the help with all keys over the screen.
     pub fn help<'a>(&mut self, area: Rect, title: &str, keys: impl ExactSizeIterator<Item = &'a Explained> + Clone) {
         const KEY: u16 = 8;
         let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default();
@@ -154,29 +154,29 @@ impl Painter<'_> {
         }
     }
 
-    /// Gives a line a style, whatever stands in it.
+    /// Sets the style of a line without changing its text.
     pub fn paint(&mut self, line: Rect, style: Style) {
         self.buffer.set_style(line.intersection(self.buffer.area), style);
     }
 }
 
-/// What is left of a line after so many columns.
+/// Rest of a line after `columns`.
 pub fn after(line: Rect, columns: u16) -> Rect {
     let columns = columns.min(line.width);
     Rect { x: line.x + columns, width: line.width - columns, ..line }
 }
 
-/// The line of an area, counted from its top; empty beyond its end.
+/// A line of an area, from its top; empty beyond its end.
 pub fn line_of(area: Rect, line: u16) -> Rect {
     Rect { y: area.y.saturating_add(line), height: u16::from(line < area.height), ..area }
 }
 
-/// Columns that a text takes.
+/// Width of a text in columns.
 pub fn width(text: &str) -> usize {
     Span::raw(text).width()
 }
 
-/// A text in lines of so many columns, broken between words.
+/// Breaks a text between words.
 pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -192,7 +192,7 @@ pub fn wrapped(text: &str, columns: usize) -> Vec<String> {
     lines
 }
 
-/// Signs that stand for others where there is only ASCII. What is not in here is text, and stays as it is.
+/// ASCII replacements for symbols. Other characters are text and not replaced.
 const ASCII: [(&str, &str); 24] = [
     ("●", "*"),
     ("○", "."),
@@ -220,7 +220,7 @@ const ASCII: [(&str, &str); 24] = [
     ("·", "-"),
 ];
 
-/// Turns signs into ASCII, each in its cell.
+/// Replaces symbols by ASCII, each in its cell.
 pub fn to_ascii(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if let Some((_, plain)) = ASCII.iter().find(|(sign, _)| *sign == cell.symbol()) {
@@ -237,7 +237,7 @@ mod tests {
         let area = Rect::new(0, 0, columns, 1);
         let mut buffer = Buffer::empty(area);
         draw(&mut Painter { buffer: &mut buffer, palette: Palette { has_color: false, is_unicode: true } }, area);
-        // The cell behind a wide character is a blank of its own.
+        // The cell after a wide character contains a blank.
         buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
     }
 
@@ -251,7 +251,7 @@ mod tests {
         assert_eq!(left(5, "abcdef"), "abcd…");
         assert_eq!(left(1, "ab"), "…");
         assert_eq!(left(0, "ab"), "");
-        // Two columns a character: three have no room, and half of one is none.
+        // Two columns per character: three do not fit, and half a character is not drawn.
         assert_eq!(left(6, "溶接機"), "溶 接 機 ");
         assert_eq!(left(4, "溶接機"), "溶 … ");
     }

@@ -1,4 +1,4 @@
-//! Progress of long work on stderr: a bar on a terminal, a line now and then elsewhere.
+//! Progress of long work on stderr: a bar on a terminal, otherwise lines at intervals.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Screen, escape};
 
-/// Progress of one thing, shown until dropped.
+/// Progress of one task, shown until it is dropped.
 #[derive(Debug)]
 pub struct Progress {
     bar: Option<ProgressBar>,
@@ -16,23 +16,22 @@ pub struct Progress {
     next_line: NextLine,
 }
 
-/// When the next line is due off a terminal.
+/// Time of the next line without a terminal.
 #[derive(Debug)]
 enum NextLine {
-    /// When so many bytes are done, of which nobody knows how many there are.
+    /// At this number of bytes, if the total is unknown.
     Bytes(u64),
-    /// With each tenth of `total` from the first one that is not done at once; how much is done is counted in KiB or in
-    /// items.
+    /// At each tenth of `total`, unless the work is short. The amount is counted in KiB or items.
     Tenths { total: u64, began: Instant, told: u64, in_kib: bool },
 }
 
-/// Off a terminal, a line each time so many bytes more are done, where their number is not known.
+/// Bytes between two lines if the total is unknown.
 const LINE_EVERY: u64 = 1 << 20;
-/// What is done sooner has no lines.
+/// Shorter work prints no lines.
 const QUICK: Duration = Duration::from_secs(10);
 
 impl Screen {
-    /// Starts to show the transfer of bytes called `what`; `total` where it is known.
+    /// Starts the progress of a transfer; `total` if known.
     pub fn bytes_progress(&self, what: &str, total: Option<u64>) -> Progress {
         let template = match total {
             Some(_) => "{msg} {bar:24} {percent}% {bytes}/{total_bytes} {bytes_per_sec} {eta}",
@@ -45,21 +44,21 @@ impl Screen {
         self.progress(what, total, template, next_line)
     }
 
-    /// Starts to show how many of `total` items called `what` are done, and how long the rest takes.
+    /// Starts the progress of a number of items, with the remaining time.
     pub fn items_progress(&self, what: &str, total: u64) -> Progress {
         let next_line = NextLine::Tenths { total, began: Instant::now(), told: 0, in_kib: false };
         self.progress(what, Some(total), "{msg} {bar:24} {percent}% {pos}/{len} {eta} left", next_line)
     }
 
-    /// The same of parts that show their own progress on a terminal, and stand in the report at the end: elsewhere a line
-    /// for each tenth.
+    /// Starts the progress of parts that have their own bars on a terminal. Without a terminal, it prints a line for
+    /// each tenth.
     pub fn parts_progress(&self, what: &str, total: usize) -> Progress {
         let next_line = NextLine::Tenths { total: total as u64, began: Instant::now(), told: 0, in_kib: false };
         let lines = !self.can_redraw() && !self.quiet && !self.is_json();
         Progress { bar: None, lines, what: what.to_owned(), done: 0, next_line }
     }
 
-    /// Starts to show that `what` takes its time.
+    /// Starts a spinner for work of unknown duration.
     pub fn spinner(&self, what: &str) -> Progress {
         self.progress(what, None, "{msg} {spinner} {elapsed}", NextLine::Bytes(LINE_EVERY))
     }
@@ -80,7 +79,7 @@ impl Screen {
 }
 
 impl Progress {
-    /// So many bytes or items more are done.
+    /// Adds completed bytes or items.
     pub fn advance(&mut self, more: u64) {
         self.done += more;
         match &self.bar {
@@ -90,7 +89,7 @@ impl Progress {
         }
     }
 
-    /// Writes a line, if one is due.
+    /// Prints a line if one is due.
     fn line(&mut self, now: Instant) {
         let (what, done) = (&self.what, self.done);
         match &mut self.next_line {
@@ -107,7 +106,7 @@ impl Progress {
         }
     }
 
-    /// Changes what stands beside the bar; off a terminal, says nothing.
+    /// Changes the text next to the bar; without a terminal, prints nothing.
     pub fn say(&self, text: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(escape::line(text).into_owned());
@@ -123,7 +122,7 @@ impl Drop for Progress {
     }
 }
 
-/// The line of a new tenth; `told` is the last one.
+/// Line for a new tenth; `told` is the last one.
 fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) -> Option<String> {
     let tenths = done.saturating_mul(10) / total.max(1);
     if tenths <= *told || passed < QUICK {
@@ -134,7 +133,7 @@ fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) 
     Some(format!("{}0 %, {done_now} of {total_now}{unit}, {} left", tenths, left(done, total, passed)))
 }
 
-/// How long the rest takes if it goes on like that: `1 min 20 s`.
+/// Estimated remaining time: `1 min 20 s`.
 fn left(done: u64, total: u64, passed: Duration) -> String {
     let rest = u128::from(total.saturating_sub(done)) * passed.as_millis() / u128::from(done.max(1));
     let seconds = rest.div_ceil(1000);

@@ -1,5 +1,5 @@
-//! Questions with an answer of their own: a line, one of a list, yes or no. Keys are read one by one, so a signal may end
-//! the process while the terminal is set for that: whoever asks calls [`Screen::give_back`] then.
+//! Questions with other answers: a line, a choice, yes or no. They change the terminal settings. After an interruption,
+//! the caller must call [`Screen::give_back`].
 
 use std::fmt;
 use std::io;
@@ -11,10 +11,10 @@ use dialoguer::{Confirm, Error, FuzzySelect, Input, Select};
 use super::{Screen, escape, prompt};
 use crate::failure::{Failure, Kind};
 
-/// Most lines of a list that is chosen from.
+/// Number of visible lines of a list.
 const ROWS: usize = 12;
 
-/// Questions as lines of plain text.
+/// Plain text style of questions.
 struct Plain;
 
 impl Theme for Plain {
@@ -24,7 +24,7 @@ impl Theme for Plain {
 }
 
 impl Screen {
-    /// Asks for a line. An empty one is `usual`; where there is none, it is asked again.
+    /// Asks for a line. For an empty one, returns `usual`, or asks again without it.
     pub fn ask_line(&self, question: &str, usual: Option<&str>) -> Result<String, Failure> {
         let question = escape::line(question);
         let input = Input::<String>::with_theme(&Plain).with_prompt(question);
@@ -35,40 +35,39 @@ impl Screen {
         asked(|term| input.interact_text_on(term)).map(|line| line.trim().to_owned())
     }
 
-    /// Asks for one of a list, the first unless another is chosen; its place comes back.
+    /// Asks for one entry of a list, the first by default. Returns its index.
     pub fn ask_choice(&self, question: &str, options: &[String]) -> Result<usize, Failure> {
         let select = Select::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
         let select = select.default(0).max_length(ROWS);
         asked(|term| select.interact_on_opt(term))?.ok_or_else(left)
     }
 
-    /// Asks for one of many, with a text to find it by. Nothing is chosen at first unless `has_first` says so.
+    /// Asks for one entry of a long list, with a search text. The first is preselected only with `has_first`.
     pub fn ask_one_of(&self, question: &str, options: &[String], has_first: bool) -> Result<usize, Failure> {
         let select = FuzzySelect::with_theme(&Plain).with_prompt(escape::line(question)).items(self.lines(options));
         let select = if has_first { select.default(0) } else { select };
         asked(|term| select.max_length(ROWS).interact_on_opt(term))?.ok_or_else(left)
     }
 
-    /// Asks for yes or no; an empty answer is `usual`.
+    /// Asks for yes or no; `usual` for an empty answer.
     pub fn ask_yes(&self, question: &str, usual: bool) -> Result<bool, Failure> {
         let confirm = Confirm::with_theme(&Plain).with_prompt(escape::line(question)).default(usual);
         asked(|term| confirm.wait_for_newline(true).interact_on_opt(term))?.ok_or_else(left)
     }
 
-    /// Sets the terminal as it was before a question that was broken off.
+    /// Restores the terminal after an interrupted question.
     pub fn give_back(&self) {
         Self::stderr("\x1b[?25h\r\n");
         prompt::restore();
     }
 
-    /// Each in a line of its own.
+    /// Escapes and shortens options to one line each.
     fn lines(&self, options: &[String]) -> Vec<String> {
         let room = usize::from(self.width()).saturating_sub(4);
         options.iter().map(|option| escape::line(option).chars().take(room).collect()).collect()
     }
 }
 
-/// Asks on stderr.
 fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     prompt::save();
     ask(&Term::stderr()).map_err(|Error::IO(error)| match error.kind() {
@@ -77,7 +76,7 @@ fn asked<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failure> {
     })
 }
 
-/// Esc, or Ctrl-C.
+/// Failure for Esc or Ctrl-C.
 fn left() -> Failure {
     Failure::new(Kind::Interrupted, "interrupted")
 }

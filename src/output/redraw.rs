@@ -1,28 +1,28 @@
-//! A text on a terminal that is written over the one before.
+//! Text on a terminal that is overwritten by the next version.
 
 use std::cell::{Cell, RefCell};
 
 use dialoguer::console::{Term, measure_text_width};
 
-/// What of the text before is still on the screen, in lines of the terminal.
+/// Lines of the last text on the screen.
 #[derive(Debug, Default)]
 pub struct Redraw {
     drawn: Cell<usize>,
     /// Lines that the next text replaces.
     old: Cell<usize>,
     is_on: Cell<bool>,
-    /// The header of the CSV that was begun.
+    /// Header of the current CSV output.
     pub header: RefCell<String>,
 }
 
 impl Redraw {
-    /// From here on the text is a new one, in the place of that before.
+    /// Starts a new text in place of the last one.
     pub fn begin(&self) {
         self.is_on.set(true);
         self.old.set(self.drawn.take());
     }
 
-    /// Something else was written below: the next text stands below that.
+    /// Something else was printed, so the next text starts below it.
     pub fn forget(&self) {
         self.drawn.take();
         self.old.take();
@@ -33,7 +33,7 @@ impl Redraw {
         self.is_on.get()
     }
 
-    /// The next part of the text, with what removes the text before.
+    /// Next part of the text, preceded by the codes that remove the old one.
     pub fn over(&self, text: String) -> String {
         if !self.is_on() {
             return text;
@@ -44,14 +44,14 @@ impl Redraw {
         self.drawn.set(self.drawn.get() + lines);
         match old {
             0 => text,
-            // The beginning has left the screen, where no cursor can go.
+            // The start of the old text has scrolled off the screen, where the cursor cannot go.
             old if old >= usize::from(height) => format!("\x1b[H\x1b[2J{text}"),
             old => format!("\x1b[{old}A\r\x1b[J{text}"),
         }
     }
 }
 
-/// Lines of a terminal that a line of text takes.
+/// Terminal lines of a text line.
 fn rows(columns: usize, width: usize) -> usize {
     columns.div_ceil(width.max(1)).max(1)
 }

@@ -1,4 +1,4 @@
-//! Views as tables for people and as CSV for spreadsheets.
+//! Rendering of views as text tables.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ pub fn text(view: &View, width: u16, color: bool) -> String {
     parts.join("\n")
 }
 
-/// The tables and fields of a view as CSV, for tests: shorter than the text, and without its blanks.
+/// Tables and fields of a view as CSV, for tests.
 #[cfg(test)]
 pub fn csv(view: &View) -> String {
     let mut out = String::new();
@@ -71,7 +71,7 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
     }
 }
 
-/// Fields, each on lines of its own; a word that is too long beside their names has one to itself.
+/// Fields, one per line or more. A word that is too long next to the names has its own line.
 fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> String {
     const INDENT: usize = 2;
     let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
@@ -106,14 +106,14 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
     out
 }
 
-/// Blanks behind a column.
+/// Space between columns.
 const PADDING: u16 = 2;
 
-/// Rows that are laid out at a time, because the layout takes much memory for each.
+/// Number of rows laid out at a time, to limit memory.
 const LONG: usize = 1000;
 
-/// How a table is laid out whose rows come one after the other: after all of them were measured, and fitted to a width,
-/// each piece looks like a part of the whole.
+/// Layout of a table whose rows are rendered in pieces: first all rows are measured, then the columns are fitted to a
+/// width. So all pieces look like one table.
 #[derive(Debug)]
 pub struct Layout {
     names: Vec<&'static str>,
@@ -124,16 +124,16 @@ pub struct Layout {
 
 #[derive(Debug)]
 struct Column {
-    /// Of its widest cell; fitted, what it gets.
+    /// Width of the widest cell; after fitting, the assigned width.
     width: usize,
-    /// Below it words would be broken.
+    /// Minimum width without broken words.
     least: usize,
     is_number: bool,
     is_whole: bool,
 }
 
 impl Layout {
-    /// For columns of these names.
+    /// Creates a layout for columns with these names.
     pub fn new(names: &[&'static str]) -> Self {
         let column = |name: &&str| {
             let (width, least) = (measure_text_width(name), least(name));
@@ -142,7 +142,7 @@ impl Layout {
         Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
     }
 
-    /// Takes note of a row.
+    /// Measures a row.
     pub fn measure(&mut self, row: &[Cell]) {
         for (column, cell) in self.columns.iter_mut().zip(row) {
             let text = escape::line(&cell.text);
@@ -154,23 +154,23 @@ impl Layout {
         }
     }
 
-    /// Blanks between columns.
+    /// Total space between columns.
     fn gaps(&self) -> usize {
         usize::from(PADDING) * self.columns.len().saturating_sub(1)
     }
 
-    /// The width below which it would break words.
+    /// Minimum total width without broken words.
     fn least(&self) -> usize {
         let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.least });
         words.sum::<usize>() + self.gaps()
     }
 
-    /// Gives columns that need less than their share what they need; the others share the rest, but none gets less than its
+    /// Assigns the width: small columns get what they need, the others share the rest. No column is narrower than its
     /// longest word.
     #[must_use]
     pub fn fit(mut self, width: u16) -> Self {
         self.width = width;
-        // The last column has blanks behind it, too, where there is room for them.
+        // The last column is also followed by a space, if there is room.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
         let at = |column: &Column, share: usize| {
@@ -187,7 +187,7 @@ impl Layout {
         self
     }
 
-    /// The next rows; those of the first piece come below a header.
+    /// Renders the next rows; the first piece has the header.
     pub fn piece(&mut self, rows: &[Vec<Cell>], color: bool) -> String {
         let header = |(name, column): (&&str, &Column)| {
             let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
@@ -220,22 +220,22 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
-/// Longest run of characters that keeps together where it may be broken at all.
+/// Longest part of a breakable word that is kept together.
 const WORD: usize = 16;
 
-/// Whether a word may be broken anywhere: one without end, bytes and bits, a text in a language without blanks.
+/// Whether a word can be broken anywhere: very long words, bytes and bits, and languages without blanks.
 fn may_break(word: &str) -> bool {
     let is_digit = |byte: u8| byte.is_ascii_hexdigit() || b"?_[]".contains(&byte);
     word.len() >= GIANT || !word.is_ascii() || word.bytes().all(is_digit)
 }
 
-/// What of a word stays on a line: a list has its commas, an address is whole.
+/// Parts of a word that stay together: lists are split after commas, addresses are not split.
 fn pieces(word: &str) -> impl Iterator<Item = &str> {
     let is_address = word.contains("://");
     word.split_inclusive(move |c: char| c == ',' && !is_address)
 }
 
-/// The width of a text below which it would break words.
+/// Minimum width of a text without broken words.
 fn least(text: &str) -> usize {
     let of_piece = |piece: &str| {
         let wide = measure_text_width(piece);
@@ -244,7 +244,7 @@ fn least(text: &str) -> usize {
     text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
 }
 
-/// The rows one below the other, each as a list of fields: for a terminal that is too narrow for columns.
+/// Rows as lists of fields, for a terminal that is too narrow for columns.
 fn records(table: &Table, width: u16, color: bool) -> String {
     let rows = table.rows.iter().map(|row| {
         let fields = table.columns.iter().copied().zip(row.iter().cloned()).collect();
@@ -253,10 +253,10 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-/// A word without end: to break it like others takes a time that grows with its square.
+/// Length of a very long word. Normal breaking would take quadratic time.
 const GIANT: usize = 4096;
 
-/// The text in lines of `room` columns, as far as its words allow.
+/// Breaks a text into lines of `room` columns, between words.
 fn folded(text: &str, room: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
     let mut column = 0;
@@ -305,12 +305,12 @@ fn styled(cell: &Cell, room: usize) -> comfy_table::Cell {
     if cell.is_number { shown.set_alignment(CellAlignment::Right) } else { shown }
 }
 
-/// A line as wide as it is.
+/// A line without breaks, with its color.
 pub fn painted(line: &Cell, color: bool) -> String {
     dyed(&escape::line(&line.text), line.tone, color).into_owned()
 }
 
-/// A text in the colour of its tone.
+/// A text with the color of its tone.
 fn dyed(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
     let code = match tone {
         Tone::Good if color => 32,
@@ -321,7 +321,7 @@ fn dyed(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
     format!("\x1b[{code}m{text}\x1b[0m").into()
 }
 
-/// `x (mm)` becomes `x_mm`, and `#` `number`.
+/// Converts `x (mm)` to `x_mm`, and `#` to `number`.
 #[cfg(test)]
 fn column_id(name: &str) -> String {
     if name == "#" {
@@ -332,7 +332,7 @@ fn column_id(name: &str) -> String {
     if id.is_empty() { "number".to_owned() } else { id }
 }
 
-/// The text of a cell; numbers are as they are.
+/// Text of a cell; numbers are unchanged.
 #[cfg(test)]
 fn csv_cell(cell: &Cell) -> String {
     if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::harmless(&cell.text) }
@@ -372,7 +372,7 @@ mod tests {
         assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
     }
 
-    /// With a time that grows with the square of the length this would take hours.
+    /// A quadratic algorithm would take hours here.
     #[test]
     fn a_word_of_megabytes_is_laid_out_in_lines() {
         let giant = "A".repeat(8 << 20);

@@ -1,34 +1,34 @@
-//! What a report looks like before anyone decides on table or CSV: fields, tables and lines.
+//! Views: content of a report independent of its format, as fields, tables and lines.
 
-/// How a cell wants to be noticed, where there is colour.
+/// Importance of a cell, shown as a color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
     /// Plain text.
     #[default]
     Plain,
-    /// As it should be.
+    /// Good.
     Good,
-    /// Worth a look.
+    /// Warning.
     Warning,
-    /// Wrong.
+    /// Error.
     Bad,
 }
 
 /// One value of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Cell {
-    /// Its text, not yet made safe for a terminal.
+    /// Text, not escaped.
     pub text: String,
-    /// Numbers stand on the right.
+    /// Numbers are right-aligned.
     pub is_number: bool,
-    /// How it is coloured.
+    /// Color.
     pub tone: Tone,
-    /// Nothing in its column is broken into lines, such as times.
+    /// The column is never broken into lines, for example times.
     pub is_whole: bool,
 }
 
 impl Cell {
-    /// A number with its own formatting, such as `100.000`.
+    /// A number with its own format, such as `100.000`.
     pub fn number(text: impl Into<String>) -> Self {
         Self { text: text.into(), is_number: true, ..Self::default() }
     }
@@ -52,7 +52,7 @@ impl Cell {
         Self::from(if on { "on" } else { "off" })
     }
 
-    /// A value that may be missing.
+    /// A value that can be missing.
     pub fn maybe<T: Into<Self>>(value: Option<T>) -> Self {
         value.map_or_else(|| Self::from("-"), Into::into)
     }
@@ -81,19 +81,19 @@ macro_rules! cell_from_number {
 }
 cell_from_number!(u8, u16, u32, u64, usize, i16, i32, i64);
 
-/// Rows under named columns.
+/// A table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Table {
-    /// Column names, in words; CSV turns them into identifiers.
+    /// Column names; for CSV they are converted to identifiers.
     pub columns: Vec<&'static str>,
-    /// Rows as long as `columns`.
+    /// Rows with one cell per column.
     pub rows: Vec<Vec<Cell>>,
-    /// Said instead of an empty table.
+    /// Text for an empty table.
     pub empty: &'static str,
 }
 
 impl Table {
-    /// A table without rows yet, and what to say if it stays that way.
+    /// A table without rows; `empty` is its text if none are added.
     pub fn new(columns: &[&'static str], empty: &'static str) -> Self {
         Self { columns: columns.to_vec(), rows: Vec::new(), empty }
     }
@@ -106,7 +106,7 @@ impl Table {
 }
 
 impl Table {
-    /// The same without a column that says nothing in any row.
+    /// Removes a column that is empty in all rows.
     #[must_use]
     pub fn without_blank(mut self, column: &str) -> Self {
         let Some(at) = self.columns.iter().position(|name| *name == column) else { return self };
@@ -120,8 +120,8 @@ impl Table {
 }
 
 impl Table {
-    /// Tables as one, with what each is of in a first column. They have the columns of the widest of them, in its order, or
-    /// some of these; `None` if one has another.
+    /// Joins tables, with their names in a first column. The columns are those of the widest table; the others can have
+    /// fewer. `None` if one has other columns.
     pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {
         let (_, widest) = tables.iter().rev().max_by_key(|(_, table)| table.columns.len())?;
         let place = |table: &Self, column: &&str| table.columns.iter().position(|own| own == column);
@@ -145,43 +145,43 @@ impl Table {
     }
 }
 
-/// A part of a view.
+/// Part of a view.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Section {
-    /// Names and values, a line each.
+    /// Names and values, one per line.
     Fields(Vec<(&'static str, Cell)>),
     /// Rows and columns.
     Table(Table),
     /// Text of several lines.
     Text(String),
-    /// Lines that are coloured one by one, such as a diff.
+    /// Lines with their own colors, such as a diff.
     Lines(Vec<Cell>),
 }
 
-/// A whole report, for a person.
+/// Content of a report for people.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct View {
-    /// Its parts, with an empty line between.
+    /// Parts, separated by an empty line.
     pub sections: Vec<Section>,
 }
 
 impl View {
-    /// One list of fields.
+    /// A view of fields.
     pub fn fields<const N: usize>(fields: [(&'static str, Cell); N]) -> Self {
         Self { sections: vec![Section::Fields(fields.into())] }
     }
 
-    /// One table.
+    /// A view of one table.
     pub fn table(table: Table) -> Self {
         Self { sections: vec![Section::Table(table)] }
     }
 
-    /// One text.
+    /// A view of one text.
     pub fn text(text: impl Into<String>) -> Self {
         Self { sections: vec![Section::Text(text.into())] }
     }
 
-    /// The table, if the view is nothing else.
+    /// The table, if the view contains nothing else.
     pub fn as_table(&self) -> Option<&Table> {
         match &self.sections[..] {
             [Section::Table(table)] => Some(table),

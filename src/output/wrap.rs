@@ -1,11 +1,11 @@
-//! Lines for people, broken between words.
+//! Line breaking between words.
 
 use std::borrow::Cow;
 
 use dialoguer::console::measure_text_width;
 
-/// The text with lines of at most `width` columns, as far as its words allow: a word is never broken, so that an address
-/// or a command can be copied. What continues a line is indented as that line is.
+/// Breaks the text into lines of at most `width` columns, only between words, so that an address or a command can be
+/// copied. Continued lines have the indentation of their first line.
 pub fn wrapped(text: &str, width: usize) -> Cow<'_, str> {
     if text.lines().all(|line| measure_text_width(line) <= width) {
         return text.into();

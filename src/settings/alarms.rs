@@ -1,4 +1,4 @@
-//! `alarms.toml` beside `robots.toml`: what alarm numbers mean at this site, where no manual that may be copied says it.
+//! `alarms.toml` next to `robots.toml`: meaning of alarm codes at this site.
 //!
 //! ```toml
 //! [[alarm]]
@@ -10,8 +10,8 @@
 //! robot = "cell3"
 //! ```
 //!
-//! `robot` and `model` narrow an entry; of several that fit the narrowest counts. A mistake in the file is an error with
-//! line and suggestion.
+//! `robot` and `model` restrict an entry; the most specific matching entry is used. A mistake in the file is an error
+//! with line and suggestion.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -27,7 +27,6 @@ use crate::controller::yerc::Model;
 use crate::failure::{Failure, plain};
 use crate::files;
 
-/// Name of the file.
 const FILE_NAME: &str = "alarms.toml";
 
 /// What the file says of an alarm.
@@ -41,10 +40,10 @@ pub struct Explanation {
     pub remedy: Option<String>,
 }
 
-/// Whose alarm it is, as far as that is known.
+/// Origin of an alarm, as far as known.
 #[derive(Debug, Clone, Copy)]
 pub struct Origin<'a> {
-    /// The family.
+    /// Family.
     pub family: Family,
     /// Name of the robot.
     pub robot: Option<&'a str>,
@@ -53,42 +52,42 @@ pub struct Origin<'a> {
 }
 
 impl Explanation {
-    /// All of it in a line.
+    /// All parts in one line.
     pub fn line(&self) -> String {
         let parts = [Some(&self.text), self.cause.as_ref(), self.remedy.as_ref()].into_iter().flatten();
         parts.map(String::as_str).collect::<Vec<_>>().join("; ")
     }
 
-    /// The same as a field for people, where there is one.
+    /// The explanation as a field for people, if there is one.
     pub fn field<C: From<String>>(explained: Option<&Self>) -> Option<(&'static str, C)> {
         explained.map(|explained| ("alarms.toml", explained.line().into()))
     }
 }
 
 impl<'a> Origin<'a> {
-    /// Of any robot of a family.
+    /// Any robot of a family.
     pub fn any(family: Family) -> Self {
         Self { family, robot: None, model: None }
     }
 
-    /// Of this robot.
+    /// This robot.
     pub fn of(robot: &'a Robot) -> Self {
         let model = (robot.family == Family::Yerc).then(|| robot.likely_model()).flatten();
         Self { robot: Some(&robot.name), model, ..Self::any(robot.family) }
     }
 }
 
-/// The file of an inventory, which may not be there.
+/// Path of the file of an inventory; the file can be missing.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Alarms(Option<PathBuf>);
 
 impl Alarms {
-    /// The one beside this inventory.
+    /// The file next to this inventory.
     pub fn beside(inventory: Option<&Path>) -> Self {
         Self(inventory.map(|path| path.with_file_name(FILE_NAME)))
     }
 
-    /// What it says of an alarm; nothing if there is no file.
+    /// Explanation of an alarm; `None` without a file or entry.
     pub fn find(&self, origin: Origin<'_>, code: &str) -> Result<Option<Explanation>, Failure> {
         let Some(path) = &self.0 else { return Ok(None) };
         let text = match files::text(path, files::SETTINGS) {
@@ -103,12 +102,11 @@ impl Alarms {
     }
 }
 
-/// What the file of a robot's inventory says of an alarm of its.
+/// Explanation of an alarm of a robot, from the file of its inventory.
 pub fn find(robot: &Robot, code: &str) -> Result<Option<Explanation>, Failure> {
     robot.alarms.find(Origin::of(robot), code)
 }
 
-/// The whole file.
 #[derive(Debug)]
 struct Table(Vec<Entry>);
 
@@ -122,7 +120,7 @@ struct Entry {
 }
 
 impl Table {
-    /// Reads the text of a file called `name` in messages.
+    /// Parses the text of a file; `name` is for messages.
     fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |start: usize, what: &str| {
             let (line, column) = line_and_column(text, start);
@@ -150,7 +148,7 @@ impl Table {
         file.alarm.into_iter().map(entry).collect::<Result<_, Failure>>().map(Self)
     }
 
-    /// The narrowest entry that fits.
+    /// Most specific matching entry.
     fn find(&self, origin: Origin<'_>, code: &str) -> Option<Explanation> {
         let code = normal(code);
         let fits = |entry: &&Entry| {
@@ -160,13 +158,13 @@ impl Table {
                 && entry.model.is_none_or(|model| Some(model) == origin.model)
         };
         let narrow = |entry: &&Entry| (entry.robot.is_some(), entry.model.is_some());
-        // Of equally narrow ones the first.
+        // Of equally specific entries, the first.
         let found = self.0.iter().rev().filter(fits).max_by_key(narrow);
         found.map(|entry| entry.explanation.clone())
     }
 }
 
-/// A code without what people write differently.
+/// Normalizes a code.
 fn normal(code: &str) -> String {
     let code = code.trim().to_ascii_lowercase();
     let digits = code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0');

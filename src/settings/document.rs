@@ -1,27 +1,24 @@
-//! `robots.toml` as a text that people keep: whatever is changed in it, the comments and the order of the rest stay.
+//! Editor for `robots.toml` that keeps comments and order.
 
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value, value};
 
-/// The text of an inventory, to be changed.
+/// Text of an inventory, for editing.
 #[derive(Debug, Clone)]
 pub struct Document(DocumentMut);
 
-/// Why a text cannot be changed so.
+/// Reason why the text cannot be edited.
 pub type Wrong = &'static str;
 
 const NO_LIST: Wrong = "`robot` is no list of [[robot]] tables";
 const NO_ENTRY: Wrong = "the robot has no [[robot]] table of its own";
 
 impl Document {
-    /// Reads a text.
-    ///
-    /// # Errors
-    /// It is not TOML.
+    /// Parses a text.
     pub fn parse(text: &str) -> Result<Self, TomlError> {
         text.parse().map(Self)
     }
 
-    /// Appends an entry; the first one becomes the default.
+    /// Appends an entry. The first entry becomes the default.
     pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), Wrong> {
         let name = entry.get("name").cloned().unwrap_or_default();
         let list = self.0.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
@@ -33,13 +30,13 @@ impl Document {
         Ok(())
     }
 
-    /// Removes an entry with the comment that stands right above it.
+    /// Removes an entry with the comment directly above it.
     pub fn remove(&mut self, name: &str) -> Result<(), Wrong> {
         let list = self.list()?;
         let at = list.iter().position(|entry| is_called(entry, name)).ok_or(NO_ENTRY)?;
         let gone = list.remove(at);
         let above = gone.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-        // What an empty line separates from the entry is about something else, such as the file.
+        // A comment separated by an empty line is about something else, such as the file.
         let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
             self.put_before_table(gone.position(), kept);
@@ -50,7 +47,7 @@ impl Document {
         Ok(())
     }
 
-    /// Gives an entry another name, and the default that names it.
+    /// Renames an entry, and the default if it names the entry.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<(), Wrong> {
         put(self.entry(old)?, "name", new.into());
         if self.default() == Some(old) {
@@ -59,7 +56,7 @@ impl Document {
         Ok(())
     }
 
-    /// The robot that is taken when none is named.
+    /// Sets the default robot.
     pub fn set_default(&mut self, name: &str) {
         let is_first = self.0.as_table().get_values().is_empty();
         put(self.0.as_table_mut(), "default", name.into());
@@ -68,7 +65,7 @@ impl Document {
         }
     }
 
-    /// What the file begins with stays above its first key.
+    /// Keeps the header comment of the file above its first key.
     fn keep_head(&mut self) {
         let Some(first) = self.tables().min_by_key(|table| table.position()) else { return };
         let above = first.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default().to_owned();
@@ -80,7 +77,7 @@ impl Document {
         }
     }
 
-    /// Writes a setting of an entry, or removes it; what was there comes back.
+    /// Sets or removes a setting of an entry. Returns the old value.
     pub fn set(&mut self, name: &str, key: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
         let entry = self.entry(name)?;
         if let Some(name) = key.strip_prefix("names.") {
@@ -96,7 +93,7 @@ impl Document {
         self.0.get("default").and_then(Item::as_str)
     }
 
-    /// Removes the default; a comment above it, which may be that of the file, stays where it is.
+    /// Removes the default, but keeps the comment above it, which can be that of the file.
     fn remove_default(&mut self) {
         let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
@@ -121,7 +118,7 @@ impl Document {
         })
     }
 
-    /// Puts comments before the table that follows a place in the text, or at the end.
+    /// Inserts comments before the table that follows a position, or at the end.
     fn put_before_table(&mut self, place: Option<isize>, text: &str) {
         let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
         if let Some(next) = next {
@@ -145,7 +142,7 @@ fn is_called(entry: &Table, name: &str) -> bool {
     entry.get("name").and_then(Item::as_str) == Some(name)
 }
 
-/// Writes a name of an entry, or removes it, and the table of its names with the last one.
+/// Sets or removes a name of an entry. An empty table of names is removed.
 fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, Wrong> {
     const NO_TABLE: Wrong = "`names` is no table";
 
@@ -169,7 +166,7 @@ fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<
     Ok(None)
 }
 
-/// Writes a value where it stands, with the comment behind it, or at the end of the table; what was there comes back.
+/// Replaces a value and keeps the comment after it, or adds it at the end of the table. Returns the old value.
 fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
     if let Some(Item::Value(old)) = table.get_mut(key) {
         *new.decor_mut() = old.decor().clone();
@@ -183,7 +180,7 @@ fn put(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
 mod tests {
     use super::*;
 
-    /// With a comment at each place where people write one.
+    /// With a comment in every usual place.
     const TEXT: &str = "\
 # Hall 3, kept by Ann
 
@@ -214,7 +211,7 @@ name = \"b\"
         document.to_string()
     }
 
-    /// What is gone and what is new, in the order of the lines.
+    /// Removed and added lines in order.
     fn difference(text: &str) -> (Vec<&str>, Vec<&str>) {
         let (old, new): (Vec<&str>, Vec<&str>) = (TEXT.lines().collect(), text.lines().collect());
         let gone = old.iter().filter(|line| !new.contains(line)).copied().collect();

@@ -1,14 +1,14 @@
-//! Durations as people type them: `500ms`, `3s`, `2m`, `1h`, or bare seconds.
+//! Typed durations: `500ms`, `3s`, `2m`, `1h`, or seconds without a unit.
 
 use std::time::Duration;
 
-/// Units from the longest suffix on, so that `ms` is not read as minutes of `m`.
+/// Units, longest suffix first, so that `ms` is not parsed as `m`.
 const UNITS: [(&str, u64); 4] = [("ms", 1), ("s", 1_000), ("m", 60_000), ("h", 3_600_000)];
 
-/// Longest duration taken, a day: longer ones are typing errors.
+/// Longest duration: a day. Longer ones are typing errors.
 const MAX: Duration = Duration::from_secs(24 * 3600);
 
-/// Reads a duration.
+/// Parses a duration.
 pub fn parse(text: &str) -> Result<Duration, String> {
     let wrong = || format!("'{text}' is not a valid duration; write 500ms, 3s, 2m or 1h");
     let (number, unit_ms) = UNITS
@@ -30,7 +30,7 @@ pub fn parse(text: &str) -> Result<Duration, String> {
     Ok(duration)
 }
 
-/// Reads a duration that must not be 0, as nothing answers in no time.
+/// Parses a duration that must not be 0.
 pub fn parse_some(text: &str) -> Result<Duration, String> {
     match parse(text)? {
         Duration::ZERO => Err(format!("'{text}' leaves no time at all; write 500ms, 3s, 2m or 1h")),
@@ -38,7 +38,7 @@ pub fn parse_some(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// The shortest exact form, the inverse of [`parse`].
+/// Shortest exact form; the inverse of [`parse`].
 pub fn display(duration: Duration) -> String {
     let ms = duration.as_millis();
     match ms {
@@ -50,7 +50,7 @@ pub fn display(duration: Duration) -> String {
     }
 }
 
-/// As a field of a TOML file: a string as above, not 0.
+/// A field of a TOML file: a string as above, not 0.
 pub(super) mod field {
     use serde::{Deserialize, Deserializer, de::Error};
 

@@ -17,7 +17,7 @@
 //! parts = "B5"
 //! ```
 //!
-//! A mistake in it is an error with line, column and a suggestion; nothing is ever guessed.
+//! A mistake in the file is an error with line, column and a suggestion. Nothing is guessed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -39,21 +39,21 @@ use crate::controller::yerc::payload::MAX_AXES;
 use crate::failure::{Failure, plain};
 use crate::files;
 
-/// Name of the file in the platform's configuration folder, below `armctl/`.
+/// File name in the platform's configuration folder, below `armctl/`.
 const FILE_NAME: &str = "robots.toml";
 
-/// Settings that a robot, the `[defaults]` of the file, a flag or the environment can give.
+/// Settings that a robot, the `[defaults]` of the file, a flag or the environment can have.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Longest wait of one try for its answer.
+    /// Time limit of one attempt.
     pub timeout: Option<Duration>,
-    /// Further tries of a read after silence.
+    /// Number of retries of a read.
     pub retries: Option<u32>,
     /// Encoding of names and texts on the controller.
     pub encoding: Option<Encoding>,
-    /// Read commands only.
+    /// Whether only reads and stops are accepted.
     pub read_only: Option<bool>,
-    /// Whether the first command that needs a command connection opens a session (yrcx).
+    /// Whether the first command that needs a control connection opens a session (yrcx).
     pub hold: Option<bool>,
     /// Controller model (yerc).
     pub model: Option<ModelSetting>,
@@ -62,48 +62,48 @@ pub struct Options {
 /// A robot of the inventory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Its name, unique in the file.
+    /// Name, unique in the file.
     pub name: String,
-    /// Where it is.
+    /// Target.
     pub target: Target,
-    /// Its family.
+    /// Family.
     pub family: Family,
-    /// What is set for it alone.
+    /// Settings of this robot.
     pub options: Options,
-    /// Pulses of a degree of each axis.
+    /// Pulses per degree of each axis.
     pub pulses_per_degree: Vec<f64>,
-    /// Free words to choose by.
+    /// Tags.
     pub tags: Vec<String>,
-    /// Names of its signals, variables and the like.
+    /// Names of its signals, variables and registers.
     pub names: Arc<[Name]>,
 }
 
-/// The whole file.
+/// Content of the file.
 #[derive(Debug, Clone, Default)]
 pub struct Inventory {
-    /// Where it was read, or would be.
+    /// Path of the file, whether it exists or not.
     pub path: Option<PathBuf>,
-    /// The robot taken when none is named.
+    /// Default robot.
     pub default: Option<String>,
-    /// What is set for all robots.
+    /// Settings for all robots.
     pub defaults: Options,
-    /// The robots, in the order of the file.
+    /// Robots in the order of the file.
     pub robots: Vec<Entry>,
 }
 
-/// The path of the inventory: named by flag or environment, or in the platform's folder.
+/// Path of the inventory: from flag or environment, or in the platform's folder.
 #[derive(Debug, Clone)]
 pub enum Location {
-    /// Named: it must exist.
+    /// Named by the user; it must exist.
     Named(PathBuf),
-    /// The platform's: it may be missing.
+    /// In the platform's folder; it can be missing.
     Usual(PathBuf),
-    /// No home folder to look in.
+    /// There is no home folder.
     Nowhere,
 }
 
 impl Location {
-    /// The place that counts when `named` is what flag or environment gave.
+    /// Selects the location; `named` is from flag or environment.
     pub fn find(named: Option<PathBuf>) -> Self {
         match (named, etcetera::choose_base_strategy()) {
             (Some(path), _) => Self::Named(path),
@@ -122,7 +122,7 @@ impl Location {
 }
 
 impl Inventory {
-    /// Reads the file. One that is missing from its usual place counts as empty.
+    /// Reads the file. A missing file in the platform's folder counts as empty.
     pub fn load(location: &Location) -> Result<Self, Failure> {
         let Some(path) = location.path() else { return Ok(Self::default()) };
         let text = match files::text(path, files::SETTINGS) {
@@ -140,7 +140,7 @@ impl Inventory {
         Ok(inventory)
     }
 
-    /// Reads the text of a file called `name` in messages.
+    /// Parses the text of a file; `name` is for messages.
     pub fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |span: std::ops::Range<usize>, what: &str| {
             let (line, column) = line_and_column(text, span.start);
@@ -237,19 +237,19 @@ impl Inventory {
         })
     }
 
-    /// The robots whose name fits `pattern`, in which `*` and `?` stand for others.
+    /// Robots whose name matches a pattern with `*` and `?`.
     pub fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a Entry> {
         self.robots.iter().filter(move |robot| fits(pattern, &robot.name))
     }
 }
 
-/// Whether `name` can be a robot's name: it becomes part of tables, file names and globs.
+/// Whether `name` is a valid robot name. Names are used in tables, file names and patterns.
 pub fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
 }
 
-/// Glob match with `*` and `?`.
+/// Pattern match with `*` and `?`.
 pub fn fits(pattern: &str, name: &str) -> bool {
     let mut pattern_chars = pattern.chars();
     match pattern_chars.next() {
@@ -267,7 +267,7 @@ pub fn fits(pattern: &str, name: &str) -> bool {
     }
 }
 
-/// Reads a word of the file, with the place of a mistake.
+/// Parses a value of the file; an error has its position.
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     raw: Option<Spanned<String>>,
     at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
@@ -275,7 +275,7 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     raw.map(|word| word.as_ref().parse::<T>().map_err(|why| at(word.span(), &why.to_string()))).transpose()
 }
 
-/// A name of a robot, and what it stands for.
+/// Parses a name and its address.
 fn named_address(
     family: Family,
     name: &str,
@@ -293,7 +293,7 @@ fn named_address(
     })
 }
 
-/// A name for something of a robot, as it is written.
+/// Checks a name and the address it stands for.
 pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
     let examples = match family {
         Family::Yerc => "such as clamp = 27010, parts = \"B5\" or speed = \"M10\"",
@@ -311,14 +311,14 @@ pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure>
     }
 }
 
-/// Line and column, both from 1, of a byte offset.
+/// Line and column of a byte offset, both from 1.
 pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// The nearest word in serde's "unknown field `x`, expected one of `a`, `b`".
+/// Most similar word in serde's "unknown field `x`, expected one of `a`, `b`".
 pub(super) fn suggestion(message: &str) -> Option<String> {
     let (_, rest) = message.split_once("unknown field `")?;
     let (word, rest) = rest.split_once('`')?;

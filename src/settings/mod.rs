@@ -1,6 +1,6 @@
-//! Which robots a command is for, and every setting with where it came from.
+//! Settings: the selected robots, and every setting with its origin.
 //!
-//! Flag > environment > robot > the file's `[defaults]` > built-in.
+//! Priority: flag, environment, robot, `[defaults]` of the file, built-in.
 
 pub mod alarms;
 pub mod document;
@@ -28,20 +28,20 @@ use model::{ModelSetting, ToldModels};
 use names::RobotNames;
 use target::{Address, Family, Given, Target};
 
-/// Where a setting came from.
+/// Origin of a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
-    /// A flag of the command line.
+    /// Command line flag.
     Flag,
-    /// A variable of the environment.
+    /// Environment variable.
     Environment,
-    /// The target URL.
+    /// Target URL.
     Url,
-    /// The robot's entry in the inventory.
+    /// Inventory entry of the robot.
     Robot,
     /// `[defaults]` of the inventory.
     Defaults,
-    /// This program.
+    /// Built-in default.
     BuiltIn,
 }
 
@@ -58,67 +58,67 @@ impl fmt::Display for Origin {
     }
 }
 
-/// A value and where it came from.
+/// A value and its origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setting<T> {
-    /// The value in force.
+    /// Value.
     pub value: T,
-    /// Its source.
+    /// Origin.
     pub origin: Origin,
 }
 
-/// One robot, ready to be talked to.
+/// A robot with all its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
-    /// Its name in the inventory, or a short form of the target.
+    /// Name in the inventory, or a short form of the target.
     pub name: String,
-    /// Its family.
+    /// Family.
     pub family: Family,
-    /// Where it is.
+    /// Target.
     pub target: Setting<Target>,
-    /// Longest wait of one try for its answer.
+    /// Time limit of one attempt.
     pub timeout: Setting<Duration>,
-    /// Further tries of a read after silence.
+    /// Number of retries of a read.
     pub retries: Setting<u32>,
     /// Encoding of names and texts.
     pub encoding: Setting<Encoding>,
-    /// Read commands only.
+    /// Whether only reads and stops are accepted.
     pub read_only: Setting<bool>,
-    /// The entry of the inventory that makes it read-only, where that is another one with the same address.
+    /// Inventory entry with the same address that makes it read-only, if that is another one.
     pub bound_by: Option<String>,
-    /// Its other addresses, where its network was asked for them.
+    /// Other addresses of it, if its network was asked.
     pub aliases: Vec<Address>,
-    /// Whether the first command that needs a command connection opens a session for it.
+    /// Whether the first command that needs a control connection opens a session.
     pub hold: Setting<bool>,
-    /// Controller model; means something for yerc alone.
+    /// Controller model; only for yerc.
     pub model: Setting<ModelSetting>,
-    /// Pulses of a degree of each axis of the first robot; empty where nobody said. Means something for yerc alone.
+    /// Pulses per degree of each axis of the first robot; empty if not set. Only for yerc.
     pub pulses_per_degree: Vec<f64>,
-    /// Free words to choose by.
+    /// Tags.
     pub tags: Vec<String>,
-    /// Which sessions commands to it go through.
+    /// Which sessions its commands use.
     pub sessions: Sessions,
-    /// What alarms mean at its site.
+    /// Alarm explanations of its site.
     pub alarms: Alarms,
     /// Names of its signals, variables and registers.
     pub names: RobotNames,
-    /// The inventory, which may make it read-only at any time.
+    /// Path of the inventory, which can make it read-only at any time.
     pub inventory: Option<PathBuf>,
 }
 
-/// The folder for what this program remembers of its user between two runs, if he has a home.
+/// Folder for persistent state of the user, if there is a home folder.
 pub fn state_folder() -> Option<PathBuf> {
     let folders = etcetera::choose_base_strategy().ok()?;
     Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 impl Robot {
-    /// Whether this is an address of it, as far as is known.
+    /// Whether this is one of its known addresses.
     pub fn is_at(&self, address: &Address) -> bool {
         self.target.value.address().meets(address) || self.aliases.iter().any(|alias| alias.meets(address))
     }
 
-    /// The model of its controller, as far as it is known here: named, told another time, or that of the simulator.
+    /// Probable model of its controller: from the settings, from an earlier answer, or that of the simulator.
     pub fn likely_model(&self) -> Option<Model> {
         let target = &self.target.value;
         let told = || ToldModels::of_user()?.find(&target.address()).map(|told| told.model());
@@ -126,19 +126,19 @@ impl Robot {
         self.model.value.named().or_else(told).or_else(simulated)
     }
 
-    /// How messages name it: `cell3 (udp://192.168.1.31)`.
+    /// Label in messages: `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();
         if self.target.origin == Origin::Robot {
             format!("{} ({url})", self.name)
         } else {
-            // The bare `sim:` would run into the colon that follows a label.
+            // `sim:` without its colon, because a colon follows a label.
             url.trim_end_matches(':').to_owned()
         }
     }
 }
 
-/// What flags and environment say about the choice of robots.
+/// Selection of robots by flags and environment.
 #[derive(Debug, Clone, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag, or what a command makes of one")]
 pub struct Selection {
@@ -146,9 +146,9 @@ pub struct Selection {
     pub sim: bool,
     /// `--target`.
     pub target: Option<Given>,
-    /// `--robot`, names or globs; without flags those of `ARMCTL_ROBOT`.
+    /// `--robot`: names or patterns. Without flags, those of `ARMCTL_ROBOT`.
     pub robots: Vec<String>,
-    /// Whether they are those of `ARMCTL_ROBOT`.
+    /// Whether `robots` is from `ARMCTL_ROBOT`.
     pub from_environment: bool,
     /// `--tag`.
     pub tags: Vec<String>,
@@ -156,46 +156,46 @@ pub struct Selection {
     pub all: bool,
     /// `ARMCTL_TARGET`.
     pub environment: Option<Given>,
-    /// Which sessions commands go through.
+    /// Which sessions commands use.
     pub sessions: Sessions,
-    /// The family of a simulator where the command line does not tell it; `None` for the first one.
+    /// Family of a simulator without a family in the line; `None` means the first one.
     pub simulated: Option<Family>,
-    /// Whether `--sim` means the simulators of all families where the command line does not tell one.
+    /// Whether `--sim` without a family means the simulators of all families.
     pub every_simulator: bool,
 }
 
-/// Which sessions commands go through.
+/// Which sessions commands use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sessions {
     /// None (`--no-session`).
     #[default]
     None,
-    /// Those of this user.
+    /// Sessions of this user.
     Shared,
-    /// The same, and no other way: what is held by none is not reached.
+    /// Only sessions of this user; no direct connection.
     Only,
-    /// The same, but simulators are this process's own, where it runs several command lines.
+    /// Sessions of this user, except that simulators run in this process, which executes several command lines.
     OwnSimulators,
 }
 
 impl Selection {
-    /// Whether nothing was said about robots.
+    /// Whether no robot was selected.
     pub fn names_nobody(&self) -> bool {
         !self.has_flags() && self.environment.is_none() && self.robots.is_empty()
     }
 
-    /// Whether flags say something about robots.
+    /// Whether flags select robots.
     pub fn has_flags(&self) -> bool {
         let by_name = !self.from_environment && !self.robots.is_empty();
         self.sim || self.all || self.target.is_some() || by_name || !self.tags.is_empty()
     }
 
-    /// Whether a flag gives this very name: what is only set somewhere may be meant for another command.
+    /// Whether a flag contains exactly this name. A name from the environment can be meant for another command.
     pub fn is_typed(&self, name: &str) -> bool {
         !self.from_environment && self.robots.iter().any(|robot| robot == name)
     }
 
-    /// Whether the command line can mean several robots, so that the answer is a list.
+    /// Whether the line can select several robots, so that the answer is a list.
     pub fn is_plural(&self) -> bool {
         self.all
             || self.sim && self.every_simulator
@@ -205,24 +205,24 @@ impl Selection {
     }
 }
 
-/// Everything that settings are made of.
+/// Sources of all settings.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// The choice of robots.
+    /// Selection of robots.
     pub selection: Selection,
-    /// Flags.
+    /// Settings of flags.
     pub flags: Options,
-    /// Variables of the environment.
+    /// Settings of environment variables.
     pub environment: Options,
-    /// The file.
+    /// Inventory.
     pub inventory: Inventory,
 }
 
-/// Further tries of a read unless set.
+/// Default number of retries of a read.
 const RETRIES: u32 = 3;
 
 impl Sources {
-    /// The robots a command of `family` is for (of any family when `None`), at least one.
+    /// Selected robots for a command of `family` (`None`: any family); at least one.
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         if selection.from_environment && selection.environment.is_some() {
@@ -257,15 +257,14 @@ impl Sources {
         )))
     }
 
-    /// Whether the robots are those of the inventory, so that another inventory may mean others.
+    /// Whether the robots are from the inventory, so that a changed inventory can change them.
     pub fn follows_inventory(&self) -> bool {
         let Selection { sim, target, all, robots, tags, environment, .. } = &self.selection;
         let by_entry = *all || !robots.is_empty() || !tags.is_empty();
         !*sim && target.is_none() && (by_entry || environment.is_none())
     }
 
-    /// The robots that were chosen, as far as an inventory has them that is not the one they were chosen from: there may
-    /// be none left.
+    /// Selected robots that a changed inventory still contains; can be empty.
     pub fn robots_left(&self) -> Result<Vec<Robot>, Failure> {
         let Selection { robots, tags, all, .. } = &self.selection;
         let is_named = |entry: &Entry| match &robots[..] {
@@ -277,20 +276,20 @@ impl Sources {
         self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolved(entry, None)).collect()
     }
 
-    /// What alarms mean at the site of the inventory.
+    /// Alarm explanations of the inventory's site.
     pub fn alarms(&self) -> Alarms {
         Alarms::beside(self.inventory.path.as_deref())
     }
 
-    /// Where nothing is said about robots, takes all of the inventory instead of its default.
+    /// Without a selection, selects all robots of the inventory instead of the default.
     pub fn widen(&mut self) {
         self.selection.all |= self.selection.names_nobody() && !self.inventory.robots.is_empty();
     }
 
-    /// Takes robots by their names.
+    /// Selects robots by name.
     ///
     /// # Errors
-    /// A flag names robots, too.
+    /// A flag also selects robots.
     pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
         if self.selection.has_flags() {
             return Err(
@@ -301,7 +300,7 @@ impl Sources {
         Ok(())
     }
 
-    /// Takes a robot by its name, or by its URL.
+    /// Selects a robot by name or URL.
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
         if self.selection.has_flags() {
             return Err(Failure::usage(format!("'{robot}' and a flag name a robot")).hint("name it once"));
@@ -318,7 +317,7 @@ impl Sources {
         Ok(())
     }
 
-    /// The entry of the inventory with every setting in force.
+    /// Resolves an inventory entry to a robot with all settings.
     pub fn resolved(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
         if let Some(family) = family
             && family != entry.family
@@ -332,14 +331,14 @@ impl Sources {
         Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), names, ..robot })
     }
 
-    /// The robot at an address, with every setting in force.
+    /// The robot at a target, with all settings.
     pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
         self.unnamed(&Given::Url(target.clone()), Origin::Flag, Some(family))
     }
 
     fn unnamed(&self, given: &Given, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
         let target = given.of(family)?;
-        // A simulator for a command of any family: the first one.
+        // For a simulator without a family, the first family.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
             return Err(Failure::usage(format!("target '{target}' does not show the family"))
@@ -392,7 +391,8 @@ impl Sources {
             }
         }
         chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
-        // A family's command over a mixed fleet is for its own robots; that one was named in vain is an error below.
+        // A command of a family on a mixed selection applies only to its own robots. A robot named explicitly gives an
+        // error below.
         if selection.is_plural()
             && let Some(family) = family
         {
@@ -406,8 +406,8 @@ impl Sources {
         chosen.into_iter().map(|entry| self.resolved(entry, family)).collect()
     }
 
-    /// The addresses of read-only robots of a family, each with its entry: what that says is of the controller, under
-    /// whichever name.
+    /// Addresses of the read-only robots of a family, with their entries. Read-only applies to the controller,
+    /// independent of the name.
     pub fn read_only(&self, family: Family) -> impl Iterator<Item = (Address, &Entry)> {
         let file = self.inventory.defaults.read_only;
         let entries = self.inventory.robots.iter();
@@ -428,7 +428,7 @@ impl Sources {
         }
     }
 
-    /// The names of the entry with this address: they are of the controller, whatever leads to it.
+    /// Names of the entry with this address. They belong to the controller, independent of the target.
     fn names_at(&self, family: Family, address: &Address) -> Arc<[Name]> {
         let mut named = self.inventory.robots.iter().filter(|entry| entry.family == family && !entry.names.is_empty());
         let entry = named.find(|entry| entry.target.address().meets(address));
@@ -470,7 +470,7 @@ impl Sources {
             tags,
             sessions: self.selection.sessions,
             alarms: self.alarms(),
-            // As it is seen from any folder.
+            // An absolute path, valid in any folder.
             inventory: self.inventory.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
         };
         self.bind(&mut robot);
@@ -478,7 +478,7 @@ impl Sources {
     }
 }
 
-/// The first value that is there.
+/// First candidate with a value.
 fn first<T>(candidates: [(Option<T>, Origin); 4], built_in: T) -> Setting<T> {
     let found = candidates.into_iter().find_map(|(value, origin)| value.map(|value| Setting { value, origin }));
     found.unwrap_or(Setting { value: built_in, origin: Origin::BuiltIn })

@@ -1,8 +1,7 @@
-//! The model of a controller, as settings say it, and what controllers told of theirs.
+//! Controller model in settings, and a cache of the models that controllers reported.
 //!
-//! Where nobody names a model, the controller is asked for its software once, and what it told is kept in the state folder of
-//! the user, by address. No file of the user is changed for it, and what is kept is only an aid: without it the controller is
-//! asked again.
+//! If no model is set, the controller is asked for its software once. The answer is cached in the state folder of the
+//! user, by address. No file of the user is changed. Without the cache, the controller is asked again.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,21 +17,21 @@ use super::target::Address;
 use crate::controller::yerc::Model;
 use crate::files;
 
-/// What a setting says of the model.
+/// Model in settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ModelSetting {
-    /// The controller is asked.
+    /// Ask the controller.
     #[default]
     Auto,
-    /// This one.
+    /// This model.
     Is(Model),
 }
 
 impl ModelSetting {
-    /// How the setting says that the controller is asked.
+    /// Text of the automatic setting.
     pub const AUTO: &str = "auto";
 
-    /// The model, if it is named.
+    /// The model, if it is set.
     pub const fn named(self) -> Option<Model> {
         match self {
             Self::Auto => None,
@@ -58,25 +57,25 @@ impl FromStr for ModelSetting {
     }
 }
 
-/// What a controller told of itself, and when.
+/// Model that a controller reported.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ToldModel {
     #[serde(with = "by_name")]
     model: Model,
     software: String,
-    /// Seconds since 1970.
+    /// Time of the report, in seconds since 1970.
     at: u64,
 }
 
-/// So long what was told is taken for granted; then it is asked once more.
+/// Validity of a cached answer.
 const FRESH: Duration = Duration::from_secs(24 * 3600);
-/// What is older is left out of the file.
+/// Age at which an answer is removed from the file.
 const KEPT: Duration = Duration::from_secs(90 * 24 * 3600);
-/// A file that is larger is none that was written here.
+/// Size limit of the cache file.
 const MOST: u64 = 1 << 20;
 
 impl ToldModel {
-    /// Told just now.
+    /// A new answer.
     pub fn now(model: Model, software: String) -> Self {
         Self { model, software, at: now() }
     }
@@ -91,51 +90,51 @@ impl ToldModel {
         &self.software
     }
 
-    /// Whether another time the same was told.
+    /// Whether model and software are the same.
     pub fn says(&self, other: &Self) -> bool {
         (self.model, &self.software) == (other.model, &other.software)
     }
 
-    /// How long ago it was told.
+    /// Age of the answer.
     pub fn age(&self) -> Duration {
         Duration::from_secs(now().saturating_sub(self.at))
     }
 
-    /// Whether it is taken for granted. A clock that went back makes nothing fresh.
+    /// Whether it is still valid. An answer from the future, after a change of the clock, is not.
     pub fn is_fresh(&self) -> bool {
         self.at <= now() && self.age() < FRESH
     }
 }
 
-/// What the controllers at each address told.
+/// Cache of the models by address.
 #[derive(Debug, Clone)]
 pub struct ToldModels {
     path: PathBuf,
 }
 
 impl ToldModels {
-    /// Those of this user, if he has a home.
+    /// Cache of this user, if there is a home folder.
     pub fn of_user() -> Option<Self> {
         state_folder().map(|folder| Self { path: folder.join("models.json") })
     }
 
-    /// Those of a file.
+    /// Cache in a file.
     #[cfg(test)]
     pub fn at(path: PathBuf) -> Self {
         Self { path }
     }
 
-    /// What the controller at an address told last.
+    /// Last answer of the controller at an address.
     pub fn find(&self, address: &Address) -> Option<ToldModel> {
         self.find_by_key(&address.key()?)
     }
 
-    /// The same, by the key of the address.
+    /// Last answer by address key.
     pub fn find_by_key(&self, key: &str) -> Option<ToldModel> {
         self.read().remove(key)
     }
 
-    /// Keeps what it told.
+    /// Stores an answer.
     pub fn keep(&self, address: &Address, told: ToldModel) -> io::Result<()> {
         let Some(key) = address.key() else { return Ok(()) };
         std::fs::create_dir_all(files::folder_of(&self.path))?;
@@ -146,7 +145,7 @@ impl ToldModels {
         self.write(&all)
     }
 
-    /// Forgets what it told.
+    /// Removes an answer.
     pub fn forget(&self, address: &Address) -> io::Result<()> {
         let Some(key) = address.key() else { return Ok(()) };
         let _turn = files::turn(&self.path)?;
@@ -158,7 +157,7 @@ impl ToldModels {
         files::replace(&self.path, serde_json::to_string_pretty(all)?.as_bytes())
     }
 
-    /// All of them; none where there is no such file, or something else in it.
+    /// All answers; empty if the file is missing or not valid.
     fn read(&self) -> BTreeMap<String, ToldModel> {
         let text = files::text(&self.path, MOST).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()
@@ -169,7 +168,7 @@ fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
 }
 
-/// A model by its name.
+/// Serialization of a model by name.
 mod by_name {
     use serde::{Deserialize as _, Deserializer, Serializer, de};
 

@@ -1,9 +1,8 @@
-//! The names of a robot: those of its entry in the inventory, and those that were read from its controller and kept.
+//! Names of a robot: from its inventory entry, and from files that were read from its controller.
 //!
-//! What a controller says is kept in the state folder of the user, by the address of the controller: a file each, with
-//! when it was read and the hashes of what was read. Another controller may have that address by now: names that were read
-//! of one with other software are not used. A simulator of this process keeps nothing: its names are those that its files
-//! begin with.
+//! Names from a controller are cached in the state folder of the user. There is one file per controller address, with
+//! the time and the hashes of the controller's files. If the address now belongs to a controller with other software,
+//! the cached names are not used. A simulator has no cache; its names are built in.
 
 use std::fmt::Write as _;
 use std::io::ErrorKind;
@@ -23,13 +22,13 @@ use crate::controller::{toyo, yerc, yrcx};
 use crate::failure::{Failure, plain};
 use crate::files;
 
-/// What a file of kept names begins with, so that another file is not taken for one.
+/// Format field of a cache file, to recognize other files.
 const FORMAT: &str = "armctl-names";
 const VERSION: u64 = 1;
-/// A file of kept names has at most some thousand names.
+/// Size limit of a cache file.
 const MOST: u64 = 32 << 20;
 
-/// What the addresses of a family look like.
+/// Address grammar of a family.
 pub fn grammar(family: Family) -> Grammar {
     match family {
         Family::Yerc => yerc::names::GRAMMAR,
@@ -38,7 +37,7 @@ pub fn grammar(family: Family) -> Grammar {
     }
 }
 
-/// The names of a robot, read when the first one is looked up.
+/// Names of a robot, read at the first lookup.
 #[derive(Debug, Clone, Default)]
 pub struct RobotNames {
     own: Arc<[Name]>,
@@ -48,26 +47,26 @@ pub struct RobotNames {
     all: Arc<OnceLock<AllNames>>,
 }
 
-/// Two robots with the same entries have the same names, whatever was read of them by now.
+/// Robots with the same entries are equal, independent of the cache.
 impl PartialEq for RobotNames {
     fn eq(&self, other: &Self) -> bool {
         self.own == other.own && self.kept == other.kept && self.is_simulated == other.is_simulated
     }
 }
 
-/// All names of a robot, as far as they can be read.
+/// All names of a robot.
 #[derive(Debug, Clone, Default)]
 pub struct AllNames {
-    /// The names.
+    /// Names.
     pub names: Names,
-    /// What was kept of its controller.
+    /// Cached names of its controller.
     pub kept: Option<Kept>,
-    /// Why that could not be read.
+    /// Error of the cache file.
     pub damage: Option<Failure>,
 }
 
 impl RobotNames {
-    /// Those of an entry, and what is kept for an address.
+    /// Names of an entry, and the cache for an address.
     pub fn new(own: Arc<[Name]>, family: Family, address: &Address) -> Self {
         let is_yerc = family == Family::Yerc;
         let kept = if is_yerc { Place::of(address) } else { None };
@@ -76,12 +75,12 @@ impl RobotNames {
         Self { own, kept, models, is_simulated, all: Arc::default() }
     }
 
-    /// Where those of the controller are kept, if it is one whose names can be.
+    /// Location of the cache, for controllers that have names.
     pub fn place(&self) -> Option<&Place> {
         self.kept.as_ref()
     }
 
-    /// What is kept, unless the controller has told of other software since.
+    /// Reads the cache, unless the controller has reported other software in the meantime.
     fn read(&self, place: &Place) -> Result<Option<Kept>, Failure> {
         let kept = place.read()?;
         let told = self.models.as_ref().and_then(|models| models.find_by_key(&place.address));
@@ -91,7 +90,7 @@ impl RobotNames {
         Ok(kept)
     }
 
-    /// All of them.
+    /// All names.
     pub fn all(&self) -> &AllNames {
         self.all.get_or_init(|| {
             let (kept, damage) = match self.kept.as_ref().map_or(Ok(None), |place| self.read(place)) {
@@ -106,35 +105,35 @@ impl RobotNames {
     }
 }
 
-/// What the files of a simulator begin with.
+/// Built-in names of a simulator.
 fn simulated() -> Vec<Name> {
     let files = yerc::simulator::name_files();
     let read = |(file, bytes): (&str, Vec<u8>)| yerc::names::read(file, &bytes, Encoding::ShiftJis);
     files.into_iter().filter_map(|file| read(file).ok()).flat_map(|found| found.names).collect()
 }
 
-/// The file of a controller.
+/// Location of the cache file of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     path: PathBuf,
     address: String,
 }
 
-/// Names that were read from a controller.
+/// Cached names of a controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Kept {
     format: String,
     version: u64,
-    /// The address they are of.
+    /// Address of the controller.
     address: String,
-    /// When they were read.
+    /// Time of the read.
     pub read_at: Timestamp,
-    /// In which encoding.
+    /// Encoding of the files.
     pub encoding: String,
-    /// The system software of the controller then, if it told.
+    /// System software of the controller at that time, if reported.
     #[serde(default)]
     software: Option<String>,
-    /// The files they were in.
+    /// Files with the names.
     pub files: Vec<KeptFile>,
     names: Vec<KeptName>,
 }
@@ -160,10 +159,10 @@ struct KeptName {
 }
 
 impl KeptFile {
-    /// Of its content.
+    /// Creates the record of a file.
     pub fn new(file: &str, bytes: &[u8], names: usize) -> Self {
         let sha256 = Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-            // Nothing fails when text is written to a string.
+            // Writing to a string cannot fail.
             let _ = write!(text, "{byte:02x}");
             text
         });
@@ -172,7 +171,7 @@ impl KeptFile {
 }
 
 impl Kept {
-    /// What was read just now, of a controller with this software.
+    /// Names that were just read from a controller with this software.
     pub fn new(
         place: &Place,
         encoding: Encoding,
@@ -197,12 +196,12 @@ impl Kept {
         }
     }
 
-    /// How many names there are.
+    /// Number of names.
     pub fn count(&self) -> usize {
         self.names.len()
     }
 
-    /// Refuses names of a controller that had other software.
+    /// Rejects names of a controller that had other software.
     pub fn check(&self, software: &str) -> Result<(), Failure> {
         match self.software.as_deref().filter(|then| *then != software) {
             None => Ok(()),
@@ -213,7 +212,7 @@ impl Kept {
         }
     }
 
-    /// The names; what is no address of the family is none.
+    /// The names; invalid addresses are skipped.
     fn names(&self) -> impl Iterator<Item = Name> {
         self.names.iter().filter_map(|kept| {
             let (kind, address) = (yerc::names::GRAMMAR.address)(&kept.address)?;
@@ -223,18 +222,18 @@ impl Kept {
 }
 
 impl Place {
-    /// For a controller on the network, where the user has a folder to keep things in.
+    /// Location for a controller on the network, if the user has a state folder.
     fn of(address: &Address) -> Option<Self> {
         let address = address.key()?;
         let plain = |c: char| if c.is_ascii_alphanumeric() || ".-".contains(c) { c } else { '_' };
         let name: String = address.chars().map(plain).take(100).collect();
-        // Two addresses that are alike but for such characters.
+        // Makes the name unique, because several characters are replaced.
         let mark = &KeptFile::new("", address.as_bytes(), 0).sha256[..8];
         let path = super::state_folder()?.join("names").join(format!("{name}-{mark}.json"));
         Some(Self { path, address })
     }
 
-    /// What is kept; nothing where nothing was read yet.
+    /// Reads the cache; `None` if it does not exist.
     pub fn read(&self) -> Result<Option<Kept>, Failure> {
         let damaged = |why: String| {
             Failure::local(format!("the names kept in {} cannot be used: {why}", self.path.display()))
@@ -252,7 +251,7 @@ impl Place {
         Ok(Some(kept))
     }
 
-    /// Keeps names instead of what was kept before.
+    /// Replaces the cache.
     pub fn write(&self, kept: &Kept) -> Result<(), Failure> {
         let failed = |error: &std::io::Error| Failure::io(self.path.display(), error);
         let text = serde_json::to_vec(kept).map_err(|error| Failure::local(format!("names as JSON: {error}")))?;
@@ -260,7 +259,7 @@ impl Place {
         files::replace(&self.path, &text).map_err(|error| failed(&error))
     }
 
-    /// Removes what is kept, and says whether there was something.
+    /// Removes the cache. Returns whether it existed.
     pub fn forget(&self) -> Result<bool, Failure> {
         match std::fs::remove_file(&self.path) {
             Ok(()) => Ok(true),

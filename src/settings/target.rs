@@ -1,4 +1,4 @@
-//! Target URLs: where a robot is, and over which transport.
+//! Target URLs: location and transport of a robot.
 
 mod address;
 mod bare;
@@ -27,7 +27,7 @@ pub use address::Address;
 pub use bare::Given;
 pub use bus::{BUSES, Bus};
 
-/// A controller family, named like its subcommand.
+/// A controller family; its name is that of its subcommand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// Yaskawa FS100, DX100, DX200, YRC1000: high-speed Ethernet server.
@@ -39,10 +39,10 @@ pub enum Family {
 }
 
 impl Family {
-    /// Every family, in the order help texts list them.
+    /// All families in the order of help texts.
     pub const ALL: [Self; 3] = [Self::Yerc, Self::Yrcx, Self::Toyo];
 
-    /// The subcommand, the name of a link to the binary, and the value in JSON.
+    /// Name: subcommand, name of a link to the binary, value in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Yerc => "yerc",
@@ -51,7 +51,7 @@ impl Family {
         }
     }
 
-    /// What a URL of it looks like, for hints.
+    /// Example URL for hints.
     pub const fn address(self) -> &'static str {
         match self {
             Self::Yerc => "udp://HOST",
@@ -60,8 +60,8 @@ impl Family {
         }
     }
 
-    /// Longest wait of one try for its answer unless set. Over a network a controller answers in 5 to 20 ms, a busy one within
-    /// seconds; over a serial line, within one second (TO 1-3).
+    /// Default time limit of one attempt. On a network, a controller answers in 5 to 20 ms, a busy one within seconds.
+    /// On a serial line, it answers within one second (TO 1-3).
     pub const fn timeout(self) -> Duration {
         match self {
             Self::Yerc | Self::Yrcx => Duration::from_secs(3),
@@ -69,12 +69,12 @@ impl Family {
         }
     }
 
-    /// Whether its controllers are of one model or another, which settings tell.
+    /// Whether its controllers have different models, which settings can name.
     pub const fn has_model(self) -> bool {
         matches!(self, Self::Yerc)
     }
 
-    /// Whether URLs of this kind reach it.
+    /// Whether the scheme is valid for the family.
     fn is_reached_over(self, scheme: &str) -> bool {
         scheme == "sim"
             || match self {
@@ -100,16 +100,16 @@ impl FromStr for Family {
     }
 }
 
-/// Where a robot is: one URL, taken apart.
+/// A parsed target URL.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Target {
-    /// As given.
+    /// The URL as given.
     url: String,
     /// Its parts.
     pub place: Place,
 }
 
-/// What a target URL leads to.
+/// Parts of a target URL.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
     /// `udp://HOST[:10040][?file_port=PORT+1&model=auto|fs100|dx100|dx200|yrc1000&move_words=25|26]`.
@@ -118,7 +118,8 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…&mischief=…]`: the built-in simulator of the family, in this process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…&mischief=…]`: the built-in simulator of the family, in this
+    /// process.
     Sim(Sim),
     /// A URL of one of the [`BUSES`].
     Bus(Bus),
@@ -127,75 +128,74 @@ pub enum Place {
 /// A high-speed Ethernet server on the network.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Udp {
-    /// Name or address.
+    /// Host name or address.
     pub host: String,
     /// Port of the robot server.
     pub port: u16,
     /// Port of the file server.
     pub file_port: u16,
-    /// What stands in the URL about the controller.
+    /// Options of the controller.
     pub traits: YercTraits,
 }
 
-/// What a URL can say about a yerc controller.
+/// URL options of a yerc controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct YercTraits {
     /// Controller model.
     pub model: Option<ModelSetting>,
-    /// Words of the cartesian move, 25 or 26 (FS 3.3.39 prints 25 for the FS100; every public client sends 26).
+    /// Words of the cartesian move, 25 or 26 (FS 3.3.39 has 25 for the FS100; all public clients send 26).
     pub move_words: Option<u8>,
 }
 
-/// A serial port of this machine. Unless given, it is set as a Toyo controller is (TO 1-2): 9600 baud, 8 data bits, even
+/// A serial port of this computer. The defaults are those of a Toyo controller (TO 1-2): 9600 baud, 8 data bits, even
 /// parity, 1 stop bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Serial {
     /// `/dev/ttyUSB0`, `COM3`.
     pub path: String,
-    /// Bits a second.
+    /// Bits per second.
     pub baud: u32,
-    /// Data bits of a character.
+    /// Data bits per character.
     pub data_bits: DataBits,
-    /// Parity bit of a character.
+    /// Parity bit.
     pub parity: Parity,
-    /// Stop bits of a character.
+    /// Stop bits per character.
     pub stop_bits: StopBits,
 }
 
 /// A serial line behind a device server on the network.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Tcp {
-    /// Name or address.
+    /// Host name or address.
     pub host: String,
-    /// Port of the line.
+    /// TCP port of the line.
     pub port: u16,
-    /// Bits a second of the line, which tell how long characters take; the device server has the setting.
+    /// Baud rate of the line, to compute transmission times. The device server has its own setting.
     pub baud: u32,
 }
 
 /// The built-in simulator.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Sim {
-    /// Controller model.
+    /// Options of a yerc controller.
     pub traits: YercTraits,
-    /// Axes of a toyo controller, 1 to 4.
+    /// Number of axes of a toyo controller, 1 to 4.
     pub axes: Option<u8>,
-    /// Bits a second of the line to a toyo controller; without them it takes no time.
+    /// Baud rate of the line to a toyo controller; without it, transmission takes no time.
     pub baud: Option<u32>,
-    /// A file with the start state.
+    /// File with the start state.
     pub state: Option<PathBuf>,
-    /// Faults on the line, in the form of `armctl sim --fault`.
+    /// Faults of the line, in the form of `armctl sim --fault`.
     pub fault: Option<String>,
-    /// What a yrcx controller does wrong, in the form of `armctl sim yrcx --mischief`.
+    /// Faults of a yrcx controller, in the form of `armctl sim yrcx --mischief`.
     pub mischief: Option<String>,
-    /// The fieldbus that a yrcx controller is reached over, of [`bus::simulators`]; without it no network is simulated,
-    /// unless something is to go wrong on it.
+    /// Fieldbus of a yrcx controller, of [`bus::simulators`]. Without it, a network is only simulated if it has faults.
     pub bus: Option<&'static str>,
 }
 
-/// Port of the robot server (spec: frame table; UDP).
+/// UDP port of the robot server (spec: frame table).
 const ROBOT_PORT: u16 = 10040;
-/// Speed of a serial line (TO 1-2).
+/// Default baud rate of a serial line (TO 1-2).
 const BAUD: u32 = 9600;
 
 impl Target {
@@ -209,7 +209,7 @@ impl Target {
         &self.url
     }
 
-    /// Whether nothing real can move.
+    /// Whether it is a simulator.
     pub fn is_simulated(&self) -> bool {
         matches!(self.place, Place::Sim(_))
     }
@@ -225,12 +225,12 @@ impl Target {
         }
     }
 
-    /// Where it leads, however it is written.
+    /// Address, independent of the form of the URL.
     pub fn address(&self) -> Address {
         Address::of(self)
     }
 
-    /// A short name for messages where no inventory gives one: the host, the port without its folder, or `sim`.
+    /// Short name for messages without an inventory: the host, the port without its folder, or `sim`.
     pub fn short_name(&self) -> String {
         match &self.place {
             Place::Udp(udp) => udp.host.clone(),
@@ -241,7 +241,7 @@ impl Target {
         }
     }
 
-    /// What the URL says about a yerc controller.
+    /// Options of a yerc controller.
     pub fn traits(&self) -> YercTraits {
         match &self.place {
             Place::Udp(udp) => udp.traits,
@@ -250,17 +250,14 @@ impl Target {
         }
     }
 
-    /// The only family this URL can reach, if it is but one.
+    /// The family of this URL, if only one can use it.
     pub fn family(&self) -> Option<Family> {
         let mut fitting = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = fitting.next();
         if fitting.next().is_some() { None } else { first }
     }
 
-    /// Whether `family` can be reached over this URL, and all that stands in it is for that family.
-    ///
-    /// # Errors
-    /// What does not fit.
+    /// Checks that the URL and all its options are valid for a family.
     pub fn check(&self, family: Family) -> Result<(), String> {
         if !family.is_reached_over(self.scheme()) {
             return Err(format!("{family} is not reached over {}:", self.scheme()));
@@ -311,7 +308,7 @@ impl FromStr for Target {
     }
 }
 
-/// The form of a URL of the scheme, or of every scheme.
+/// Form of a URL with this scheme, or of all schemes.
 fn hint(scheme: &str) -> String {
     let buses = BUSES.iter().map(|bus| (bus.name, bus.form));
     match FORMS.into_iter().chain(buses).find(|(known, _)| *known == scheme) {
@@ -324,7 +321,7 @@ fn hint(scheme: &str) -> String {
     }
 }
 
-/// What other URLs look like.
+/// Forms of the other URLs.
 const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
@@ -341,7 +338,7 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     };
     let file_port = match query.take("file_port") {
         Some(port) => self::port("file_port", &port)?,
-        // A controller behind a forwarded port has its file server beside it.
+        // By default the next port, also behind a port forwarding.
         None => port.checked_add(1).ok_or("port 65535 leaves none above it for files; file_port=PORT says which")?,
     };
     Ok(Udp { host, port, file_port, traits: traits(query)? })
@@ -393,7 +390,7 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     })
 }
 
-/// What a simulator can be on.
+/// Finds a fieldbus of simulators by name.
 fn bus(name: &str) -> Result<&'static str, String> {
     let found = bus::simulators().find(|(known, _)| *known == name);
     found.map(|(known, _)| known).ok_or_else(|| {
@@ -403,7 +400,7 @@ fn bus(name: &str) -> Result<&'static str, String> {
 }
 
 impl Sim {
-    /// A parameter of another family is a mistake, not decoration.
+    /// Rejects options of another family.
     fn check(&self, family: Family) -> Result<(), String> {
         let given = [
             ("model", self.traits.model.is_some(), Family::Yerc),

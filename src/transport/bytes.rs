@@ -1,14 +1,14 @@
-//! Reads the messages of fieldbuses field by field.
+//! Bounds-checked reader for the fields of fieldbus messages.
 
 use thiserror::Error;
 
-/// Bytes that are no such message, with the field that says so.
+/// Malformed message: the first field that is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{field} at offset {offset}: {problem}")]
 pub struct WireError {
     /// The field.
     pub field: &'static str,
-    /// Where it begins, from the start of the message or the part of it that was read.
+    /// Offset of the field from the start of the message, or of the part that was read.
     pub offset: usize,
     /// What is wrong with it.
     pub problem: Problem,
@@ -17,35 +17,35 @@ pub struct WireError {
 /// What can be wrong with a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Problem {
-    /// The message ends before it does.
+    /// The message ends inside the field.
     #[error("needs {needed} bytes, {present} are there")]
     Short {
-        /// Its length.
+        /// Length of the field.
         needed: usize,
-        /// What is left of the message.
+        /// Bytes that remain.
         present: usize,
     },
-    /// The message goes on after it.
+    /// Bytes follow after the last field.
     #[error("{extra} more bytes follow")]
     Trailing {
-        /// Bytes too many.
+        /// Number of extra bytes.
         extra: usize,
     },
-    /// A value that it cannot have.
+    /// A value that the field cannot have.
     #[error("is {found:#04x}")]
     Value {
         /// The value.
         found: u32,
     },
-    /// Another value than the rest of the message asks for.
+    /// A value that contradicts the rest of the message.
     #[error("is {found:#04x}, not {expected:#04x}")]
     Differs {
         /// The value.
         found: u8,
-        /// The value that fits.
+        /// The value that was expected.
         expected: u8,
     },
-    /// Something that must be there is not.
+    /// A required field is missing.
     #[error("is missing")]
     Missing,
 }
@@ -60,17 +60,16 @@ impl WireError {
     }
 }
 
-/// The order of bytes in numbers.
+/// Byte order of numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ByteOrder {
-    /// The highest first.
+    /// Highest byte first.
     #[default]
     Big,
-    /// The lowest first.
+    /// Lowest byte first.
     Little,
 }
 
-/// Reads a message field by field.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reader<'a> {
     pub bytes: &'a [u8],
@@ -128,7 +127,7 @@ impl<'a> Reader<'a> {
         rest
     }
 
-    /// Nothing may follow `field`.
+    /// Fails if bytes follow after `field`.
     pub fn end(&self, field: &'static str) -> Result<(), WireError> {
         match self.left() {
             0 => Ok(()),
@@ -136,7 +135,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The error of a field of `len` bytes that was just read.
+    /// Error of the field of `len` bytes that was just read.
     pub fn wrong(&self, field: &'static str, len: usize, found: impl Into<u32>) -> WireError {
         WireError::value(field, self.at.saturating_sub(len), found)
     }

@@ -1,7 +1,7 @@
-//! Hands out a few texts over HTTP/1.1, and no more than that: one request a connection, no bodies, everything bounded.
+//! Minimal HTTP/1.1 server for a few texts: one request per connection, no request bodies.
 //!
-//! Connections are bounded: each has `WITHIN` for all of it, a request has `HEAD` bytes, and at most `MOST` are open at the
-//! same time. A new one is served at once: the oldest that has no answer under way is closed for it.
+//! All resources are limited: `WITHIN` per connection, `HEAD` bytes per request, `MOST` open connections. A new
+//! connection is always served: if necessary, the oldest one without an answer in progress is closed.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -17,53 +17,53 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{sleep, timeout};
 
-/// Longest head of a request.
+/// Longest request head in bytes.
 const HEAD: usize = 8 << 10;
-/// Most lines of it.
+/// Most lines of a request head.
 const LINES: usize = 64;
-/// Time for a connection, from its first byte to its last.
+/// Time limit of a connection.
 const WITHIN: Duration = Duration::from_secs(10);
-/// Connections that are served at the same time.
+/// Limit of open connections.
 const MOST: usize = 32;
-/// Pause where the system lets no more connections in: this process has too many files open.
+/// Pause when the process has too many open files.
 const FULL: Duration = Duration::from_millis(100);
-/// What is read of a peer that goes on talking when it was answered already, so that the answer reaches it.
+/// Limit of bytes read after the answer. Reading them lets the answer reach a client that still sends.
 const REST: u64 = 64 << 10;
 
-/// What is asked for.
+/// A request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Request<'a> {
-    /// The path, without what follows a `?`.
+    /// Path without the query.
     pub path: &'a str,
-    /// The kinds of text that are wanted, as the peer writes them.
+    /// `Accept` header.
     pub accept: Option<&'a str>,
 }
 
-/// What is handed out.
+/// A response.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
-    /// 200, 404.
+    /// Status code.
     pub status: Status,
-    /// The kind of text.
+    /// `Content-Type`.
     pub kind: &'static str,
-    /// The text.
+    /// Response body.
     pub body: String,
 }
 
-/// How an answer goes.
+/// Status code of a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Here it is.
+    /// 200.
     Ok,
-    /// This is no request.
+    /// 400: not a valid request.
     BadRequest,
-    /// There is no such path.
+    /// 404: no such path.
     NotFound,
-    /// There is, and it can only be read.
+    /// 405: the path can only be read.
     MethodNotAllowed,
-    /// The request is too long.
+    /// 431: the request head is too long.
     TooLong,
-    /// Not now.
+    /// 503: not available now.
     Unavailable,
 }
 
@@ -81,13 +81,13 @@ impl Status {
 }
 
 impl Answer {
-    /// A line for people.
+    /// A one-line text.
     pub fn text(status: Status, text: &str) -> Self {
         Self { status, kind: "text/plain; charset=utf-8", body: format!("{text}\n") }
     }
 }
 
-/// Listens for peers.
+/// An HTTP server.
 #[derive(Debug)]
 pub struct Server {
     listener: TcpListener,
@@ -95,29 +95,26 @@ pub struct Server {
 
 impl Server {
     /// Listens at an address.
-    ///
-    /// # Errors
-    /// The port is in use, or no port of this machine.
     pub async fn bind(address: SocketAddr) -> io::Result<Self> {
         Ok(Self { listener: TcpListener::bind(address).await? })
     }
 
-    /// Where it listens.
+    /// Local address.
     pub fn local(&self) -> io::Result<SocketAddr> {
         self.listener.local_addr()
     }
 
-    /// Serves, and does not end by itself.
+    /// Serves requests; does not end by itself.
     ///
     /// # Errors
-    /// Nobody can be let in any more.
+    /// No more connections can be accepted.
     pub async fn run(&self, answer: impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
         let mut peers = FuturesUnordered::new();
         let mut seats = Seats::default();
         loop {
             tokio::select! {
                 biased;
-                // Requests that have arrived are read before a new connection may close theirs.
+                // `biased`: requests that have arrived are read before a new connection can close them.
                 Some(ended) = peers.next() => {
                     if let Ok(number) = ended {
                         seats.free(number);
@@ -128,7 +125,7 @@ impl Server {
                         let (number, is_answered) = (seats.next, Rc::new(Cell::new(false)));
                         let served = serve(stream, &answer, Rc::clone(&is_answered));
                         let (served, close) = abortable(async move {
-                            // How it went is the peer's concern.
+                            // An error only concerns the client.
                             let _served = timeout(WITHIN, served).await;
                             number
                         });
@@ -147,19 +144,18 @@ impl Server {
     }
 }
 
-/// An open connection.
 struct Seat {
     number: u64,
-    /// Whether its request is whole, and the answer is on its way.
+    /// Whether the request is complete and the answer is in progress.
     is_answered: Rc<Cell<bool>>,
     close: AbortHandle,
 }
 
-/// The open connections, the oldest first.
+/// The open connections, oldest first.
 #[derive(Default)]
 struct Seats {
     taken: VecDeque<Seat>,
-    /// The number of the next one.
+    /// Number of the next connection.
     next: u64,
 }
 
@@ -176,7 +172,7 @@ impl Seats {
         self.taken.retain(|seat| seat.number != number);
     }
 
-    /// Closes the oldest one without an answer on its way, or else the oldest: it has had the most time.
+    /// Closes the oldest connection without an answer in progress, otherwise the oldest.
     fn evict(&mut self) {
         let idle = self.taken.iter().position(|seat| !seat.is_answered.get());
         if let Some(seat) = self.taken.remove(idle.unwrap_or(0)) {
@@ -185,7 +181,7 @@ impl Seats {
     }
 }
 
-/// Whether it is about the one peer that was about to come in, or the network to it: `accept(2)` reports both.
+/// Whether the error concerns only the next client or its network. `accept(2)` also reports these.
 fn is_passing(error: &io::Error) -> bool {
     use io::ErrorKind::{
         ConnectionAborted, ConnectionReset, HostUnreachable, Interrupted, NetworkDown, NetworkUnreachable, TimedOut,
@@ -205,16 +201,15 @@ fn is_passing(error: &io::Error) -> bool {
     kinds.contains(&error.kind())
 }
 
-/// Whether this process, or the machine, has no room for another connection at the moment (EMFILE, ENFILE, ENOBUFS).
+/// Whether the process or the system has no resources for another connection (EMFILE, ENFILE, ENOBUFS).
 fn is_full(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::OutOfMemory || matches!(error.raw_os_error(), Some(23 | 24 | 55 | 105))
 }
 
-/// What a peer asks for.
 enum Asked {
-    /// A text; whether only its head.
+    /// A response, and whether only its head is requested.
     Text(Answer, bool),
-    /// Nothing: it has gone.
+    /// The client has disconnected.
     Nothing,
 }
 
@@ -238,11 +233,11 @@ async fn serve(
     }
     stream.shutdown().await?;
     is_answered.set(false);
-    // What comes after an answer would make the system forget it, were the connection closed on it.
+    // Bytes that arrive after the close would make the system discard the answer, so read them first.
     tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
 }
 
-/// Reads a request, and what there is to say to it.
+/// Reads a request and makes the response.
 async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<Asked> {
     let mut head = Vec::with_capacity(1 << 10);
     loop {
@@ -292,7 +287,7 @@ mod tests {
         }
     }
 
-    /// What comes back for what is sent, in pieces; a server beside it, whose time is real.
+    /// Sends the pieces to a server in real time. Returns the response.
     async fn said(pieces: &[&[u8]]) -> String {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let asked = async {
@@ -346,7 +341,7 @@ mod tests {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
         let asked = async {
-            // More than are served at a time; some with half a request.
+            // More connections than the limit; some with half a request.
             let mut silent = Vec::new();
             for number in 0..MOST + 4 {
                 let mut stream = TcpStream::connect(address).await.unwrap();
@@ -360,7 +355,7 @@ mod tests {
             let mut said = String::new();
             stream.read_to_string(&mut said).await.unwrap();
             assert!(said.ends_with("anything\n"), "{said}");
-            // The oldest five have given way; the others still have their time.
+            // The oldest five were closed. The others still have time.
             let mut byte = [0; 1];
             for stream in &mut silent[..5] {
                 assert!(stream.read(&mut byte).await.map_or(true, |read| read == 0));

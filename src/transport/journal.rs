@@ -1,34 +1,28 @@
-//! The journal of systemd in its own protocol: a datagram is an entry, and `journalctl` finds it by its fields
+//! Writer for the systemd journal in its native protocol: one datagram per entry, with fields for `journalctl`
 //! (<https://systemd.io/JOURNAL_NATIVE_PROTOCOL/>).
 
 use std::io;
 use std::os::unix::net::UnixDatagram;
 use std::path::Path;
 
-/// Where it listens.
+/// Socket path of the journal.
 pub const PLACE: &str = "/run/systemd/journal/socket";
 
-/// The journal.
+/// Connection to the journal.
 #[derive(Debug)]
 pub struct Journal {
     socket: UnixDatagram,
 }
 
 impl Journal {
-    /// The one that listens there.
-    ///
-    /// # Errors
-    /// Nobody does.
+    /// Connects to the journal socket.
     pub fn at(place: &Path) -> io::Result<Self> {
         let socket = UnixDatagram::unbound()?;
         socket.connect(place)?;
         Ok(Self { socket })
     }
 
-    /// Writes an entry. Names of fields are letters, digits and `_`, and begin with a letter.
-    ///
-    /// # Errors
-    /// It is not taken.
+    /// Writes an entry. Field names consist of letters, digits and `_`, and start with a letter.
     pub fn write(&self, fields: &[(&str, &str)]) -> io::Result<()> {
         let mut entry = Vec::new();
         for (name, value) in fields {
@@ -61,7 +55,7 @@ mod tests {
         journal.write(&[("message", "no answer"), ("PRIORITY", "4"), ("robot", "a\nb=c")]).unwrap();
         let mut entry = [0; 100];
         let length = listener.recv(&mut entry).unwrap();
-        // As the protocol's page shows both forms.
+        // The two forms of the protocol page.
         let expected = b"MESSAGE=no answer\nPRIORITY=4\nROBOT\n\x05\0\0\0\0\0\0\0a\nb=c\n";
         assert_eq!(&entry[..length], expected);
     }

@@ -1,4 +1,4 @@
-//! A serial line in this process: characters follow each other at the pace of the line, and may be damaged on the way.
+//! In-process serial line with character timing and fault injection.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -9,29 +9,28 @@ use tokio::time::Instant;
 use super::fault::{LineFaultSpec, LineFaults, Passed};
 use super::sim::Peer;
 
-/// How fast characters follow each other on a line.
+/// Character rate of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pace {
-    /// Bits a second, at least 1.
+    /// Bits per second, at least 1.
     baud: u32,
-    /// Bits of a character, with start, parity and stop bits.
+    /// Bits per character, with start, parity and stop bits.
     bits: u32,
 }
 
 impl Pace {
-    /// A line of `baud` bits a second, whose characters have `bits` bits in all: 11 with 8 data bits, parity and one
-    /// stop bit.
+    /// A rate of `baud` bits per second with `bits` bits per character: 11 for 8 data bits, parity and one stop bit.
     pub fn new(baud: u32, bits: u32) -> Self {
         Self { baud: baud.max(1), bits: bits.max(1) }
     }
 
-    /// How long `characters` take from the start of the first to the end of the last.
+    /// Duration of `characters` without gaps.
     pub fn time(self, characters: usize) -> Duration {
         let nanos = (characters as u128 * u128::from(self.bits) * NANOS).div_ceil(u128::from(self.baud));
         Duration::from_nanos(u64::try_from(nanos).unwrap_or(u64::MAX))
     }
 
-    /// How many characters are over within `time`.
+    /// Number of complete characters within `time`.
     fn characters(self, time: Duration) -> usize {
         let characters = time.as_nanos() * u128::from(self.baud) / (u128::from(self.bits) * NANOS);
         usize::try_from(characters).unwrap_or(usize::MAX)
@@ -40,7 +39,7 @@ impl Pace {
 
 const NANOS: u128 = 1_000_000_000;
 
-/// A peer at the other end of a line, on tokio's clock (which tests can halt and turn).
+/// A peer behind an in-process line. It uses tokio's clock, which tests can pause and advance.
 #[derive(Debug)]
 pub struct InProcessLine<P> {
     peer: P,
@@ -49,27 +48,27 @@ pub struct InProcessLine<P> {
 }
 
 impl<P: Peer> InProcessLine<P> {
-    /// A peer behind a line; without a pace characters take no time.
+    /// Creates a line to a peer. Without a pace, characters take no time.
     pub fn new(peer: P, pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
         Self { peer, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
-    /// The peer, as it was when somebody last sent or received.
+    /// The peer, in its state of the last send or receive.
     pub fn peer(&self) -> &P {
         &self.peer
     }
 
-    /// Sends bytes to the peer; returns at once, while they are on their way.
+    /// Sends bytes to the peer. Returns at once; the bytes are then in transit.
     pub fn send(&mut self, bytes: &[u8]) {
         let now = self.start.elapsed();
-        // What came before these bytes is over, whatever they lead to.
+        // Earlier events come first.
         self.wire.run(now, &mut self.peer);
         self.wire.send(now, bytes);
     }
 
-    /// Waits for bytes of the peer, but not longer than `until`; `None` after silence.
+    /// Waits for bytes of the peer, at most until `until`; `None` after a timeout.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> Option<usize> {
-        // A peer that answers at once leaves no pause in which Ctrl-C would be heard.
+        // Without this, a peer that answers at once would leave no pause to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();
@@ -87,7 +86,7 @@ impl<P: Peer> InProcessLine<P> {
         }
     }
 
-    /// Drops what has arrived and was not received; what is still on its way comes.
+    /// Drops bytes that have arrived. Bytes in transit still arrive.
     pub fn discard(&mut self) {
         let now = self.start.elapsed();
         self.wire.run(now, &mut self.peer);
@@ -95,25 +94,25 @@ impl<P: Peer> InProcessLine<P> {
     }
 }
 
-/// Both directions of a line between a host and a peer, without a clock: it is told the time.
+/// Both directions of a line between host and peer. It has no clock: the caller passes the time.
 #[derive(Debug)]
 pub struct Wire {
     there: Way,
     back: Way,
     has_echo: bool,
-    /// When the peer was last looked at.
+    /// Time of the last `run`.
     time: Duration,
 }
 
 impl Wire {
-    /// A line that nothing is on.
+    /// Creates an idle line.
     pub fn new(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
         let has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
         let (there, back) = faults.map(LineFaults::pair).unzip();
         Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
     }
 
-    /// The host writes bytes at `now`.
+    /// Sends bytes of the host at `now`.
     pub fn send(&mut self, now: Duration, bytes: &[u8]) {
         self.there.put(now, bytes);
         if self.has_echo {
@@ -121,8 +120,7 @@ impl Wire {
         }
     }
 
-    /// Has everything happen between line and peer that is due up to `now`, at the moment it is due and not when
-    /// somebody looks.
+    /// Executes all events up to `now`, each at its own time.
     pub fn run(&mut self, now: Duration, peer: &mut impl Peer) {
         loop {
             let due = earliest(self.there.due(), peer.wake());
@@ -143,7 +141,7 @@ impl Wire {
         }
     }
 
-    /// What the host has got by `now`. A character with the wrong parity reads as NUL, as from a driver.
+    /// Reads bytes that the host has received by `now`. A character with a parity error reads as NUL, as from a driver.
     pub fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
         let mut taken = 0;
         while let Some(piece) = self.back.next(now, buffer.len() - taken) {
@@ -157,12 +155,12 @@ impl Wire {
         taken
     }
 
-    /// When something may happen.
+    /// Time of the next event.
     pub fn due(&self, peer: &impl Peer) -> Option<Duration> {
         earliest(earliest(self.there.due(), self.back.due()), peer.wake())
     }
 
-    /// Loses what is on its way to the host.
+    /// Drops bytes in transit to the host.
     pub fn lose(&mut self, now: Duration) {
         self.back.runs.clear();
         self.back.free = now;
@@ -173,31 +171,30 @@ fn earliest(one: Option<Duration>, other: Option<Duration>) -> Option<Duration> 
     one.into_iter().chain(other).min()
 }
 
-/// One direction of a line.
 #[derive(Debug)]
 struct Way {
     pace: Option<Pace>,
     faults: Option<LineFaults>,
-    /// Characters that were written together, in the order of writing.
+    /// Writes in transit, in order.
     runs: VecDeque<Run>,
-    /// When the last character is over that was written so far.
+    /// End of the last character written so far.
     free: Duration,
 }
 
-/// Characters without a gap.
+/// Characters of one write, without gaps.
 #[derive(Debug)]
 struct Run {
-    /// When the first of them begins.
+    /// Start of the first character.
     start: Duration,
     passed: Passed,
-    /// How many of them were handed on.
+    /// Number of characters already delivered.
     taken: usize,
 }
 
-/// Characters that arrived.
+/// Received characters.
 enum Piece<'a> {
     Whole(&'a [u8]),
-    /// A single one with the wrong parity.
+    /// One character with a parity error.
     Damaged,
 }
 
@@ -219,13 +216,13 @@ impl Way {
         self.runs.push_back(Run { start, passed, taken: 0 });
     }
 
-    /// When the next character is over.
+    /// End of the next character.
     fn due(&self) -> Option<Duration> {
         let run = self.runs.iter().find(|run| run.taken < run.passed.bytes.len())?;
         Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.taken + 1))))
     }
 
-    /// The next characters that are over at `now`, at most `most`.
+    /// Returns characters that are complete at `now`, at most `most`.
     fn next(&mut self, now: Duration, most: usize) -> Option<Piece<'_>> {
         while self.runs.front().is_some_and(|run| run.taken == run.passed.bytes.len()) {
             self.runs.pop_front();
@@ -265,7 +262,7 @@ mod tests {
         InProcessLine::new(Mirror::default(), Some(USUAL), Some(faults))
     }
 
-    /// All that comes until a silence of a minute, with the moment of its last byte.
+    /// Everything received until a silence of one minute, and the time of the last byte.
     async fn all(line: &mut InProcessLine<Mirror>) -> (Vec<u8>, Duration) {
         let (start, mut end, mut bytes) = (Instant::now(), Duration::ZERO, Vec::new());
         let mut buffer = [0; 4096];
@@ -297,7 +294,7 @@ mod tests {
         let mut line = vec![b'x'; 127];
         line.push(b'\n');
         wire.send(Duration::ZERO, &line);
-        // Nobody looks for a second: all happened at its time nevertheless.
+        // The call comes one second later, but each event has its own time.
         wire.run(Duration::from_secs(1), &mut peer);
         assert_eq!(peer.heard, [(USUAL.time(128), line)]);
         let mut buffer = [0; 256];
@@ -316,7 +313,7 @@ mod tests {
         let (bytes, took) = all(&mut line).await;
         assert_eq!(bytes.len(), 128);
         let exact = USUAL.time(256);
-        // Tokio's timers have a resolution of a millisecond.
+        // Tokio's timers have a resolution of one millisecond.
         assert!((exact..exact + Duration::from_millis(2)).contains(&took), "{took:?}");
     }
 

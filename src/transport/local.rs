@@ -1,4 +1,4 @@
-//! What goes wrong on this machine, before anything reaches a network.
+//! Errors of local resources, before anything reaches a network.
 
 use std::io;
 
@@ -6,15 +6,15 @@ use thiserror::Error;
 
 use crate::plain;
 
-/// Something of this machine, such as a socket or a thread, that did not work.
+/// Failure of a local resource, such as a socket or thread.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what}: {text}")]
 pub struct LocalError {
-    /// What was tried.
+    /// The action that failed.
     pub what: &'static str,
-    /// The system's reason.
+    /// Kind of the system error.
     pub kind: io::ErrorKind,
-    /// In its words.
+    /// Text of the system error.
     pub text: String,
 }
 

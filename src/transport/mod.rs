@@ -1,6 +1,6 @@
-//! Moves bytes or images, and knows no meaning.
+//! Transports: they move bytes or images and do not know their meaning.
 //!
-//! Nothing in here knows a controller's protocol, and no controller knows what is in here.
+//! Transports and controllers do not depend on each other.
 
 mod bytes;
 pub mod capture;
@@ -40,7 +40,7 @@ use std::io;
 
 pub use armctl_files::{plain, this_program};
 
-/// The error of a byte stream whose other end is gone.
+/// Error of a byte stream whose other end is gone.
 fn vanished(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
 }

@@ -1,8 +1,8 @@
-//! A port whose reads and writes run on a thread of tokio's, one at a time.
+//! Serial port with reads and writes on a blocking thread of tokio, one at a time.
 //!
-//! No platform but Unix can wait for a serial port in tokio's reactor, and there not without unsafe code. A read gives
-//! up after [`SLICE`], so a write waits that long at most. Every future may be dropped: what was read stays for the next
-//! [`Threaded::receive`], what was begun to be written is written to its end.
+//! Only on Unix could tokio's reactor wait for a serial port, and not without unsafe code. A read ends after [`SLICE`],
+//! so a write waits at most that long. All futures are cancel safe: received bytes stay for the next
+//! [`Threaded::receive`], and a started write is completed.
 
 use std::collections::VecDeque;
 use std::io;
@@ -14,46 +14,45 @@ use tokio::time::{Instant, timeout_at};
 
 use super::vanished;
 
-/// Longest time that a thread waits for something to read: the timeout that a port must have.
+/// Longest wait of a read: the timeout that a port must have.
 pub(super) const SLICE: Duration = Duration::from_millis(10);
-/// Most bytes read at a time.
+/// Bytes per read.
 const PIECE: usize = 1024;
 
-/// A port.
 pub(super) type Port = Box<dyn SerialPort>;
 
-/// A port that is waited for.
+/// A serial port with an async interface.
 #[derive(Debug)]
 pub(super) struct Threaded {
     state: State,
-    /// What was read and not yet received.
+    /// Bytes that were read but not received yet.
     arrived: VecDeque<u8>,
 }
 
 #[derive(Debug)]
 enum State {
     Idle(Port),
-    /// A thread has the port, and hands it back with what it read.
+    /// A thread has the port. It returns the port with the bytes read.
     Busy {
         job: JoinHandle<(Port, io::Result<Vec<u8>>)>,
-        /// Whether what it reads is to be dropped.
+        /// Whether the bytes of this read are dropped.
         is_stale: bool,
     },
-    /// A thread ended without handing the port back.
+    /// A thread ended without returning the port.
     Lost,
 }
 
 impl Threaded {
-    /// A port whose timeout is [`SLICE`].
+    /// Wraps a port whose timeout is [`SLICE`].
     pub(super) fn new(port: Port) -> Self {
         Self { state: State::Idle(port), arrived: VecDeque::new() }
     }
 
-    /// Hands bytes to the port.
+    /// Writes bytes to the port.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if it
-    /// does not take them within `longest`.
+    /// does not accept them within `longest`.
     pub(super) async fn send(&mut self, bytes: &[u8], longest: Duration) -> io::Result<()> {
         self.settle().await?;
         let bytes = bytes.to_vec();
@@ -61,7 +60,7 @@ impl Threaded {
         self.settle().await
     }
 
-    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    /// Waits for bytes, at most until `until`; `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -78,7 +77,7 @@ impl Threaded {
         io::Read::read(&mut self.arrived, buffer).map(Some)
     }
 
-    /// Drops what has arrived and was not received.
+    /// Drops all received bytes.
     pub(super) fn discard(&mut self) {
         self.arrived.clear();
         match &mut self.state {
@@ -88,7 +87,7 @@ impl Threaded {
         }
     }
 
-    /// Gives the port to a thread with something to do.
+    /// Runs `work` with the port on a thread.
     fn begin(&mut self, work: impl FnOnce(&mut Port) -> io::Result<Vec<u8>> + Send + 'static) {
         self.state = match std::mem::replace(&mut self.state, State::Lost) {
             State::Idle(mut port) => {
@@ -102,7 +101,7 @@ impl Threaded {
         };
     }
 
-    /// Waits until the port is back.
+    /// Waits until the port is returned.
     async fn settle(&mut self) -> io::Result<()> {
         match &mut self.state {
             State::Idle(_) => Ok(()),
@@ -128,7 +127,7 @@ impl Threaded {
     }
 }
 
-/// One read; nothing after a silence of [`SLICE`].
+/// One read; empty after a silence of [`SLICE`].
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; PIECE];
     match port.read(&mut bytes) {
@@ -142,7 +141,7 @@ fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     }
 }
 
-/// Writes all bytes; fails if that takes longer than `longest`.
+/// Writes all bytes; fails after `longest`.
 fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()> {
     let start = std::time::Instant::now();
     while !bytes.is_empty() {
@@ -163,7 +162,7 @@ fn is_pause(error: &io::Error) -> bool {
 }
 
 fn clear(port: &dyn SerialPort) {
-    // Only a port that is gone cannot be cleared, and the next read or write tells that.
+    // This only fails if the port is gone; the next read or write reports that.
     let _ = port.clear(ClearBuffer::Input);
 }
 
@@ -180,7 +179,7 @@ mod tests {
 
     const STUCK: Duration = Duration::from_secs(60);
 
-    /// A pseudo-terminal with the port at its end.
+    /// A pseudo-terminal and the port at its other end.
     fn pair() -> (TTYPort, Threaded) {
         let (mut master, mut port) = TTYPort::pair().unwrap();
         master.set_timeout(Duration::from_secs(60)).unwrap();
@@ -200,7 +199,7 @@ mod tests {
     #[tokio::test]
     async fn what_came_too_late_is_there_the_next_time() {
         let (mut master, mut port) = pair();
-        // The thread is still waiting when this gives up.
+        // The thread continues to wait after this timeout.
         assert_eq!(port.receive(&mut [0; 8], Instant::now()).await.unwrap(), None);
         assert!(matches!(port.state, State::Busy { .. }));
         master.write_all(b"@OK\r\n").unwrap();
@@ -210,7 +209,7 @@ mod tests {
     #[tokio::test]
     async fn what_has_arrived_can_be_discarded_wherever_it_is() {
         let (mut master, mut port) = pair();
-        // Half in the driver, half read and not yet received.
+        // Half of the bytes are in the driver, the other half was read but not received.
         master.write_all(&[b'x'; 64]).unwrap();
         assert_eq!(port.receive(&mut [0; 8], soon()).await.unwrap(), Some(8));
         master.write_all(&[b'x'; 64]).unwrap();
@@ -235,7 +234,7 @@ mod tests {
     #[tokio::test]
     async fn a_send_that_is_dropped_goes_out_whole() {
         let (mut master, mut port) = pair();
-        // Polled once and then dropped, as when Ctrl-C comes.
+        // Polled once and then dropped, as with Ctrl-C.
         assert!(port.send(b"@STOP\r\n", STUCK).now_or_never().is_none());
         let mut got = [0; 7];
         master.read_exact(&mut got).unwrap();
@@ -264,7 +263,7 @@ mod tests {
         assert_eq!(received.unwrap_err().kind(), io::ErrorKind::NotConnected);
     }
 
-    /// Waits until so many bytes wait in the driver.
+    /// Waits until the driver has `count` bytes.
     async fn wait_for(port: &mut Threaded, count: u32) {
         port.settle().await.unwrap();
         let State::Idle(port) = &port.state else { panic!("not idle") };

@@ -1,4 +1,4 @@
-//! The serial ports of this machine. None is opened to find them.
+//! List of the serial ports of this computer. No port is opened for it.
 
 use std::collections::HashMap;
 use std::io;
@@ -11,62 +11,62 @@ use armctl_files as files;
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortInfo {
-    /// What it is opened by: `/dev/ttyUSB0`, `COM3`.
+    /// Name to open the port: `/dev/ttyUSB0`, `COM3`.
     pub name: String,
-    /// A name that stays the same whatever else is plugged in (Linux).
+    /// Name that does not depend on other devices (Linux).
     pub stable_name: Option<String>,
-    /// What it is.
+    /// Type of the port.
     pub kind: PortKind,
 }
 
-/// What a serial port is.
+/// Type of a serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PortKind {
     /// A USB adapter.
     Usb {
-        /// Vendor number of USB.
+        /// USB vendor id.
         vendor: u16,
-        /// Product number of the vendor.
+        /// USB product id.
         product: u16,
-        /// Name of the maker, as the device tells it.
+        /// Manufacturer, reported by the device.
         maker: Option<String>,
-        /// Name of the product, as the device tells it.
+        /// Product name, reported by the device.
         product_name: Option<String>,
         /// Serial number of the device.
         serial_number: Option<String>,
     },
-    /// A card.
+    /// A PCI card.
     Pci,
     /// A Bluetooth link.
     Bluetooth,
-    /// A port of the board, or one that the system says nothing about.
+    /// On the mainboard, or unknown.
     Unknown,
 }
 
-/// Where Linux lists terminals, and where it keeps stable names.
+/// Folders of Linux with the terminals and with their stable names.
 const TERMINALS: &str = "/sys/class/tty";
 const STABLE_NAMES: &str = "/dev/serial/by-id";
 
 /// A process that has a port open.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortUser {
-    /// Process.
+    /// Process id.
     pub pid: u32,
-    /// Name of its program.
+    /// Program name.
     pub name: String,
 }
 
-/// Where Linux shows what processes have open.
+/// Folder of Linux with the processes and their open files.
 const PROCESSES: &str = "/proc";
-/// What `/proc` shows of an open file is some lines.
+/// Size limit of a `fdinfo` file, which has a few lines.
 const LONGEST_FDINFO: u64 = 64 << 10;
-/// The folder of the pseudo-terminals.
+/// Folder of the pseudo-terminals.
 const PSEUDO_TERMINALS: &str = "/dev/pts";
 
-/// How a process has a port open, the one that keeps others away last.
+/// How a process uses a port, in rising order of exclusiveness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Usage {
-    /// It holds the other end of this pseudo-terminal, as a simulator does.
+    /// It has the other end of the pseudo-terminal open, as a simulator does.
     OtherEnd,
     /// It has the port open.
     Opened,
@@ -74,7 +74,7 @@ enum Usage {
     Locked,
 }
 
-/// The process that keeps others away from a port, where the system tells: on Linux, of processes of the same user.
+/// The process that blocks a port. Only on Linux, and only for processes of the same user.
 pub fn user(path: &str) -> Option<PortUser> {
     let port = std::fs::canonicalize(path).ok()?;
     let processes = std::fs::read_dir(PROCESSES).ok()?.flatten();
@@ -86,7 +86,7 @@ pub fn user(path: &str) -> Option<PortUser> {
     Some(PortUser { pid, name: name.trim().to_owned() })
 }
 
-/// How a process has a port open; nothing if it has not.
+/// How a process uses a port; `None` if it does not.
 fn usage(process: &Path, port: &Path) -> Option<Usage> {
     let mut usage = None;
     let mut has_other_end = false;
@@ -105,12 +105,9 @@ fn usage(process: &Path, port: &Path) -> Option<Usage> {
     if has_other_end && usage == Some(Usage::Opened) { Some(Usage::OtherEnd) } else { usage }
 }
 
-/// All serial ports, by name (`ttyUSB2` before `ttyUSB10`).
-///
-/// # Errors
-/// When the system does not tell.
+/// All serial ports, sorted by name (`ttyUSB2` before `ttyUSB10`).
 pub fn ports() -> io::Result<Vec<PortInfo>> {
-    // The crate takes for granted that this folder is there.
+    // The `serialport` crate expects that this folder exists.
     if cfg!(target_os = "linux") {
         let missing = |error: io::Error| io::Error::new(error.kind(), format!("{TERMINALS}: {error}"));
         std::fs::metadata(TERMINALS).map_err(missing)?;
@@ -139,17 +136,17 @@ fn kind(kind: SerialPortType) -> PortKind {
     }
 }
 
-/// The kernel writes pages.
+/// Size limit of a sysfs file: one page.
 const LONGEST_TYPE: u64 = 4096;
 
-/// Linux has names for ports that a board could have; type 0 says that nothing is there.
+/// Linux has names for ports that do not exist; their type is 0.
 fn has_hardware(name: &str) -> bool {
     let Some(name) = Path::new(name).file_name() else { return true };
     let kind = files::text(&Path::new(TERMINALS).join(name).join("type"), LONGEST_TYPE);
     kind.map_or(true, |kind| kind.trim() != "0")
 }
 
-/// Where the links of a folder lead, each to its link; the first by name where several lead to one.
+/// Target of each link in a folder, with the name of the link. If several links have one target, the first by name.
 fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -158,12 +155,12 @@ fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
     };
     let mut links: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
     links.sort_unstable_by(|one, other| other.cmp(one));
-    // A link that leads nowhere is of a port that was just unplugged.
+    // A link without a target belongs to a port that was just unplugged.
     let leading = links.into_iter().filter_map(|link| Some((link.canonicalize().ok()?, link.to_str()?.to_owned())));
     Ok(leading.collect())
 }
 
-/// The name with the number at its end apart, so that 10 comes after 2.
+/// Sort key: name and trailing number, so that 10 comes after 2.
 fn order(name: &str) -> (String, u64) {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     (stem.to_owned(), name[stem.len()..].parse().unwrap_or(0))
@@ -203,7 +200,7 @@ mod tests {
                 let names: std::collections::HashSet<&str> = ports.iter().map(|port| port.name.as_str()).collect();
                 assert_eq!(names.len(), ports.len(), "{ports:?}");
             }
-            // A machine that does not tell.
+            // A computer without this folder.
             Err(error) => assert!(error.to_string().contains(TERMINALS), "{error}"),
         }
     }

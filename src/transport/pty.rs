@@ -1,4 +1,4 @@
-//! The end of a pseudo-terminal that is not the port: who opens the port talks to it. Unix only.
+//! Controlling end of a pseudo-terminal; a program that opens the port is connected to it. Unix only.
 
 #[cfg(unix)]
 pub(super) use unix::Pty;
@@ -16,26 +16,25 @@ mod unix {
 
     use super::super::port::{SLICE, Threaded};
 
-    /// Most bytes written at a time.
+    /// Bytes per write.
     const PIECE: usize = 128;
-    /// Bytes that wait to be read beyond which no more are written: less than what the system takes without making
-    /// the writer wait (4096 on Linux, 1024 elsewhere).
+    /// Limit of unread bytes. It is below the buffer size of the system, so that a write never blocks (4096 on Linux,
+    /// 1024 elsewhere).
     const MOST_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
-    /// How long a read waits before it begins anew; any time would do.
+    /// Timeout of a read, after which it is repeated. The value does not matter.
     const LONG: Duration = Duration::from_secs(3600);
 
-    /// A pseudo-terminal.
     #[derive(Debug)]
     pub(crate) struct Pty {
         reader: Threaded,
         /// Writes while a thread has the reader.
         writer: TTYPort,
-        /// The port, kept open: while nobody had it open, the other end would report its end.
+        /// The port, kept open. Otherwise the other end would report end of file while no program has it open.
         port: TTYPort,
     }
 
     impl Pty {
-        /// Makes one; returns the path of the port, too.
+        /// Creates a pseudo-terminal. Also returns the path of its port.
         pub(crate) fn open() -> io::Result<(Self, String)> {
             let (mut writer, port) = TTYPort::pair()?;
             let mut reader = writer.try_clone_native()?;
@@ -45,7 +44,6 @@ mod unix {
             Ok((Self { reader: Threaded::new(Box::new(reader)), writer, port }, path))
         }
 
-        /// Waits for bytes.
         pub(crate) async fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             loop {
                 if let Some(len) = self.reader.receive(buffer, Instant::now() + LONG).await? {
@@ -54,7 +52,7 @@ mod unix {
             }
         }
 
-        /// Writes bytes, without waiting. What nobody reads is lost when it gets much, as on a line.
+        /// Writes bytes without waiting. If too many bytes are unread, they are lost, as on a real line.
         pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
             for piece in bytes.chunks(PIECE) {
                 if self.port.bytes_to_read()? > MOST_UNREAD {
@@ -74,7 +72,6 @@ mod unix {
 mod elsewhere {
     use std::io;
 
-    /// There is none.
     #[derive(Debug)]
     pub(crate) enum Pty {}
 

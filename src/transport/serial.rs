@@ -1,8 +1,8 @@
-//! A serial port of this machine.
+//! Serial port of this computer.
 //!
-//! The port is opened for this process alone, without flow control. A character that arrives with the wrong parity or
-//! without its stop bit reads as NUL on Unix (`INPCK` is on, `PARMRK` and `IGNPAR` are off); Windows hands it on as it
-//! came. Nothing tells it from one that was sent so: it takes a protocol to notice.
+//! The port is opened exclusively, without flow control. On Unix, a character with a parity or framing error reads as
+//! NUL (`INPCK` on, `PARMRK` and `IGNPAR` off). Windows delivers it unchanged. Only the protocol can detect such a
+//! character.
 
 use std::io;
 use std::time::Duration;
@@ -16,28 +16,28 @@ use super::line::Pace;
 use super::port::{SLICE, Threaded};
 use super::ports::ports;
 
-/// How long a port may take no byte, beyond the time that the bytes need.
+/// Time limit for a stuck write, in addition to the transmission time.
 const STUCK: Duration = Duration::from_secs(2);
-/// How far the speed of a port may be off, in thousandths: a receiver loses track of the bits at about 40.
+/// Largest deviation of the baud rate in 1/1000. A receiver fails at about 40.
 pub(super) const MOST_OFF: u32 = 30;
 
-/// A port and how it is set.
+/// A port and its settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
     /// `/dev/ttyUSB0`, `COM3`.
     pub path: String,
-    /// Bits a second.
+    /// Bits per second.
     pub baud: u32,
-    /// Data bits of a character.
+    /// Data bits per character.
     pub data_bits: DataBits,
-    /// Parity bit of a character.
+    /// Parity bit.
     pub parity: Parity,
-    /// Stop bits of a character.
+    /// Stop bits per character.
     pub stop_bits: StopBits,
 }
 
 impl Line {
-    /// How fast characters follow each other on it.
+    /// Character rate.
     pub fn pace(&self) -> Pace {
         let parity = u32::from(self.parity != Parity::None);
         let bits = 1 + u32::from(u8::from(self.data_bits)) + parity + u32::from(u8::from(self.stop_bits));
@@ -45,30 +45,30 @@ impl Line {
     }
 }
 
-/// Why a port does not open.
+/// Reason why a port cannot be opened.
 #[derive(Debug, Error)]
 pub enum OpenError {
-    /// There is no such device, or no hardware behind it.
+    /// The device or its hardware does not exist.
     #[error("there is no such port")]
     Absent,
-    /// Somebody else has it open.
+    /// Another program has it open.
     #[error("another program uses the port")]
     Busy,
-    /// This user may not open it.
+    /// No permission.
     #[error("this user may not open the port")]
     Forbidden,
-    /// Something else than a serial port, such as a file.
+    /// Not a serial port, for example a file.
     #[error("this is not a serial port")]
     NotSerial,
-    /// The port cannot be set as it should.
+    /// The port does not support the settings.
     #[error("the port does not take these settings: {0}")]
     Unsupported(String),
-    /// Anything else.
+    /// Another error.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
 
-/// An open port. Its futures may be dropped: nothing that was received is lost, nothing that was sent is cut.
+/// An open port. Its futures are cancel safe: received bytes are not lost, a started send is completed.
 #[derive(Debug)]
 pub struct Serial {
     port: Threaded,
@@ -76,24 +76,21 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// Opens a port, and drops what arrived on it before.
-    ///
-    /// # Errors
-    /// [`OpenError`] tells why not.
+    /// Opens a port, and drops old received bytes.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
         Ok(Self { port: Threaded::new(open(line, MOST_OFF)?), pace: line.pace() })
     }
 
-    /// Hands bytes to the port, whose driver goes on sending after this has returned.
+    /// Sends bytes. The driver can still be sending when this returns.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if it
-    /// takes no bytes for two seconds.
+    /// accepts no bytes for two seconds.
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.port.send(bytes, self.pace.time(bytes.len()) + STUCK).await
     }
 
-    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    /// Waits for bytes, at most until `until`; `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -101,20 +98,20 @@ impl Serial {
         self.port.receive(buffer, until).await
     }
 
-    /// Drops what has arrived and was not received.
+    /// Drops all received bytes.
     pub fn discard(&mut self) {
         self.port.discard();
     }
 }
 
-/// Opens a port whose speed is off by so many thousandths at most, and drops what arrived on it before.
+/// Opens a port and drops old received bytes. `most_off` limits the deviation of the baud rate in 1/1000.
 pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, OpenError> {
     let port = serialport::new(&line.path, nominal_baud(line))
         .data_bits(line.data_bits)
         .parity(line.parity)
         .stop_bits(line.stop_bits)
         .flow_control(FlowControl::None)
-        // Converters without a supply of their own draw it from DTR; Unix raises it anyway.
+        // Converters without a power supply take power from DTR. Unix raises DTR anyway.
         .dtr_on_open(true)
         .timeout(SLICE)
         .open()
@@ -124,18 +121,18 @@ pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, Op
     Ok(port)
 }
 
-/// macOS cannot set the speed of a pseudo-terminal, and refuses to try.
+/// macOS fails to set the baud rate of a pseudo-terminal.
 fn nominal_baud(line: &Line) -> u32 {
     if cfg!(target_os = "macos") && is_pseudo_terminal(&line.path) { 0 } else { line.baud }
 }
 
-/// Whether there are no wires behind the port, so that its settings mean nothing.
+/// Whether the port is a pseudo-terminal, so that its settings have no effect.
 fn is_pseudo_terminal(path: &str) -> bool {
     let path = std::fs::canonicalize(path).unwrap_or_default();
     path.starts_with("/dev/pts") || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
 }
 
-/// Some drivers take what they cannot do without a word, and say so only when asked.
+/// Some drivers accept unsupported settings without an error, so read the settings back.
 fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenError> {
     if is_pseudo_terminal(&line.path) {
         return Ok(());
@@ -159,12 +156,12 @@ fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenEr
 
 fn open_error(error: &serialport::Error, path: &str) -> OpenError {
     match error.kind {
-        // On Unix this is a lock that somebody else has; Windows does not tell that from a port that is absent.
+        // On Unix, another program has the lock. Windows reports an absent port in the same way.
         ErrorKind::NoDevice if cfg!(unix) || is_listed(path) => OpenError::Busy,
         ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent,
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::Forbidden,
-        // The crate has no kinds for these, but their texts are its own and the same in every language. An I/O error
-        // is of a port that a board could have and has not.
+        // The crate has no kinds for these errors, but its texts are fixed and not translated. "I/O error" means a port
+        // of the mainboard that does not exist.
         _ => match error.description.as_str() {
             "No such device" | "No such device or address" | "I/O error" => OpenError::Absent,
             "Operation not permitted" => OpenError::Forbidden,
@@ -201,7 +198,7 @@ mod tests {
         }
     }
 
-    /// A pseudo-terminal with the port at its end, and the path of the port.
+    /// A pseudo-terminal, the port at its other end, and the path of the port.
     fn pair() -> (TTYPort, Serial, String) {
         let (mut master, slave) = TTYPort::pair().unwrap();
         master.set_timeout(Duration::from_secs(60)).unwrap();
@@ -303,7 +300,7 @@ mod tests {
         ] {
             assert_eq!(settings(line), Some(format!("the port does not take these settings: {what}")));
         }
-        // Near enough for one bus, and too far off for another.
+        // Close enough for one bus, but not for the other.
         let near = Line { parity: Parity::None, baud: 38_600, ..line("/dev/ttyUSB0") };
         assert!(check(&slave, &near, 6).is_ok() && check(&slave, &near, 3).is_err());
     }

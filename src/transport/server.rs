@@ -1,4 +1,4 @@
-//! UDP sockets that serve a [`Service`]: the other end of [`udp`](super::udp).
+//! UDP server for a [`Service`]; counterpart of [`udp`](super::udp).
 
 use std::collections::HashMap;
 use std::io;
@@ -10,22 +10,22 @@ use tokio::time::Instant;
 
 use super::fault::Faults;
 
-/// Something that serves many clients, such as a simulated controller.
+/// A service for many clients, such as a simulated controller.
 pub trait Service {
-    /// Takes a datagram of a client that arrived at `now` on a channel.
+    /// Handles a datagram from a client.
     fn receive(&mut self, now: Duration, channel: usize, client: u64, bytes: &[u8]);
-    /// The next datagram that is due at `now`: channel, client, bytes.
+    /// Returns the next datagram due at `now`: channel, client, bytes.
     fn transmit(&mut self, now: Duration) -> Option<(usize, u64, Vec<u8>)>;
-    /// When something may be due.
+    /// Time of the next event.
     fn wake(&self) -> Option<Duration>;
 }
 
-/// Clients remembered at a time; beyond that all are forgotten, and what was on its way to them is lost, as UDP may.
+/// Limit of known clients. Above it, all are dropped, with their datagrams in transit, as UDP allows.
 const MAX_CLIENTS: usize = 4096;
-/// Room for more than any frame, so that oversized datagrams arrive as such.
+/// Larger than any frame, so that oversized datagrams are detected.
 const BUFFER: usize = 2048;
 
-/// Bound sockets, one a channel.
+/// A UDP server with one socket per channel.
 #[derive(Debug)]
 pub struct Server {
     sockets: [UdpSocket; 2],
@@ -33,7 +33,7 @@ pub struct Server {
     addresses: Vec<SocketAddr>,
     start: Instant,
     faults: Option<(Faults, Faults)>,
-    /// Datagrams that faults delay: due, to the service, channel, client, bytes.
+    /// Datagrams delayed by faults: due time, to the service, channel, client, bytes.
     delayed: Vec<(Duration, bool, usize, u64, Vec<u8>)>,
 }
 
@@ -51,7 +51,7 @@ impl Server {
         })
     }
 
-    /// The address a channel is bound to.
+    /// Local address of a channel.
     pub fn local(&self, channel: usize) -> io::Result<SocketAddr> {
         self.sockets[channel].local_addr()
     }
@@ -61,7 +61,7 @@ impl Server {
         self.start.elapsed()
     }
 
-    /// Serves until something arrives or is due, and all that follows from it; call again and again.
+    /// Waits for one event and handles it. Call it in a loop.
     pub async fn turn(&mut self, service: &mut impl Service) -> io::Result<()> {
         let mut buffers = [[0; BUFFER]; 2];
         let due = self.delayed.iter().map(|flight| flight.0).chain(service.wake()).min();
@@ -78,7 +78,7 @@ impl Server {
                 let client = self.client(from);
                 self.launch(now, true, channel, client, &buffers[channel][..len]);
             }
-            // A client that is gone (ICMP port unreachable) is no reason to stop serving the others.
+            // A client that is gone (ICMP port unreachable) must not stop the server.
             Some((_, Err(error))) if is_about_one_client(&error) => {}
             Some((_, Err(error))) => return Err(error),
             None => {}

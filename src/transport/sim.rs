@@ -1,4 +1,4 @@
-//! A peer in this process instead of on a network.
+//! Links to an in-process peer, such as a simulated controller.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,17 +11,15 @@ use tokio::time::Instant;
 
 use super::fault::Faults;
 
-/// Something that takes and gives datagrams, or pieces of a byte stream, such as a simulated controller. A byte stream
-/// has but channel 0.
+/// A peer that exchanges datagrams or bytes of a stream. A byte stream only has channel 0.
 pub trait Peer: fmt::Debug {
-    /// Takes a datagram or piece that arrived at `now` on a channel.
+    /// Handles a datagram or bytes that arrived at `now`.
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]);
-    /// Is told that a character of a serial line arrived at `now` with the wrong parity, which [`Peer::receive`] does
-    /// not get.
+    /// Handles a character with a parity error on a serial line. [`Peer::receive`] does not get it.
     fn damaged(&mut self, _now: Duration, _channel: usize) {}
-    /// The next datagram or piece that is due at `now`.
+    /// Returns the next datagram or bytes due at `now`.
     fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)>;
-    /// When something may be due.
+    /// Time of the next event.
     fn wake(&self) -> Option<Duration>;
 }
 
@@ -43,7 +41,7 @@ impl<P: Peer + ?Sized> Peer for Box<P> {
     }
 }
 
-/// A peer on a thread, which others look at meanwhile.
+/// A peer that is shared with other threads.
 impl<P: Peer> Peer for Arc<Mutex<P>> {
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]) {
         locked(self).receive(now, channel, bytes);
@@ -62,12 +60,12 @@ impl<P: Peer> Peer for Arc<Mutex<P>> {
     }
 }
 
-/// A shared peer, also after a panic of whoever had it last.
+/// Locks a shared peer, even after a panic of its last user.
 pub fn locked<P>(peer: &Mutex<P>) -> MutexGuard<'_, P> {
     peer.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A peer behind a line that may be faulty, on tokio's clock (which tests can halt and turn).
+/// A peer behind a link with fault injection. It uses tokio's clock, which tests can pause and advance.
 #[derive(Debug)]
 pub struct InProcess<P> {
     peer: P,
@@ -78,7 +76,7 @@ pub struct InProcess<P> {
     sent: u64,
 }
 
-/// A datagram on its way; ordered by arrival, then by departure.
+/// A datagram in transit, ordered by arrival, then by departure.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct InFlight {
     at: Duration,
@@ -89,7 +87,7 @@ struct InFlight {
 }
 
 impl<P: Peer> InProcess<P> {
-    /// A peer behind a line; `faults` are those of the way there and back.
+    /// Creates a link to a peer; `faults` are for both directions.
     pub fn new(peer: P, faults: Option<(Faults, Faults)>) -> Self {
         let (there, back) = faults.unzip();
         Self { peer, start: Instant::now(), there, back, wire: BinaryHeap::new(), sent: 0 }
@@ -101,9 +99,9 @@ impl<P: Peer> InProcess<P> {
         self.launch(now, true, channel, bytes);
     }
 
-    /// Waits for one datagram of the peer on `channel`; what comes on others is dropped, as by a closed socket.
+    /// Waits for one datagram of the peer on `channel`. Datagrams on other channels are dropped, as by a closed socket.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8]) -> usize {
-        // A peer that answers at once leaves no pause in which Ctrl-C would be heard.
+        // Without this, a peer that answers at once would leave no pause to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();

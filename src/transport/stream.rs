@@ -1,4 +1,4 @@
-//! A byte stream to a controller, whatever carries it.
+//! Byte stream to a controller over any link.
 
 use std::io;
 
@@ -10,24 +10,24 @@ use super::session::client::{Attached, SessionBusy};
 use super::sim::Peer;
 use super::tcp::Tcp;
 
-/// A byte stream. Its futures may be dropped: nothing that was received is lost, nothing that was sent is cut.
+/// A byte stream. Its futures are cancel safe: received bytes are not lost, a started send is completed.
 #[derive(Debug)]
 pub enum Stream<P> {
     /// A serial port.
     Serial(Serial),
     /// A serial port behind a device server.
     Tcp(Tcp),
-    /// A peer in this process.
+    /// An in-process peer.
     InProcess(Box<InProcessLine<P>>),
-    /// A stream that another process holds, and lets several have one after the other.
+    /// A stream in a session, which several processes share.
     Session(Box<Attached>),
 }
 
 impl<P: Peer> Stream<P> {
-    /// Waits until the stream is this process's, but not longer than `until`. The future may be dropped.
+    /// Waits until this process has exclusive use of the stream, at most until `until`. Cancel safe.
     ///
     /// # Errors
-    /// [`SessionBusy`], where another process holds the stream.
+    /// [`SessionBusy`], in a session.
     pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.take(until).await,
@@ -35,17 +35,17 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Lets others have it.
+    /// Gives up exclusive use.
     pub fn give(&mut self) {
         if let Self::Session(attached) = self {
             attached.over();
         }
     }
 
-    /// Becomes the only one who moves the robot.
+    /// Claims the right to move the robot for this process alone.
     ///
     /// # Errors
-    /// [`SessionBusy`], where another process holds the stream.
+    /// [`SessionBusy`], in a session.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.claim_motion().await,
@@ -53,17 +53,17 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Leaves it. One that another process holds goes on.
+    /// Detaches from the stream. A session continues.
     pub async fn leave(self) {
         if let Self::Session(attached) = self {
             attached.leave().await;
         }
     }
 
-    /// Sends bytes; they may still be on their way when this returns.
+    /// Sends bytes. They can still be in transit when this returns.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is gone: unplugged, or closed.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is unplugged or closed.
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         match self {
             Self::Serial(serial) => serial.send(bytes).await,
@@ -76,10 +76,10 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    /// Waits for bytes, at most until `until`; `None` after a timeout.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is gone: unplugged, or closed.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is unplugged or closed.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         match self {
             Self::Serial(serial) => serial.receive(buffer, until).await,
@@ -89,13 +89,13 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Drops what has arrived and was not received; what is still on its way comes.
+    /// Drops received bytes. Bytes in transit still arrive.
     pub fn discard(&mut self) {
         match self {
             Self::Serial(serial) => serial.discard(),
             Self::Tcp(tcp) => tcp.discard(),
             Self::InProcess(line) => line.discard(),
-            // Its holder has discarded what came before.
+            // The host drops old bytes when a client takes the line.
             Self::Session(_) => {}
         }
     }

@@ -1,4 +1,4 @@
-//! Serves a [`Peer`] on a byte stream: the other end of [`serial`](super::serial) and [`tcp`](super::tcp).
+//! Server that connects a [`Peer`] to a byte stream; counterpart of [`serial`](super::serial) and [`tcp`](super::tcp).
 
 use std::io;
 use std::net::SocketAddr;
@@ -14,12 +14,12 @@ use super::line::{Pace, Wire};
 use super::pty::Pty;
 use super::sim::Peer;
 
-/// Most bytes read or written at a time.
+/// Bytes per read or write.
 const PIECE: usize = 4096;
-/// Most bytes that may wait for a TCP client; one that reads nothing while more come is let go.
+/// Limit of unsent bytes for a TCP client. A client that reads nothing is disconnected.
 const MOST_UNSENT: usize = 1 << 20;
 
-/// A line with a peer at its end, behind which clients come and go.
+/// A line with a peer, for one client at a time.
 #[derive(Debug)]
 pub struct StreamServer {
     end: End,
@@ -27,23 +27,21 @@ pub struct StreamServer {
     start: Instant,
 }
 
-/// What clients connect to.
 #[derive(Debug)]
 enum End {
     Tcp(Tcp),
     Pty(Pty),
 }
 
-/// What clients do.
 enum Event {
     Sent(usize),
-    /// One left, or came.
+    /// A client connected or disconnected.
     Changed,
 }
 
 impl StreamServer {
-    /// Listens on TCP like a device server; port 0 lets the system choose. One client at a time has the line: another
-    /// that connects meanwhile is let go at once, so that it knows.
+    /// Listens on TCP like a device server; port 0 lets the system choose. One client at a time has the line. Further
+    /// clients are disconnected at once, so that they notice.
     pub async fn tcp(
         address: SocketAddr,
         pace: Option<Pace>,
@@ -54,10 +52,10 @@ impl StreamServer {
         Ok((Self::new(End::Tcp(Tcp { listener, client: None, unsent: Vec::new() }), pace, faults), local))
     }
 
-    /// Makes a pseudo-terminal; returns the path of its port, too.
+    /// Creates a pseudo-terminal. Also returns the path of its port.
     ///
     /// # Errors
-    /// [`Unsupported`](io::ErrorKind::Unsupported) where there are none.
+    /// [`Unsupported`](io::ErrorKind::Unsupported) on systems without pseudo-terminals.
     pub fn pseudo_terminal(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> io::Result<(Self, String)> {
         let (pty, path) = Pty::open()?;
         Ok((Self::new(End::Pty(pty), pace, faults), path))
@@ -72,7 +70,7 @@ impl StreamServer {
         self.start.elapsed()
     }
 
-    /// Serves until somebody quits, or the end can serve no more.
+    /// Serves until `quits` fires, or until the line fails.
     pub async fn run(&mut self, peer: &mut impl Peer, mut quits: oneshot::Receiver<()>) {
         loop {
             tokio::select! {
@@ -82,7 +80,7 @@ impl StreamServer {
         }
     }
 
-    /// Serves until something arrives or is due, and all that follows from it; call again and again.
+    /// Waits for one event and handles it. Call it in a loop.
     pub async fn turn(&mut self, peer: &mut impl Peer) -> io::Result<()> {
         let mut buffer = [0; PIECE];
         let due = self.wire.due(peer).map(|due| self.start + due);
@@ -94,7 +92,7 @@ impl StreamServer {
         self.wire.run(now, peer);
         match event {
             Some(Event::Sent(len)) => self.wire.send(now, &buffer[..len]),
-            // Nobody is there to get it.
+            // The former client can no longer receive it.
             Some(Event::Changed) => self.wire.lose(now),
             None => {}
         }
@@ -135,12 +133,11 @@ impl End {
     }
 }
 
-/// A listener and the client that has the line.
 #[derive(Debug)]
 struct Tcp {
     listener: TcpListener,
     client: Option<TcpStream>,
-    /// What the client has not taken yet.
+    /// Bytes not accepted by the client yet.
     unsent: Vec<u8>,
 }
 
@@ -149,17 +146,17 @@ impl Tcp {
         loop {
             let Some(client) = &mut self.client else {
                 let client = accept(&self.listener).await?;
-                // One that has left already takes no settings.
+                // The client can be disconnected already.
                 self.client = client.set_nodelay(true).is_ok().then_some(client);
                 return Ok(Event::Changed);
             };
             let (mut reading, mut writing) = client.split();
             tokio::select! {
-                // The client's end comes first: who connects after it has the line.
+                // `biased`: the end of a client is handled before the next one connects.
                 biased;
                 read = reading.read(buffer) => match read {
                     Ok(len) if len > 0 => return Ok(Event::Sent(len)),
-                    // How it ended does not matter to the next one.
+                    // The reason does not matter.
                     _ => {
                         self.leave();
                         return Ok(Event::Changed);
@@ -174,10 +171,10 @@ impl Tcp {
         }
     }
 
-    /// Writes what the client takes at once; the rest waits.
+    /// Writes what the client accepts now, and keeps the rest.
     fn write(&mut self, bytes: &[u8]) {
         let Some(client) = &self.client else { return };
-        // A failure shows again in the next read.
+        // The next read reports a failure.
         let written = if self.unsent.is_empty() { client.try_write(bytes).unwrap_or(0) } else { 0 };
         self.unsent.extend(bytes.get(written..).unwrap_or_default());
         if self.unsent.len() > MOST_UNSENT {
@@ -191,7 +188,7 @@ impl Tcp {
     }
 }
 
-/// The next client that has not left before it was taken.
+/// The next client that is still connected.
 async fn accept(listener: &TcpListener) -> io::Result<TcpStream> {
     loop {
         match listener.accept().await {
@@ -212,7 +209,7 @@ mod tests {
     use super::super::testing::{Mirror, soon};
     use super::*;
 
-    /// Serves while the clients do their work.
+    /// Serves while the clients run.
     async fn with<T>(server: &mut StreamServer, peer: &mut Mirror, clients: impl Future<Output = T>) -> T {
         let mut clients = std::pin::pin!(clients);
         loop {
@@ -233,7 +230,7 @@ mod tests {
         tcp::Tcp::open("127.0.0.1", port, soon()).await.unwrap()
     }
 
-    /// Sends a line, and receives as many bytes.
+    /// Sends a line, and receives the same number of bytes.
     async fn ask(client: &mut tcp::Tcp, line: &[u8]) -> io::Result<Vec<u8>> {
         client.send(line).await?;
         let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
@@ -273,7 +270,7 @@ mod tests {
     #[tokio::test]
     async fn an_answer_on_its_way_to_one_that_left_is_lost() {
         let (mut server, port) = on_loopback().await;
-        // Eleven seconds a character: the answer is not over before the test is.
+        // Eleven seconds per character, so the answer is not complete before the test ends.
         server.wire = Wire::new(Some(Pace::new(1, 11)), None);
         let mut peer = Mirror::default();
         let client = connect(port).await;
@@ -300,13 +297,20 @@ mod tests {
     mod pseudo_terminal {
         use serialport::{DataBits, Parity, StopBits};
 
-        use super::super::super::serial::{Line, Serial};
+        use super::super::super::serial::{Line, OpenError, Serial};
         use super::*;
 
         fn open(path: &str) -> Serial {
             let path = path.to_owned();
             let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
-            Serial::open(&Line { path, baud: 9600, data_bits, parity, stop_bits }).unwrap()
+            let line = Line { path, baud: 9600, data_bits, parity, stop_bits };
+            // The thread that had the port before may still be closing it.
+            loop {
+                match Serial::open(&line) {
+                    Err(OpenError::Busy) => std::thread::yield_now(),
+                    opened => return opened.unwrap(),
+                }
+            }
         }
 
         async fn ask(serial: &mut Serial, line: &[u8], count: usize) -> Vec<u8> {
@@ -346,7 +350,7 @@ mod tests {
             for _ in 0..200 {
                 peer.answers.push_back(vec![b'x'; 1000]);
                 server.wire.run(server.now(), &mut peer);
-                // As if something had been due.
+                // As if an event were due.
                 let now = server.now();
                 let mut buffer = [0; PIECE];
                 let len = server.wire.take(now, &mut buffer);

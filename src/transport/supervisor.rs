@@ -1,10 +1,10 @@
-//! Tells the service manager that started this process how it is: `sd_notify(3)`. Datagrams to the socket that
-//! `NOTIFY_SOCKET` names; without it there is nobody to be told, and nothing happens.
+//! Notifications to the service manager, `sd_notify(3)`: datagrams to the socket in `NOTIFY_SOCKET`. Without this
+//! variable, nothing is sent.
 
 use std::io;
 use std::time::Duration;
 
-/// Who started this process and wants to know how it is.
+/// Service manager that started this process.
 #[derive(Debug, Default)]
 pub struct Supervisor {
     #[cfg(unix)]
@@ -13,56 +13,41 @@ pub struct Supervisor {
 }
 
 impl Supervisor {
-    /// The one that the environment names.
-    ///
-    /// # Errors
-    /// What it names cannot be reached.
+    /// Finds the service manager in the environment.
     #[cfg(unix)]
     pub fn find() -> io::Result<Self> {
         let Some(name) = std::env::var_os("NOTIFY_SOCKET").filter(|name| !name.is_empty()) else {
             return Ok(Self::default());
         };
         let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u64>().ok());
-        // The watchdog of a process that has started this one is not its own.
+        // A child process can inherit the variables of its parent.
         let is_own = number("WATCHDOG_PID").is_none_or(|process| process == u64::from(std::process::id()));
         let watchdog = number("WATCHDOG_USEC").filter(|micros| is_own && *micros > 0).map(Duration::from_micros);
         Ok(Self { socket: Some(unix::Socket::named(&name)?), watchdog })
     }
 
-    /// There is none here.
-    ///
-    /// # Errors
-    /// None.
+    /// Not supported on this system.
     #[cfg(not(unix))]
     pub fn find() -> io::Result<Self> {
         Ok(Self::default())
     }
 
-    /// How often it wants to hear that this process is alive: twice in the time after which it would start it anew.
+    /// Interval of the alive messages: half of the watchdog time of the service manager.
     pub fn pulse(&self) -> Option<Duration> {
         self.watchdog.map(|within| within / 2)
     }
 
-    /// All is set up: those who wait for this service may begin.
-    ///
-    /// # Errors
-    /// It cannot be told.
+    /// Reports that the service is ready, so that dependent services can start.
     pub fn ready(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("READY=1\nSTATUS={status}"))
     }
 
-    /// Still alive, and how.
-    ///
-    /// # Errors
-    /// It cannot be told.
+    /// Reports that the service is alive, with a status text.
     pub fn alive(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
     }
 
-    /// It comes to its end.
-    ///
-    /// # Errors
-    /// It cannot be told.
+    /// Reports that the service stops.
     pub fn stopping(&self) -> io::Result<()> {
         self.tell("STOPPING=1")
     }
@@ -94,7 +79,7 @@ mod unix {
     impl Socket {
         pub fn named(name: &OsStr) -> io::Result<Self> {
             let own = UnixDatagram::unbound()?;
-            // A manager that does not read must not hold up who is watched.
+            // A service manager that does not read must not block this process.
             own.set_nonblocking(true)?;
             let to = match name.as_bytes() {
                 [b'@', name @ ..] => in_abstract(name)?,

@@ -1,12 +1,12 @@
-//! A record of the traffic as a pcapng file that Wireshark opens.
+//! Writer for pcapng recordings, which Wireshark can open.
 //!
-//! Datagrams and the bytes of TCP streams are wrapped in made-up IPv4 or IPv6 and UDP or TCP headers (link type RAW),
-//! with the real addresses where they are known, so that a dissector for the port finds them. A stream's sequence
-//! numbers run on from the first byte that is recorded; its opening and end are not in the file.
+//! Datagrams and TCP bytes get synthetic IP and UDP or TCP headers (link type RAW). The addresses are real where known,
+//! so that Wireshark finds the dissector of the port. TCP sequence numbers start with the first recorded byte. The
+//! opening and close of a connection are not recorded.
 //!
-//! What goes over a serial line has no headers. Each piece that was sent or received together is a packet of link type
-//! USER0: one byte for the direction, 0 to the controller and 1 from it, and then the piece. Wireshark shows them as
-//! bytes, or by a dissector that is named for USER0 under Preferences, Protocols, DLT_USER, with a header size of 1.
+//! A serial line has no headers. Bytes sent or received together are a packet of link type USER0: a direction byte (0
+//! to the controller, 1 from it), then the bytes. Wireshark shows raw bytes, or uses the dissector set for USER0 under
+//! Preferences, Protocols, DLT_USER, with a header size of 1.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use etherparse::{IpHeaders, PacketBuilder, PacketBuilderStep};
 
-/// Which way bytes went.
+/// Direction of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// To the controller.
@@ -27,7 +27,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// As texts mark it.
+    /// Arrow in texts.
     pub const fn arrow(self) -> &'static str {
         match self {
             Self::Sent => "->",
@@ -36,45 +36,44 @@ impl Direction {
     }
 }
 
-/// `LINKTYPE_RAW`: packets begin with an IP header.
+/// `LINKTYPE_RAW`: packets start with an IP header.
 pub const LINKTYPE_RAW: u16 = 101;
-/// `LINKTYPE_PROFIBUS_DL`: telegrams of PROFIBUS, from the start delimiter to the end delimiter.
+/// `LINKTYPE_PROFIBUS_DL`: PROFIBUS telegrams, from start to end delimiter.
 pub const LINKTYPE_PROFIBUS_DL: u16 = 257;
 /// `LINKTYPE_USER0`: for private use.
 const LINKTYPE_USER0: u16 = 147;
-/// Numbers of the interfaces, in the order of their blocks.
+/// Interface numbers, in the order of their blocks.
 const NETWORK: u32 = 0;
 const LINE: u32 = 1;
-/// Most bytes of a stream in a segment.
+/// Most bytes per TCP segment.
 const MOST_IN_SEGMENT: usize = 32 * 1024;
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
 const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 
-/// An open capture file. Every block is written at once and whole, so that several connections can share a file, and
-/// that what was recorded is there however the process ends.
+/// An open recording. Each block is written with one call. So several connections can share a file, and a crash loses
+/// no recorded packet.
 #[derive(Debug)]
 pub struct CaptureWriter<W: Write = File> {
     out: W,
-    /// The number of the next byte of each direction of a TCP stream.
+    /// Next sequence number of each direction of a TCP stream.
     sequence: HashMap<(SocketAddr, SocketAddr), u32>,
 }
 
 impl CaptureWriter {
-    /// Starts a section at the end of a file, which is made if it is not there. A file may have any number of them.
+    /// Starts a section at the end of a file, and creates the file if necessary. A file can have many sections.
     pub fn append(path: &Path) -> io::Result<Self> {
         Self::new(open(path)?)
     }
 
-    /// Starts a section of packets of this kind: of [`LINKTYPE_RAW`] as [`append`](Self::append) does, or whole frames of a
-    /// link.
+    /// Starts a section with this link type: [`LINKTYPE_RAW`], as in [`append`](Self::append), or whole frames.
     pub fn append_packets(path: &Path, link_type: u16) -> io::Result<Self> {
         Self::start(open(path)?, &[link_type])
     }
 
-    /// Starts a section for byte streams: TCP and serial lines. tcpdump reads no file with such a section, because it
-    /// has two link types; Wireshark does.
+    /// Starts a section for byte streams: TCP and serial lines. It has two link types, so Wireshark can read the file
+    /// but tcpdump cannot.
     pub fn append_streams(path: &Path) -> io::Result<Self> {
         Self::streams(open(path)?)
     }
@@ -85,12 +84,12 @@ fn open(path: &Path) -> io::Result<File> {
 }
 
 impl<W: Write> CaptureWriter<W> {
-    /// Starts a capture of datagrams on any writer.
+    /// Starts a recording of datagrams on any writer.
     pub fn new(out: W) -> io::Result<Self> {
         Self::start(out, &[LINKTYPE_RAW])
     }
 
-    /// Starts a capture of byte streams on any writer.
+    /// Starts a recording of byte streams on any writer.
     pub fn streams(out: W) -> io::Result<Self> {
         Self::start(out, &[LINKTYPE_RAW, LINKTYPE_USER0])
     }
@@ -113,7 +112,7 @@ impl<W: Write> CaptureWriter<W> {
         Ok(Self { out, sequence: HashMap::new() })
     }
 
-    /// Records a datagram. `time` counts from 1970.
+    /// Records a datagram. `time` is since 1970.
     pub fn datagram(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, payload: &[u8]) -> io::Result<()> {
         let mut packet = Vec::with_capacity(payload.len() + 48);
         let headers = ip(from, to).udp(from.port(), to.port());
@@ -121,7 +120,7 @@ impl<W: Write> CaptureWriter<W> {
         self.packet(NETWORK, time, &packet)
     }
 
-    /// Records bytes of a TCP stream, of a capture of [`streams`](Self::streams) or datagrams. `time` counts from 1970.
+    /// Records bytes of a TCP stream. `time` is since 1970.
     pub fn segment(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, bytes: &[u8]) -> io::Result<()> {
         for piece in bytes.chunks(MOST_IN_SEGMENT) {
             let expected = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
@@ -135,12 +134,12 @@ impl<W: Write> CaptureWriter<W> {
         Ok(())
     }
 
-    /// Records a whole frame of the link type that the section began with. `time` counts from 1970.
+    /// Records a whole frame of the section's link type. `time` is since 1970.
     pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
         self.packet(NETWORK, time, frame)
     }
 
-    /// Records bytes of a serial line, of a capture of [`streams`](Self::streams). `time` counts from 1970.
+    /// Records bytes of a serial line; only after [`streams`](Self::streams). `time` is since 1970.
     pub fn line(&mut self, time: Duration, direction: Direction, bytes: &[u8]) -> io::Result<()> {
         let direction = match direction {
             Direction::Sent => 0,
@@ -154,7 +153,7 @@ impl<W: Write> CaptureWriter<W> {
         let len = length(packet.len()).to_le_bytes();
         let mut body = Vec::with_capacity(packet.len() + 20);
         body.extend(interface.to_le_bytes());
-        // The upper half of the time comes first, each half little-endian.
+        // The upper half of the time comes first; both halves are little-endian.
         body.extend(&micros[4..]);
         body.extend(&micros[..4]);
         body.extend(len);
@@ -164,7 +163,7 @@ impl<W: Write> CaptureWriter<W> {
     }
 }
 
-/// The number of the first byte of a stream; that of its opening is one less.
+/// Sequence number of the first byte of a stream.
 const FIRST: u32 = 1;
 
 /// A pcapng block: type, length, body padded to four bytes, length again.
@@ -178,7 +177,7 @@ fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     block
 }
 
-/// The IP header of a packet; of different versions, IPv6.
+/// IP header of a packet; IPv6 if the addresses have different versions.
 fn ip(from: SocketAddr, to: SocketAddr) -> PacketBuilderStep<IpHeaders> {
     const HOPS: u8 = 64;
 
@@ -200,7 +199,7 @@ fn length(len: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// The type and body of every block.
+    /// Type and body of every block.
     fn blocks(bytes: &[u8]) -> Vec<(u32, &[u8])> {
         let (mut blocks, mut rest) = (Vec::new(), bytes);
         while !rest.is_empty() {
@@ -213,7 +212,7 @@ mod tests {
         blocks
     }
 
-    /// The interface and content of a packet's block.
+    /// Interface and content of a packet block.
     fn content((kind, body): (u32, &[u8])) -> (u32, &[u8]) {
         assert_eq!(kind, ENHANCED_PACKET);
         let word = |at: usize| u32::from_le_bytes(body[at..at + 4].try_into().unwrap());
@@ -247,7 +246,7 @@ mod tests {
         assert_eq!(kinds, [SECTION_HEADER, INTERFACE, ENHANCED_PACKET]);
     }
 
-    /// The Internet checksum (RFC 1071) of what has one in it is 0.
+    /// The Internet checksum (RFC 1071) over data that includes its checksum is 0.
     fn checks_out(bytes: &[u8]) -> bool {
         let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
         let sum: u32 = words.sum();

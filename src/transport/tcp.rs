@@ -1,4 +1,4 @@
-//! A TCP stream to a serial device server, which hands bytes on as they are (no Telnet, no RFC 2217).
+//! TCP stream to a serial device server that passes raw bytes (no Telnet, no RFC 2217).
 
 use std::io;
 use std::net::SocketAddr;
@@ -10,46 +10,46 @@ use tokio::time::{Instant, timeout_at};
 
 use super::vanished;
 
-/// Why a device server is not reached.
+/// Reason why a server cannot be reached.
 #[derive(Debug, Error)]
 pub enum ConnectError {
-    /// The name has no address.
+    /// The host name has no address.
     #[error("the name has no address")]
     NotFound,
-    /// Nobody listens on the port.
+    /// No program listens on the port.
     #[error("nobody listens there")]
     Refused,
-    /// No way leads to the host or network.
+    /// The host or its network is unreachable.
     #[error("no way leads there")]
     Unreachable,
-    /// Nobody answered in time.
+    /// Timeout.
     #[error("no answer")]
     TimedOut,
-    /// Anything else.
+    /// Another error.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
 
-/// A connected stream.
+/// A TCP connection.
 #[derive(Debug)]
 pub struct Tcp {
     stream: TcpStream,
-    /// What a dropped [`Tcp::send`] left: the next one sends it first, so that no message is cut.
+    /// Rest of a [`Tcp::send`] that was dropped. The next one sends it first, so that no message is incomplete.
     unsent: Vec<u8>,
 }
 
 impl Tcp {
-    /// Connects to the first address of a host that answers, before `until`.
+    /// Connects to the first address of the host that answers before `until`.
     ///
     /// # Errors
-    /// [`ConnectError`] tells why not; of several addresses, the last.
+    /// [`ConnectError`] of the last address.
     pub async fn open(host: &str, port: u16, until: Instant) -> Result<Self, ConnectError> {
         let stream = timeout_at(until, connect(host, port)).await.unwrap_or(Err(ConnectError::TimedOut))?;
         stream.set_nodelay(true)?;
         Ok(Self { stream, unsent: Vec::new() })
     }
 
-    /// The own address and that of the server.
+    /// Local and remote address.
     pub fn ends(&self) -> io::Result<(SocketAddr, SocketAddr)> {
         Ok((self.stream.local_addr()?, self.stream.peer_addr()?))
     }
@@ -57,7 +57,7 @@ impl Tcp {
     /// Sends bytes.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server is gone or has closed the connection.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server has closed the connection or is gone.
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.unsent.extend(bytes);
         while !self.unsent.is_empty() {
@@ -71,10 +71,10 @@ impl Tcp {
         Ok(())
     }
 
-    /// Waits for bytes, but not longer than `until`; `None` after silence.
+    /// Waits for bytes, at most until `until`; `None` after a timeout.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server is gone or has closed the connection.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the server has closed the connection or is gone.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         match timeout_at(until, self.stream.read(buffer)).await {
             Err(_) => Ok(None),
@@ -84,9 +84,9 @@ impl Tcp {
         }
     }
 
-    /// Drops what has arrived and was not received.
+    /// Drops all received bytes.
     pub fn discard(&mut self) {
-        // A failure shows again in the next read.
+        // The next read reports a failure.
         while self.stream.try_read(&mut [0; 1024]).is_ok_and(|len| len > 0) {}
     }
 }
@@ -148,7 +148,7 @@ mod tests {
         server.write_all(&[b'x'; 5000]).await.unwrap();
         let mut buffer = [0; 64];
         assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(64));
-        // Bytes may still be on their way over the loopback.
+        // Bytes can still be in transit on the loopback interface.
         let mut left = 5000 - 64;
         while left > 0 {
             tcp.stream.readable().await.unwrap();
@@ -164,14 +164,14 @@ mod tests {
         drop(server);
         let error = tcp.receive(&mut [0; 8], soon()).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotConnected);
-        // What discards does not fail, nor hide it.
+        // `discard` neither fails nor hides the error.
         tcp.discard();
         assert_eq!(tcp.receive(&mut [0; 8], soon()).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
     }
 
     #[tokio::test]
     async fn a_port_nobody_listens_on_refuses() {
-        // Bound, so that nobody else gets it, but not listening.
+        // Bound but not listening, so that no other program gets the port.
         let socket = TcpSocket::new_v4().unwrap();
         socket.bind("127.0.0.1:0".parse().unwrap()).unwrap();
         let port = socket.local_addr().unwrap().port();

@@ -1,4 +1,4 @@
-//! What tests of transports share.
+//! Helpers for tests of transports.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -7,19 +7,19 @@ use tokio::time::Instant;
 
 use super::sim::Peer;
 
-/// Later than anything takes that does not fail.
+/// A deadline that no successful operation reaches.
 pub fn soon() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
 
-/// Bytes from their digits, whatever stands between them.
+/// Bytes from hexadecimal digits; all other characters are separators.
 pub fn hex(text: &str) -> Vec<u8> {
     let digits: Vec<u8> = text.bytes().filter(u8::is_ascii_hexdigit).collect();
     let byte = |pair: &[u8]| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
     digits.chunks(2).map(byte).collect()
 }
 
-/// Answers each line with itself, backwards and without delay, and keeps what it heard, and when.
+/// Answers each line with its reverse, without delay, and records what it received.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub line: Vec<u8>,
@@ -50,7 +50,7 @@ impl Peer for Mirror {
     }
 
     fn wake(&self) -> Option<Duration> {
-        // What is due is due at once.
+        // Everything is due at once.
         (!self.answers.is_empty()).then_some(Duration::ZERO)
     }
 }

@@ -1,4 +1,4 @@
-//! UDP sockets to one host, one a port.
+//! UDP sockets to one host, one per port.
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
@@ -7,13 +7,13 @@ use tokio::net::UdpSocket;
 use tokio::task::coop::consume_budget;
 use tokio::time::{Instant, timeout_at};
 
-/// Connected sockets: the kernel drops what others send and reports a closed port.
+/// Connected sockets: the kernel drops datagrams of other hosts, and reports a closed port.
 #[derive(Debug)]
 pub struct Udp {
     channels: Vec<Channel>,
 }
 
-/// A port of the host, and the socket to it once there is one.
+/// A port of the host, with its socket after the first use.
 #[derive(Debug)]
 struct Channel {
     peer: SocketAddr,
@@ -23,15 +23,12 @@ struct Channel {
 #[derive(Debug)]
 struct Open {
     socket: UdpSocket,
-    /// Asked for once: it is wanted for every frame, and asking costs as much as a tenth of a round trip.
+    /// Cached, because it is needed for every frame and a system call takes a tenth of a round trip.
     local: SocketAddr,
 }
 
 impl Udp {
-    /// For the ports of `host`, in the order that `channel` counts them. Sockets are opened when first used.
-    ///
-    /// # Errors
-    /// When the name does not resolve.
+    /// Creates channels for the ports of `host`, in this order. A socket opens at its first use.
     pub async fn open(host: &str, ports: &[u16]) -> io::Result<Self> {
         let address = if let Ok(address) = host.parse::<IpAddr>() {
             address
@@ -43,23 +40,23 @@ impl Udp {
         Ok(Self { channels: channels.collect() })
     }
 
-    /// The same ports, by sockets of their own.
+    /// The same ports with new sockets.
     #[must_use]
     pub fn another(&self) -> Self {
         Self { channels: self.channels.iter().map(|channel| Channel { peer: channel.peer, open: None }).collect() }
     }
 
-    /// The address of a channel's peer.
+    /// Remote address of a channel.
     pub fn peer(&self, channel: usize) -> SocketAddr {
         self.channels[channel].peer
     }
 
-    /// The own address of a channel, once it has been used.
+    /// Local address of a channel, after its first use.
     pub fn local(&self, channel: usize) -> Option<SocketAddr> {
         self.channels[channel].open.as_ref().map(|open| open.local)
     }
 
-    /// Gives a channel a new socket, so that nothing late on the old one is heard or mistaken.
+    /// Replaces the socket of a channel, so that no late datagram is received.
     pub fn renew(&mut self, channel: usize) {
         self.channels[channel].open = None;
     }
@@ -74,14 +71,13 @@ impl Udp {
         if sent == bytes.len() { Ok(()) } else { Err(io::Error::other("the datagram was cut short")) }
     }
 
-    /// Waits for one datagram, but not longer than `until`; what does not fit `buffer` is cut.
+    /// Waits for one datagram, at most until `until`. Bytes beyond `buffer` are dropped.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         let socket = self.channels[channel].socket().await?;
-        // Where datagrams come without a pause, Ctrl-C and other robots have their turn all the same.
+        // Lets Ctrl-C and other robots run even if datagrams arrive without a pause.
         consume_budget().await;
-        // A peer on this machine (a simulator, a proxy) is given the processor before anybody looks. That it has answered
-        // by then saves a fruitless look, a timer and a wait in the reactor: a tenth of such a round trip. With a peer
-        // elsewhere it costs nothing that could be noticed.
+        // Let a peer on this computer (simulator, proxy) run first. If it answers now, this saves a failed read, a
+        // timer and a reactor wait: a tenth of the round trip. For a remote peer the cost is negligible.
         std::thread::yield_now();
         match socket.try_recv(buffer) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {

@@ -1,7 +1,7 @@
-//! The only place that knows clap's completion engine, whose interface is not stable yet.
+//! Adapter for clap's completion engine, whose interface is unstable; only this file uses it.
 //!
-//! The engine builds all of a command tree before it looks at the line, and takes any word before the cursor for a
-//! subcommand. So clap's own parser finds first which command the line names, and the engine is handed that one alone.
+//! The engine builds the whole command tree, and takes every word before the cursor for a subcommand. Therefore clap's
+//! own parser first finds the command of the line, and the engine gets only that one.
 
 use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
@@ -15,14 +15,14 @@ use super::values::{self, Context};
 use crate::cli::Cli;
 use crate::command::{Candidate, ValueKind};
 
-/// How candidates are marked, on their way through the engine, behind which more must follow.
+/// Tag of candidates that need more text.
 const BEGUN: &str = "begun";
 
-/// So that arguments can name their kind: `#[arg(add = ValueKind::Robot)]`.
+/// Allows `#[arg(add = ValueKind::Robot)]`.
 impl ArgExt for ValueKind {}
 
-/// What could stand behind `before`, where `current` was typed; `None` where that cannot be told. `is_among` other lines of
-/// this process; `connects` where a robot may be connected to for it.
+/// Candidates after `before` for the typed `current`; `None` if the line cannot be parsed. `is_among`: other lines run
+/// in this process. `connects`: a connection to a robot is allowed.
 pub(super) fn complete(
     mut before: Vec<OsString>,
     current: &OsStr,
@@ -35,7 +35,7 @@ pub(super) fn complete(
     let context = Arc::new(Context::new(&matches, (is_among, connects), patience));
     let mut narrowed = narrow(&root, &path, &context)?;
     if !is_among {
-        // It holds some thousand parts, and the process ends.
+        // Freeing some thousand parts takes time, and the process is about to exit.
         std::mem::forget(root);
     }
     for word in &mut before {
@@ -50,7 +50,7 @@ pub(super) fn complete(
     let found = clap_complete::engine::complete(&mut narrowed, before, index, None).ok()?;
     let mut found: Vec<Candidate> = found.iter().filter_map(candidate).collect();
     if current.is_empty() {
-        // Forty flags that every command takes are no answer to an empty word.
+        // For an empty word, the forty global flags are no help.
         let is_flag = |candidate: &Candidate| candidate.value.starts_with('-') && candidate.value != "-";
         let has_others = found.iter().any(|candidate| !is_flag(candidate));
         found.retain(|candidate| if has_others { !is_flag(candidate) } else { own.contains(&candidate.value) });
@@ -61,12 +61,12 @@ pub(super) fn complete(
 fn candidate(found: &CompletionCandidate) -> Option<Candidate> {
     let help = found.get_help().map(|help| help.to_string().lines().next().unwrap_or_default().to_owned());
     let value = found.get_value().to_str()?.to_owned();
-    // Folders, and flags that take their value behind `=`.
+    // Folders, and flags with a value after `=`.
     let is_begun = found.get_tag().is_some_and(|tag| tag.to_string() == BEGUN) || value.ends_with(['/', '=']);
     Some(Candidate { value, help, is_begun })
 }
 
-/// The subcommands that a line names.
+/// Subcommands in the line.
 fn path(matches: &ArgMatches) -> Vec<String> {
     let mut path = Vec::new();
     let mut next = matches.subcommand();
@@ -77,7 +77,7 @@ fn path(matches: &ArgMatches) -> Vec<String> {
     path
 }
 
-/// `command` with nothing but what leads to the end of `path`, and what can follow there.
+/// The command tree reduced to `path`, and to what can follow it.
 fn narrow(command: &Command, path: &[String], context: &Arc<Context>) -> Option<Command> {
     let narrowed = Command::new(command.get_name().to_owned())
         .disable_help_flag(true)
@@ -97,12 +97,12 @@ fn narrow(command: &Command, path: &[String], context: &Arc<Context>) -> Option<
 /// The argument with the candidates of its kind.
 fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     let argument = argument.clone();
-    // The engine panics at flags that it does not know before such an argument.
+    // The engine panics if an unknown flag precedes such an argument.
     let argument = if argument.is_positional() { argument.allow_hyphen_values(false) } else { argument };
     let shows = matches!(argument.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::Version);
     let argument = if shows { argument.action(ArgAction::SetTrue) } else { argument };
     let Some(kind) = argument.get::<ValueKind>().copied() else { return argument };
-    // At a prompt any folder may be typed; only who chooses from a list is shown those of backups alone.
+    // On a command line, any folder is valid. Only a selection list is limited to backups.
     if matches!(kind, ValueKind::Backup) && !context.connects() {
         return argument;
     }
@@ -117,7 +117,7 @@ fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     }))
 }
 
-/// The flags that only the command at the end of `path` takes.
+/// Flags that belong only to the command at the end of `path`.
 fn own_flags(root: &Command, path: &[String]) -> Vec<String> {
     let command = path.iter().fold(root, |command, name| command.find_subcommand(name).unwrap_or(command));
     let own = command.get_arguments().filter(|argument| !argument.is_global_set());

@@ -1,8 +1,7 @@
-//! Values that only a controller knows.
+//! Completion values that only a controller has.
 //!
-//! They are what commands report that read them, asked through a session that is open, or of a simulator. No key at a
-//! prompt opens a link to a controller, sends anything but a read, or waits for long: whatever is not there in time is no
-//! candidate.
+//! The values come from reports of read commands, through an open session or from a simulator. A key press never opens
+//! a link to a real controller, only reads, and never waits long. Values that arrive too late are not offered.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
@@ -22,10 +21,10 @@ use crate::output::{ColorChoice, Format, Screen, escape};
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sessions, Setting, Sources};
 
-/// The longest that somebody waits.
+/// Longest wait.
 pub(super) const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What the robot of the line answers in time.
+/// Values that the robot of the line reports in time.
 pub(super) fn values(
     family: Family,
     ask: Question,
@@ -35,11 +34,11 @@ pub(super) fn values(
     let Some(robot) = robot(family, sources, patience, connects) else { return Vec::new() };
     let until = Instant::now() + patience;
     let (found, arrived) = mpsc::channel();
-    // A thread of its own: the line editor may ask from within anything, and nothing is waited for longer than this.
+    // On its own thread, because the line editor can call this from any context, and to limit the wait.
     let asking = move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         if let Ok(runtime) = runtime {
-            // What has been found until then counts.
+            // Values found before the timeout count.
             let _ = runtime.block_on(async { timeout(patience, ask(&Asker::new(robot, found))).await });
             runtime.shutdown_background();
         }
@@ -51,12 +50,12 @@ pub(super) fn values(
     while let Ok(value) = arrived.recv_timeout(until.saturating_duration_since(Instant::now())) {
         values.push(value);
     }
-    // What would do something to the terminal can be typed by nobody.
+    // A value with control characters cannot be typed.
     values.retain(|value| escape::line(&value.value) == value.value);
     values
 }
 
-/// The robot that the line is for, if it is one, reached by no other way than a session.
+/// The robot of the line, if it is exactly one. A real controller is only reached through a session.
 fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) -> Option<Robot> {
     let [robot] = <[Robot; 1]>::try_from(sources.robots(Some(family)).ok()?).ok()?;
     let sessions = match (robot.target.value.is_simulated(), robot.sessions) {
@@ -83,7 +82,7 @@ impl Asker {
     }
 
     async fn report(&self, words: &[&str]) -> Option<Value> {
-        // No question is begun that may have to be broken off.
+        // No request that would probably be interrupted.
         if self.began.elapsed() > self.robot.timeout.value / 2 {
             return None;
         }
@@ -93,7 +92,7 @@ impl Asker {
         };
         let typed = Some(Arc::from("completion of a command line"));
         let robot = &self.robot;
-        // Where a connection would stop the controller at its end, only a session is asked.
+        // If the end of a connection stops the controller, only a session is used.
         if robot.sessions != Sessions::Only && command.entry(robot) != Entry::Harmless {
             return None;
         }
@@ -114,7 +113,7 @@ impl Ask for Asker {
     }
 
     fn tell(&self, candidate: Candidate) {
-        // Nobody may listen any more.
+        // The receiver can be gone already.
         let _ = self.found.send(candidate);
     }
 }

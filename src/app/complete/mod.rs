@@ -1,16 +1,16 @@
-//! Completion: what could stand at the cursor of a command line, with live values.
+//! Completion of a command line, with live values.
 //!
 //! ```text
 //! complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate { value, help, is_begun }>
 //! ```
 //!
-//! `words[0]` is the program (`armctl`, or `yerc` where it was started under that name), `words[index]` the word at the
-//! cursor as far as it was typed, maybe empty. The shells' scripts (`shell.rs`) and the line editor of `armctl repl` call
-//! the same function. It prints nothing and fails at nothing: where nothing is known there are no candidates.
+//! `words[0]` is the program (`armctl`, or `yerc` if it was started with that name). `words[index]` is the word at the
+//! cursor, as typed so far; it can be empty. The shell scripts (`shell.rs`) and the line editor of `armctl repl` call
+//! the same function. It prints nothing and never fails: without knowledge there are no candidates.
 //!
-//! Arguments only name the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Which values a common kind has is
-//! in `values.rs`; a family keeps its own in `command/FAMILY/complete.rs`. How a robot is asked for those that only it knows is
-//! in `live.rs`. The library that knows words and flags is unstable and stays in `engine.rs`.
+//! Arguments declare the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Values of common kinds are in
+//! `values.rs`, those of a family in `command/FAMILY/complete.rs`. `live.rs` asks a robot for values that only it has.
+//! `engine.rs` contains the unstable library for words and flags.
 //!
 //! [`ValueKind`]: crate::command::ValueKind
 
@@ -27,13 +27,13 @@ pub use shell::answer;
 use super::with_family;
 use crate::command::Candidate;
 
-/// What could stand at `words[index]`, best first; `is_among` other lines of this process, as at the prompt, where
-/// simulators live on from one line to the next.
+/// Candidates for `words[index]`, best first. `is_among`: other lines run in this process, as at the prompt, where
+/// simulators live on.
 pub fn complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate> {
     complete_within(words, index, is_among, live::PATIENCE, false)
 }
 
-/// The same within a time; where it `connects`, a robot is asked although no session holds its link.
+/// The same with a time limit. With `connects`, a robot is asked even without a session.
 pub fn complete_within(
     words: &[OsString],
     index: usize,

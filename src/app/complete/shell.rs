@@ -1,8 +1,8 @@
-//! What a shell asks, and how it wants to be answered.
+//! Completion protocol of the shells.
 //!
 //! The scripts in `completions/` set `ARMCTL_COMPLETE` to the name of the shell, and pass `--` and the words up to the
-//! cursor. Bash cuts words at `=` and `:` as well, so it passes the line, the piece of it at the cursor, and in the
-//! variable how it will show the answer and how wide.
+//! cursor. Bash also splits words at `=` and `:`. It therefore passes the whole line and the part at the cursor. The
+//! variable then also contains the type of display and the width.
 
 use std::ffi::OsString;
 
@@ -12,10 +12,10 @@ use super::complete;
 use crate::command::Candidate;
 use crate::command::about::completions::Shell;
 
-/// The variable that turns a command line into a question.
+/// Variable that requests a completion.
 const ASKED: &str = "ARMCTL_COMPLETE";
 
-/// The answer to a shell, if this process is asked by one.
+/// Completion answer; `None` if this process was not started for one.
 pub fn answer(args: &[OsString]) -> Option<String> {
     let asked = std::env::var(ASKED).ok()?;
     let mut asked = asked.split_whitespace();
@@ -45,7 +45,7 @@ pub fn answer(args: &[OsString]) -> Option<String> {
     })
 }
 
-/// How bash says that it shows candidates as a list (`COMP_TYPE`), which may have explanations.
+/// Values of `COMP_TYPE` with which bash shows a list; only a list can have descriptions.
 const LISTING: [usize; 2] = ['?' as usize, '!' as usize];
 
 fn lines(found: &[Candidate], line: impl Fn(&Candidate) -> String) -> String {
@@ -59,19 +59,19 @@ fn described(found: &Candidate) -> String {
     }
 }
 
-/// Whether a blank follows.
+/// Whether a blank follows the candidate.
 fn sign(found: &Candidate) -> char {
     if found.is_begun { '-' } else { '+' }
 }
 
-/// What stands at the cursor of `line`, for bash to put in the place of `piece`, its end.
+/// Candidates at the end of `line`, in the form that bash puts in place of `piece`.
 fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let Split { words, quote } = Split::of(line);
     let index = words.len() - 1;
     let current = words[index].to_string_lossy().into_owned();
     let words: Vec<OsString> = words.into_iter().collect();
     let found = complete(&words, index, false);
-    // The part of the word that bash took for words of their own.
+    // The part of the word that bash has split off.
     let piece = if quote.is_some() { piece.trim_start_matches(['"', '\'']) } else { piece };
     let kept = Split::of(piece).words.pop().map_or(0, |piece| piece.len());
     let before = current.len().saturating_sub(kept);
@@ -92,7 +92,7 @@ fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     })
 }
 
-/// As bash would have it typed.
+/// Escapes a value for bash.
 fn escaped(value: &str) -> String {
     let mut escaped = String::new();
     for (index, c) in value.char_indices() {
@@ -103,11 +103,11 @@ fn escaped(value: &str) -> String {
     escaped
 }
 
-/// A line that may end anywhere as the words a shell would make of it.
+/// An incomplete line, split into words as a shell does.
 struct Split {
-    /// The last one is that at the cursor, maybe empty.
+    /// Words; the last one is at the cursor and can be empty.
     words: Vec<OsString>,
-    /// The quote that is open at the end.
+    /// Open quote at the end.
     quote: Option<char>,
 }
 

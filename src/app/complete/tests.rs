@@ -1,6 +1,6 @@
 use super::*;
 
-/// The candidates for the word behind the last blank.
+/// Candidates for the word after the last blank.
 fn found(line: &str) -> Vec<String> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     complete(&words, words.len() - 1, false).into_iter().map(|candidate| candidate.value).collect()
@@ -90,7 +90,7 @@ fn robots_and_tags_are_those_of_the_inventory() {
 
 #[test]
 fn every_line_has_an_answer() {
-    // The engine takes some words for impossible.
+    // Words that the engine takes for impossible.
     for line in [
         "",
         "armctl",
@@ -110,7 +110,7 @@ fn every_line_has_an_answer() {
     assert_eq!(complete(&["armctl".into()], 7, false), complete(&["armctl".into(), "".into()], 1, false));
 }
 
-/// The same with the help of each; a busy machine has time to answer.
+/// Candidates with help; with enough time for a busy computer.
 fn asked(line: &str) -> Vec<(String, String)> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60), false);
@@ -133,7 +133,7 @@ fn simulators_tell_what_they_have() {
 
 #[test]
 fn no_link_is_opened_for_a_candidate() {
-    // Whoever listens there hears nothing.
+    // This socket must receive nothing.
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.set_nonblocking(true).unwrap();
     let target = format!("udp://{}", socket.local_addr().unwrap());

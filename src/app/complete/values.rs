@@ -1,4 +1,4 @@
-//! Which values there are of each kind.
+//! Completion values by kind.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -21,20 +21,20 @@ use crate::settings::Sources;
 use crate::settings::inventory::{Inventory, Location};
 use crate::transport::session::place::{Place, Spot};
 
-/// What the rest of the line says about robots and settings.
+/// Robots and settings from the rest of the line.
 #[derive(Debug)]
 pub(super) struct Context {
     globals: Option<Globals>,
-    /// Whether it is a line among others of this process.
+    /// Whether other lines run in this process.
     is_among: bool,
-    /// Whether a controller may be connected to, also without a session.
+    /// Whether a connection to a controller is allowed without a session.
     connects: bool,
-    /// How long a controller may take.
+    /// Time limit for a controller.
     patience: Duration,
 }
 
 impl Context {
-    /// From what could be parsed of a line. Flags of one command with a mistake leave those of every command as they are.
+    /// From the parsed part of a line. A mistake in a flag of the command does not affect the global flags.
     pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let given = command.get_arguments().flat_map(|argument| {
@@ -58,7 +58,7 @@ impl Context {
         Self { globals, is_among, connects, patience }
     }
 
-    /// Whether a controller may be connected to.
+    /// Whether a connection to a controller is allowed.
     pub fn connects(&self) -> bool {
         self.connects
     }
@@ -74,12 +74,13 @@ impl Context {
     }
 }
 
-/// The values of a kind that begin with what was typed.
+/// Values of a kind that start with the typed text.
 pub(super) fn of(kind: ValueKind, typed: &str, context: &Context) -> Vec<Candidate> {
     fitting(typed, all(kind, context))
 }
 
-/// Those that begin as typed; where none does, those that begin so in other letters, as many names are in capitals.
+/// Candidates with the typed prefix. If there are none, upper and lower case are ignored, because many names are in
+/// capitals.
 fn fitting(typed: &str, all: Vec<Candidate>) -> Vec<Candidate> {
     let begins = |candidate: &&Candidate| candidate.value.starts_with(typed);
     let exact: Vec<Candidate> = all.iter().filter(begins).cloned().collect();
@@ -133,21 +134,21 @@ fn tags(context: &Context) -> Vec<Candidate> {
     tags.into_iter().map(|(tag, robots)| Candidate::new(tag, robots.join(", "))).collect()
 }
 
-/// How target URLs begin. What follows is nobody's guess.
+/// Prefixes of target URLs.
 fn urls() -> Vec<Candidate> {
     let simulator = ("sim:".to_owned(), "the built-in simulator");
     let urls = FAMILIES.iter().flat_map(|face| face.urls());
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).begun()).collect()
 }
 
-/// Folders here that hold a backup.
+/// Folders with a backup in the current folder.
 fn backups() -> Vec<Candidate> {
     let folders = manifest::folders_in(Path::new("."));
     let name = |folder: &PathBuf| Some(folder.file_name()?.to_str()?.to_owned());
     folders.iter().filter_map(name).map(|name| Candidate::new(name, "")).collect()
 }
 
-/// Whose link is held by a session.
+/// Robots with an open session.
 fn sessions() -> Vec<Candidate> {
     let spots = Place::find().ok().flatten().and_then(|place| place.spots().ok()).unwrap_or_default();
     spots.iter().filter_map(Spot::owner).map(|info| Candidate::new(info.robot, info.target)).collect()

@@ -1,6 +1,6 @@
-//! Other words for commands, and words in another order, as people type them.
+//! Tables of synonyms and other word orders.
 
-/// What is typed, without the family, and the commands that do it.
+/// Typed words without the family, and the commands for them.
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
     ("add", &["setup", "robots add"]),
@@ -57,7 +57,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
 
-/// What a family has not, though others have: the words before it, the words for it, and what there is instead.
+/// Missing features of a family that others have: preceding words, synonyms, alternative.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],
@@ -74,7 +74,7 @@ pub const ABSENT: &[(&str, &[&str], &str)] = &[
         "a point has its own speed (`armctl toyo point get`). `armctl toyo override` scales all speeds"),
 ];
 
-/// Other words for verbs, and what they are behind a noun that has one of these.
+/// Synonyms of verbs, with the verbs that a noun can have.
 pub const VERBS: &[(&str, &[&str])] = &[
     ("clear", &["reset", "cancel", "delete"]),
     ("del", &["delete", "remove"]),

@@ -1,4 +1,4 @@
-//! Completion, hints and colours of the line that is being typed.
+//! Completion, hints and colors for the line being typed.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -15,17 +15,17 @@ use crate::app::complete::complete;
 use crate::app::{screen, words};
 use crate::cli::Globals;
 
-/// Helps with a line.
+/// Helper of the line editor.
 pub struct Assistant {
     meaning: RefCell<Meaning>,
-    /// Flags of all lines that say whom they are for.
+    /// Flags that select the robots of all lines.
     flags: Vec<OsString>,
     hinter: HistoryHinter,
     colour: bool,
 }
 
 impl Assistant {
-    /// For lines of this meaning, with these flags before their own.
+    /// Creates a helper for lines with this meaning and these flags.
     pub fn new(meaning: &Meaning, globals: &Globals) -> Self {
         Self {
             meaning: RefCell::new(Meaning::new(meaning.prefix().to_vec())),
@@ -35,7 +35,7 @@ impl Assistant {
         }
     }
 
-    /// Where the word at the end of a line begins, and what it could become.
+    /// Start of the last word, and its candidates.
     fn candidates(&self, line: &str) -> (usize, Vec<Pair>) {
         let start = word_start(line);
         let (before, typed) = line.split_at(start);
@@ -63,7 +63,7 @@ impl Assistant {
     }
 }
 
-/// A word as it is typed; `None` for what cannot be.
+/// Quotes a word if necessary; `None` if it cannot be typed.
 fn quoted(word: &str) -> Option<String> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -72,7 +72,7 @@ fn quoted(word: &str) -> Option<String> {
     shlex::try_quote(word).ok().map(Cow::into_owned)
 }
 
-/// Where the last word of a line begins, its quote included.
+/// Start of the last word, including its quote.
 fn word_start(line: &str) -> usize {
     let (mut start, mut quote, mut escaped) = (0, None, false);
     for (at, c) in line.char_indices() {

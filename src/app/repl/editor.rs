@@ -1,4 +1,4 @@
-//! The line editor, on a thread of its own: links and signals are attended to while somebody thinks about what to type.
+//! Line editor on its own thread, so that links and signals are served while the user types.
 
 use std::path::PathBuf;
 use std::sync::mpsc as blocking;
@@ -17,19 +17,19 @@ use crate::command::frame::local::state_folder;
 use crate::failure::Failure;
 use crate::output::{Screen, escape};
 
-/// Lines that are remembered.
+/// Limit of the history.
 const REMEMBERED: usize = 2000;
 
-/// What somebody typed.
+/// Result of reading a line.
 #[derive(Debug)]
 pub enum Typed {
-    /// A line; pasted, it may be several.
+    /// A line; pasted text can contain several.
     Line(String),
-    /// Ctrl-C: not this line.
+    /// Ctrl-C: the line is discarded.
     Interrupted,
-    /// Ctrl-D, or the terminal is gone.
+    /// Ctrl-D, or the terminal is closed.
     End,
-    /// The terminal cannot be used.
+    /// The terminal failed.
     Failed(Failure),
 }
 
@@ -43,7 +43,7 @@ pub struct Editor {
 type LineEditor = rustyline::Editor<Assistant, FileHistory>;
 
 impl Editor {
-    /// Takes the terminal. Also what tells something meanwhile, above the line that is being typed.
+    /// Takes control of the terminal. Also returns a function that prints messages above the line being typed.
     pub fn start(
         screen: &Screen,
         assistant: Assistant,
@@ -87,7 +87,7 @@ impl Editor {
 fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> Typed {
     match editor.readline(&(&prompt.plain, &prompt.styled)) {
         Ok(line) => {
-            // What cannot be remembered is not worth a word at every line.
+            // A history error is not reported, because it would come at every line.
             let is_new = editor.add_history_entry(line.trim()).unwrap_or(false);
             if let Some(history) = history.filter(|_| is_new) {
                 let _ = editor.append_history(&history.0);
@@ -111,7 +111,7 @@ fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor
         .completion_type(CompletionType::List)
         .bell_style(BellStyle::None)
         .color_mode(if screen.stdout_color() { ColorMode::Enabled } else { ColorMode::Disabled })
-        // Prompts are no data: where stdout is a file, they go to the terminal all the same.
+        // If stdout is a file, the prompt goes to the terminal.
         .behavior(if screen.is_stdout_terminal() { Behavior::Stdio } else { Behavior::PreferTerm })
         .build();
     let mut editor = LineEditor::with_config(config)?;
@@ -119,7 +119,6 @@ fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor
     Ok(editor)
 }
 
-/// The file that remembers lines from one time to the next.
 struct History(PathBuf);
 
 impl History {

@@ -1,25 +1,25 @@
-//! Which command line a line at the prompt stands for.
+//! Conversion of a prompt line to a command line.
 
 use std::ffi::OsString;
 
 use crate::app::parser::{Owner, Parser};
 use crate::settings::target::Family;
 
-/// Puts the family before lines that are commands of it.
+/// Inserts the family before its commands.
 #[derive(Debug, Default)]
 pub struct Meaning {
     prefix: Vec<String>,
-    /// Reads the command lines.
+    /// Parser for command lines.
     pub parser: Parser,
 }
 
 impl Meaning {
-    /// With these words before commands of the family, which is the first of them.
+    /// Creates it with the words to insert; the first is the family.
     pub fn new(prefix: Vec<String>) -> Self {
         Self { prefix, parser: Parser::default() }
     }
 
-    /// The words before commands of the family.
+    /// The words to insert.
     pub fn prefix(&self) -> &[String] {
         &self.prefix
     }
@@ -28,7 +28,7 @@ impl Meaning {
         self.prefix.first()?.parse().ok()
     }
 
-    /// The command line of a line.
+    /// Command line for the words of a line.
     pub fn args(&mut self, words: &[String]) -> Vec<OsString> {
         if let [word] = words
             && matches!(word.as_str(), "help" | "?" | "-h" | "--help")
@@ -36,14 +36,14 @@ impl Meaning {
             return family_help(&self.prefix);
         }
         let family = self.family();
-        // Flags may stand before the command. What is neither of the family nor of all is the family's to refuse.
+        // Flags can precede the command. An unknown word goes to the family, which reports the error.
         let owner = words.iter().map(|word| self.parser.owner(word, family)).find(|owner| *owner != Owner::Nobody);
         let prefix = self.prefix.iter().filter(|_| owner != Some(Owner::All));
         std::iter::once("armctl").chain(prefix.chain(words).map(String::as_str)).map(OsString::from).collect()
     }
 
-    /// The command lines that a line can become by another word, which is not typed yet: where it has no command, both of
-    /// the family and of all.
+    /// Possible command lines for an incomplete line. Without a command word, it can belong to the family or be a
+    /// common one.
     pub fn beginnings(&mut self, words: &[String]) -> Vec<Vec<OsString>> {
         let family = self.family();
         let mut beginnings = vec![self.args(words)];
@@ -55,7 +55,7 @@ impl Meaning {
     }
 }
 
-/// The command line that lists the commands of a family, or of all.
+/// Command line that lists the commands of a family, or of all.
 pub fn family_help(prefix: &[String]) -> Vec<OsString> {
     std::iter::once("armctl").chain(prefix.iter().map(String::as_str)).chain(["-h"]).map(OsString::from).collect()
 }

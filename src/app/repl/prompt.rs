@@ -1,4 +1,4 @@
-//! What stands before the line: whom it is for, and how that one is.
+//! Prompt text: the robot and its state.
 
 use std::time::Duration;
 
@@ -12,10 +12,10 @@ use crate::output::view::{Cell, Tone};
 use crate::output::{Screen, escape};
 use crate::settings::Robot;
 
-/// The prompt waits no longer than this for a robot.
+/// Time limit for the state of the robot.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How the robot is, asked over the link that is held.
+/// Reads the state of the robot over the open link.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
     let screen = screen.silenced();
     match timeout(PATIENCE, status::look(robot, line, &screen)).await {
@@ -24,19 +24,19 @@ pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Seen {
     }
 }
 
-/// What is known of the robot.
+/// State of the robot.
 #[derive(Debug)]
 pub enum Seen {
-    /// How it is.
+    /// The state.
     State(Box<OverviewReport>),
-    /// It could not tell at once.
+    /// No answer in time.
     Silent,
-    /// It is not talked to.
+    /// Not requested.
     NotAsked,
 }
 
 impl Seen {
-    /// What somebody left behind there.
+    /// Active commands that former clients left.
     pub fn left_over(&self) -> &[LeftOver] {
         match self {
             Self::State(state) => &state.left_over,
@@ -45,17 +45,17 @@ impl Seen {
     }
 }
 
-/// A prompt, and the same with colours; both are as wide on the screen.
+/// A prompt without and with colors; both have the same width.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Prompt {
-    /// Without colours.
+    /// Without colors.
     pub plain: String,
-    /// With colours.
+    /// With colors.
     pub styled: String,
 }
 
 impl Prompt {
-    /// `cell3 [servo on, ALARM] yerc> `.
+    /// Format: `cell3 [servo on, ALARM] yerc> `.
     pub fn new(prefix: &[String], robot: Option<&Robot>, seen: &Seen, colour: bool) -> Self {
         let shown = |colour: bool| {
             let mut parts = Vec::new();
@@ -71,7 +71,7 @@ impl Prompt {
     }
 }
 
-/// What is worth knowing before anything is typed.
+/// Important states of the robot.
 fn states(robot: &Robot, seen: &Seen) -> Vec<Cell> {
     let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
     let seen = match seen {

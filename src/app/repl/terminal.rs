@@ -1,4 +1,5 @@
-//! How the terminal was set, to leave it as it was found: the editor may wait for a key when the process is asked to end.
+//! Terminal settings, saved so that they can be restored. The editor can be waiting for a key when the process must
+//! end.
 
 use std::time::Duration;
 
@@ -6,22 +7,22 @@ use tokio::time::sleep;
 
 use crate::output::prompt;
 
-/// How often it is looked whether the editor has the terminal.
+/// Attempts and interval of the check whether the editor has the terminal.
 const TRIES: u32 = 40;
 const PAUSE: Duration = Duration::from_millis(5);
 
-/// The terminal that lines are typed at.
+/// The terminal of the prompt.
 #[derive(Debug)]
 pub struct Terminal(());
 
 impl Terminal {
-    /// Takes note of the settings.
+    /// Saves the settings.
     pub fn save() -> Self {
         prompt::save();
         Self(())
     }
 
-    /// Sets it as it was, while the editor reads a line, or is about to: it takes the terminal first.
+    /// Restores the settings while the editor reads a line. It first waits until the editor has changed them.
     pub async fn take_back(&self) {
         for _ in 0..TRIES {
             if Self::is_taken() {
@@ -32,11 +33,11 @@ impl Terminal {
         prompt::restore();
     }
 
-    /// Whether keys come one by one.
+    /// Whether the terminal is in raw mode.
     #[cfg(unix)]
     fn is_taken() -> bool {
         let now = rustix::termios::tcgetattr(std::io::stdin());
-        // A terminal that is gone needs no settings.
+        // A closed terminal needs no settings.
         now.map_or(true, |now| !now.local_modes.contains(rustix::termios::LocalModes::ICANON))
     }
 

@@ -1,4 +1,4 @@
-//! What a client changes for a while, and puts back as it was found: who commands, and modes.
+//! Temporary changes that the client undoes at its end: host control and modes.
 
 use armctl_controller::Risk;
 use armctl_controller::toyo::request::{Answer, Request};
@@ -7,33 +7,33 @@ use armctl_controller::toyo::table::commands::Command;
 use super::{Client, Error, Event, HOST_PAGE, status_page};
 use crate::{Grant, Reason};
 
-/// Who commands the controller.
+/// State of host control (host ON / OFF).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Host {
-    /// Not asked yet.
+    /// Not read yet.
     Unknown,
-    /// The host was ON before.
+    /// The host was ON already.
     Found,
-    /// This client switched it ON, and gives it back.
+    /// This client switched the host ON, and must switch it OFF at its end.
     Taken,
-    /// In a dry run: it was asked, and switched ON, if an answer before wants that.
+    /// Dry run: the host state is read and the host switched ON only if an earlier answer requires it.
     Perhaps,
 }
 
-/// What decides whether the host is switched.
+/// `depends_on` of the order that switches the host ON.
 const HOST: &str = "whether the host was ON";
 
 impl Client {
-    /// Makes sure that the host commands, and remembers who did before.
+    /// Switches the host ON if it is OFF, and records the earlier state.
     ///
     /// # Errors
-    /// [`Error::PendantOn`] if the teach pendant does.
+    /// [`Error::PendantOn`] if the teach pendant is ON.
     pub async fn take_host(&mut self) -> Result<(), Error> {
         let granted = self.granted.clone();
         self.take_host_by(&granted).await
     }
 
-    /// The same as far as this lets it.
+    /// [`Self::take_host`] with another grant.
     pub(super) async fn take_host_by(&mut self, granted: &Grant) -> Result<(), Error> {
         if self.is_dry() {
             self.plan_to_take_host(None);
@@ -54,7 +54,7 @@ impl Client {
         granted.check(order.risk(), &order.text())?;
         self.watcher.event(Event::TakesHost(true));
         let answer = match self.transact(&order, false).await {
-            // The status tells what became of it.
+            // The host status shows whether the order was carried out.
             Err(error @ Error::OutcomeUnknown(_)) => match self.is_host_on().await {
                 Ok(true) => Answer::Done,
                 Ok(false) => {
@@ -77,7 +77,7 @@ impl Client {
         }
     }
 
-    /// Notes in a dry run that the host is taken, if an answer before wants that.
+    /// Plans the host switch of a dry run; `on` is the earlier answer that decides whether it is sent.
     pub(super) fn plan_to_take_host(&mut self, on: Option<&str>) {
         let asked = Reason::about("whether the host is ON");
         let asked = match (self.host, on) {
@@ -91,7 +91,7 @@ impl Client {
         self.host = if on.is_some() { Host::Perhaps } else { Host::Taken };
     }
 
-    /// Notes in a dry run that something is changed for a while; `back` is what puts it back, with `?` for what was found.
+    /// Plans a temporary change. `back` is the block that undoes it, with `?` for the value found.
     pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Error> {
         self.plan_to_take_host(Some(on));
         self.fence().await?;
@@ -100,9 +100,9 @@ impl Client {
         Ok(())
     }
 
-    /// Changes something for a while: `back` makes it as it was, in [`Client::put_back`] or when the client ends.
+    /// Makes a temporary change. `back` undoes it, in [`Client::put_back`] or when the client ends.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Error> {
-        // Before it is sent: if the answer is lost, it may have been done.
+        // Recorded before sending: if the answer is lost, the change may have been made.
         self.watcher.event(Event::Borrows(back.clone()));
         self.borrowed.push(back);
         match self.try_ask(change).await? {
@@ -116,7 +116,8 @@ impl Client {
         }
     }
 
-    /// Makes everything as it was before [`Client::borrow`], whatever is granted. All of it is tried; the first error counts.
+    /// Undoes all changes of [`Client::borrow`], without a check of the grant. An error does not stop the rest; the
+    /// first one is returned.
     ///
     /// # Errors
     /// [`Error::NotPutBack`].
@@ -138,12 +139,12 @@ impl Client {
         outcome
     }
 
-    /// The host stays as it is when the client ends: somebody asked for that.
+    /// Leaves the host ON when the client ends, as the user requested.
     pub fn keep_host(&mut self) {
         self.host = Host::Found;
     }
 
-    /// Gives the host back as it was found, whatever is granted.
+    /// Switches the host OFF again if this client switched it ON, without a check of the grant.
     ///
     /// # Errors
     /// [`Error::HostKept`].
@@ -163,7 +164,7 @@ impl Client {
         fenced
     }
 
-    /// Whether the host is ON after an order of this client to switch it: nobody else is told of.
+    /// Whether the host is ON after an order of this client to switch it. The watcher is not told of another host.
     async fn is_host_on(&mut self) -> Result<bool, Error> {
         let before = std::mem::replace(&mut self.host, Host::Taken);
         let status = self.status_of(&[HOST_PAGE]).await;
@@ -171,7 +172,8 @@ impl Client {
         Ok(status?.host_on())
     }
 
-    /// A line that is still out of order shows in what follows; a no to an order that had a yes shows only here.
+    /// Fence at the end of a client. Returns only a late refusal of an order that seemed confirmed: later requests
+    /// report every other fault.
     pub(super) async fn fence_at_end(&mut self) -> Result<(), Error> {
         match self.fence().await {
             Err(Error::NotSent(cause)) if matches!(*cause, Error::OutcomeUnknown(_)) => Err(*cause),
@@ -179,7 +181,6 @@ impl Client {
         }
     }
 
-    /// Notes in a dry run what puts things back.
     fn plan_put_back(&mut self) {
         while let Some(back) = self.owed.pop() {
             self.plan_fence();
@@ -188,7 +189,6 @@ impl Client {
         }
     }
 
-    /// Notes in a dry run what is sent when the client ends.
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
         if !self.is_dry() || !matches!(self.host, Host::Taken | Host::Perhaps) {
@@ -200,7 +200,7 @@ impl Client {
     }
 }
 
-/// Whether what undoes something was done; if not, why, and `None` where it was refused.
+/// Result of an undo request. The error is `None` if the controller refused.
 fn undone(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
     match answer {
         Ok(Answer::Refused) => Err(None),
@@ -209,7 +209,7 @@ fn undone(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> {
     }
 }
 
-/// Whether the host must be ON. Only reads do without for sure (ambiguity C14); a stop must not wait for it.
+/// Whether the host must be ON. Only reads certainly work without it (ambiguity C14). A stop must not wait for it.
 pub(super) fn wants_host(request: &Request) -> bool {
     request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
 }

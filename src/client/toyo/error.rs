@@ -1,4 +1,4 @@
-//! What can go wrong between a client and a controller, and a controller's "no".
+//! Errors of a client, and the refusal of a controller.
 
 use std::fmt;
 use std::io;
@@ -14,121 +14,120 @@ use thiserror::Error;
 
 use crate::NotAuthorized;
 
-/// Why there is no answer, or none to go on with.
+/// Why a request has no usable answer.
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The controller said no (`@NG`).
+    /// The controller refused (`@NG`).
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Not even the status or the position is told (`@NG`): the controller is busy.
+    /// The controller refused even a status or position request (`@NG`): it is busy.
     #[error("the controller refuses even to tell its status (@NG)")]
     Mute,
-    /// The host cannot command: the teach pendant is ON (TO 2-2).
+    /// The host has no control: the teach pendant is ON (TO 2-2).
     #[error("the controller refused: the teach pendant is ON, and the host cannot take over")]
     PendantOn,
-    /// A question has no answer, or none that fits.
+    /// A read has no valid answer.
     #[error("{0}")]
     NoAnswer(Box<Unanswered>),
-    /// An order has no answer, or none that fits: it may or may not have been carried out. It was sent once.
+    /// An order has no valid answer: it may or may not have been carried out. It was sent once.
     #[error("the order was sent, but whether it was carried out is unknown: {0}")]
     OutcomeUnknown(Box<Unanswered>),
-    /// The line went away after an order was sent, and before it was answered.
+    /// The line was lost after an order was sent and before its answer.
     #[error("{0}; whether the order was carried out is unknown")]
     CutShort(Box<Self>),
-    /// An order was not sent, as the line was not at peace before it.
+    /// An order was not sent, because the check of the line before it failed.
     #[error("the order was not sent: {0}")]
     NotSent(Box<Self>),
-    /// An answer that does not hold what was asked for.
+    /// An answer without the requested content.
     #[error("unexpected answer '{block}': {why}")]
     Malformed {
-        /// The answer.
+        /// The received block.
         block: String,
-        /// What is wrong with it.
+        /// The problem.
         why: String,
     },
-    /// More characters came in one exchange than a controller sends.
+    /// One exchange brought more characters than a controller sends.
     #[error("{received} characters came, and no answer among them")]
     Flooded {
-        /// How many were read.
+        /// Characters received.
         received: usize,
     },
-    /// A request with a value out of its range; nothing was sent.
+    /// A request with a value out of range; nothing was sent.
     #[error("{0}")]
     Unsendable(#[from] BlockError),
-    /// What was changed for a while is not put back.
+    /// A temporary change was not undone.
     #[error("what was changed for a while was not put back by {block}: {}", why(.cause.as_deref()))]
     NotPutBack {
-        /// The block that puts it back.
+        /// The block that undoes it.
         block: String,
-        /// Why; `None` where the controller refused.
+        /// The cause; `None` if the controller refused.
         cause: Option<Box<Self>>,
     },
-    /// The host is ON, which was OFF before.
+    /// The host is still ON; this client had switched it ON.
     #[error("the host was switched ON and could not be switched OFF again: {}", why(.0.as_deref()))]
     HostKept(Option<Box<Self>>),
-    /// What should stop moves on.
+    /// The robot still moves after a stop.
     #[error("the controller {}", if *.is_refused { "refuses to stop (@NG)" } else { "moves on although it said @OK" })]
     MovesOn {
-        /// Whether it said no to the stop.
+        /// Whether the controller refused the stop.
         is_refused: bool,
     },
-    /// Nothing tells that what should stop stands.
+    /// No answer confirms that the robot stands still.
     #[error("nothing tells that it stands: {0}")]
     StandUnseen(Box<Self>),
-    /// More than the client was granted.
+    /// The request is above the authorized risk.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
-    /// The session that holds the line has ended, or somebody else has the line.
+    /// The session on the line has ended, or another client uses the line.
     #[error("{0}")]
     Session(SessionBusy),
-    /// A serial port that does not open.
+    /// A serial port that cannot be opened.
     #[error("{path}: {error}")]
     Port {
-        /// Its name.
+        /// Path of the port.
         path: String,
-        /// Why.
+        /// The cause.
         #[source]
         error: Arc<OpenError>,
     },
-    /// A device server that cannot be connected to.
+    /// A device server that does not accept a connection.
     #[error("{host}, TCP port {port}: {error}")]
     DeviceServer {
         /// Name or address.
         host: String,
         /// Its TCP port.
         port: u16,
-        /// Why.
+        /// The cause.
         #[source]
         error: Arc<ConnectError>,
     },
-    /// A line that is gone and does not open again.
+    /// A lost line that cannot be opened again.
     #[error(transparent)]
     NotReopened(Box<Self>),
-    /// Whoever opens the line for the client has failed.
+    /// The caller's function that opens the line failed.
     #[error("{0}")]
     Opener(Arc<dyn std::error::Error + Send + Sync>),
-    /// The line has bad news: unplugged, closed by the other side, broken.
+    /// An I/O error of the line: unplugged, closed by the peer, broken.
     #[error("{error}")]
     Io {
         /// Whether a session holds the line.
         is_shared: bool,
-        /// The news.
+        /// The cause.
         #[source]
         error: Arc<io::Error>,
     },
-    /// A dry run sends nothing, and so has no answer.
+    /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
     NotKnown,
 }
 
-/// Why something was not undone, as its errors say.
 fn why(cause: Option<&Error>) -> String {
     cause.map_or("@NG".to_owned(), ToString::to_string)
 }
 
 impl Error {
-    /// Whether something answered that made no sense.
+    /// Whether invalid data was received.
     pub fn is_malformed(&self) -> bool {
         match self {
             Self::Malformed { .. } | Self::Flooded { .. } => true,
@@ -138,21 +137,21 @@ impl Error {
     }
 }
 
-/// A controller's "no" (`@NG`) to a request: it has no code.
+/// A refusal (`@NG`) of a request. The protocol has no refusal codes.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the controller refused {} (@NG)", .0.text().trim_start_matches('@'))]
 pub struct Refusal(pub Request);
 
-/// What came instead of an answer.
+/// Details of a missing answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unanswered {
-    /// What was sent; `None` for a block that is in no table.
+    /// The request; `None` for a free-text block.
     pub request: Option<Request>,
-    /// How long was waited, each time it was sent.
+    /// Time limit of each attempt.
     pub waited: Duration,
-    /// What the line was like so far.
+    /// Line counters so far.
     pub counters: Counters,
-    /// The last block that came and is no answer, and why it is none.
+    /// The last received block that is not the answer, and the reason.
     pub unfitting: Option<(String, String)>,
 }
 

@@ -1,8 +1,8 @@
-//! What makes sure that an answer is the answer to what was asked, and that a line that is gone comes back.
+//! Fence before an order, and reopening of a lost line.
 //!
-//! `@OK` says nothing of the order it answers, and a line may bring one late: of an order whose answer was given up, or of
-//! another client of a device server. A controller answers one block after the other. So once it has answered a question,
-//! which no `@OK` can be taken for, nothing older can come any more: then an order goes out.
+//! `@OK` does not identify the order that it answers. A late one may arrive: of an order that timed out, or of
+//! another client of a device server. A controller answers in order, and no `@OK` can be mistaken for the answer to a
+//! read. So once a read is answered, no older `@OK` can arrive, and the order is safe to send.
 
 use armctl_controller::Risk;
 
@@ -10,11 +10,11 @@ use super::borrowed::Host;
 use super::{Client, Error, Event, Transport, status_page};
 use crate::Reason;
 
-/// What it is about.
+/// Purpose of the fence in a plan.
 pub const FENCE: &str = "whether the line is at peace";
 
 impl Client {
-    /// Asks something harmless before an order, unless an answered question was the last on the line.
+    /// Sends a harmless read before an order, unless the last exchange was an answered read.
     pub(super) async fn fence(&mut self) -> Result<(), Error> {
         if self.is_fenced {
             return Ok(());
@@ -29,7 +29,7 @@ impl Client {
             .map_err(|error| Error::NotSent(Box::new(error)))
     }
 
-    /// Notes it in a dry run. Behind an order that is sent or not, so is this.
+    /// Plans the fence of a dry run. It depends on the same answer as the frame before it.
     pub(super) fn plan_fence(&mut self) {
         if self.is_fenced {
             return;
@@ -40,8 +40,8 @@ impl Client {
         self.plan_depending(&status_page(0).text(), reason);
     }
 
-    /// Opens a line again that is gone, for what only reads: after a re-plug, or a device server that was started anew.
-    /// What this client has changed is left to the hints that tell how to undo it.
+    /// Reopens a lost line for a read: after a re-plug, or a restart of the device server. Not if this client has a
+    /// motion to stop or a change to undo: hints explain that to the user.
     pub(super) async fn revive(&mut self, risk: Risk) -> Result<(), Error> {
         let owes = self.moving.is_some() || self.host == Host::Taken || !self.borrowed.is_empty();
         if !self.is_gone || risk > Risk::Read || owes {
@@ -56,7 +56,7 @@ impl Client {
         self.is_gone = false;
         self.host = Host::Unknown;
         self.is_fenced = false;
-        // It may be another machine now.
+        // The reopened line may lead to another machine.
         self.letters = None;
         self.watcher.event(Event::Reopened);
         Ok(())

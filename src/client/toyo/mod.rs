@@ -1,5 +1,4 @@
-//! The client of a Toyo controller: the one driver that moves characters between the session and a line. `TO` is the
-//! manual of its host communication over RS-232C.
+//! Toyo client: drives the session over a serial line. `TO` is the manual of the host communication over RS-232C.
 
 mod borrowed;
 mod error;
@@ -41,107 +40,104 @@ use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
-/// It asks one thing at a time. A call that is dropped before it has ended leaves the client usable: what comes late is
-/// told from what is asked next.
+/// It has one request at a time. A call that is dropped early leaves the client usable: the session discards late
+/// answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
     session: LineSession,
-    /// As the options want it, and as it is now.
+    /// The policy of the options, and the current one.
     usual: Policy,
     policy: Policy,
     granted: Grant,
-    /// What this client set in motion.
+    /// The motion that this client started.
     moving: Option<Moving>,
     host: Host,
-    /// What puts things back as they were found, the last change at the end.
+    /// Requests that undo temporary changes, the latest change last.
     borrowed: Vec<Request>,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     waited: Duration,
-    /// Whether the line is gone: nothing more is tried on it but what only reads, over a new one.
+    /// Whether the line is lost. Then only reads are sent, after a reopen.
     is_gone: bool,
-    /// How to open it again.
     opener: Option<Opener>,
-    /// The addresses of a TCP connection.
     ends: Option<Ends>,
-    /// Whether nothing can come any more that answers what was asked before.
+    /// Whether no answer to an earlier request can arrive any more.
     is_fenced: bool,
-    /// In a dry run, what decides whether the last noted frame is sent.
+    /// Dry run: the answer that decides whether the last planned frame is sent.
     hangs_on: Option<String>,
-    /// In a dry run, the blocks that put things back as they were found.
+    /// Dry run: the blocks that undo temporary changes.
     owed: Vec<String>,
-    /// Letters of the axes, once they were asked for.
+    /// Axis letters, once read.
     letters: Option<Letters>,
 }
 
-/// How a client asks.
+/// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The most that may leave.
+    /// The highest risk that may be sent.
     pub granted: Grant,
-    /// The longest wait of one try, from the last character sent to the answer; the manual says one second (TO 1-3).
+    /// Time limit of one attempt, from the last character sent to the answer; 1 s in the manual (TO 1-3).
     pub timeout: Duration,
-    /// Further tries, after silence, of a request that changes nothing.
+    /// Retries, after a timeout, of a request that changes nothing.
     pub retries: u32,
 }
 
 impl Default for Options {
-    /// To read, with the usual patience: 1 s, and 3 repeats.
+    /// Read only, 1 s time limit, 3 retries.
     fn default() -> Self {
         Self { granted: Grant::default(), timeout: Duration::from_secs(1), retries: 3 }
     }
 }
 
 impl Options {
-    /// The same, and what is not riskier than this may leave.
+    /// Authorizes this risk and everything below it.
     #[must_use]
     pub fn granting(self, risk: Risk) -> Self {
         Self { granted: Grant::of(risk), ..self }
     }
 }
 
-/// What a client does beside what it is asked for, and what it notices. A change of the controller is told before it is
-/// ordered: whoever writes it down can tell how to undo it if this process is killed.
+/// An event of a client. A change of the controller is reported before it is sent. So a log can show how to undo it
+/// if this process is killed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    /// This is set in motion; `None` when nothing of it moves any more.
+    /// The motion is about to start; `None` when it has ended.
     Moves(Option<Moving>),
-    /// The host, which was OFF, is switched ON for a while; `false` when it is OFF again.
+    /// The host, which was OFF, is about to be switched ON temporarily; `false` when it is OFF again.
     TakesHost(bool),
-    /// Something is changed for a while, and this puts it back.
+    /// A temporary change is about to be made; this request undoes it.
     Borrows(Request),
-    /// This was put back, or never changed.
+    /// The change was undone, or was never made.
     PutBack(Request),
-    /// The line is gone, and this, which puts something back, is not sent.
+    /// The line is lost, and this undo request was not sent.
     NotPutBack(Request),
-    /// Who commands.
+    /// Host control, as read.
     Host {
-        /// The page of the status that tells it, at least.
+        /// A status that includes at least the page with the host state.
         status: Status,
-        /// Whether this client has switched the host ON.
+        /// Whether this client switched the host ON.
         is_taken: bool,
     },
-    /// Which task is the current one, while none is borrowed.
+    /// The current task, while it is not changed temporarily.
     Task(Option<i32>),
-    /// A line that was gone is there again.
+    /// A lost line is open again.
     Reopened,
 }
 
-/// Room for what arrives in one piece.
 const BUFFER: usize = 1024;
-/// The most characters that may come in one exchange: 5 s of the fastest line, and answers are short.
+/// Limit of characters in one exchange: 5 s at the highest baud rate. Answers are short.
 const MOST_RECEIVED: usize = 64 * 1024;
-/// The longest silence while something moves that must be stopped.
+/// Time limit of an answer while a motion runs that must be stopped.
 const SILENCE: Duration = Duration::from_millis(300);
-/// The page of the status that tells who commands.
+/// The status page with the host state.
 const HOST_PAGE: u8 = 2;
-/// A session that waits for nothing is asked again after this.
+/// Poll interval of a session without a deadline.
 const LONG: Duration = Duration::from_secs(3600);
 
 impl Client {
-    /// Connects to a controller. Nothing is sent: a line says nothing by itself, so only an answer shows that it is there.
+    /// Connects to a controller. Sends nothing: only an answer shows that a controller is at the other end.
     ///
     /// # Errors
     /// [`Error::Port`] and [`Error::DeviceServer`].
@@ -155,13 +151,13 @@ impl Client {
         Ok(client)
     }
 
-    /// Talks over a line that is open, on which one character takes so long.
+    /// Uses an open line; `character` is the time of one character.
     pub fn over(line: Line, character: Duration, options: Options) -> Self {
         Self::with(Transport::Line(Box::new(line)), character, options)
     }
 
-    /// Sends nothing, but notes what would be sent ([`Client::take_plan`]). Orders count as done; what asks ends in
-    /// [`Error::NotKnown`].
+    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
+    /// returns [`Error::NotKnown`].
     pub fn dry_run(options: Options) -> Self {
         Self::with(Transport::Notes(Plan::default()), Duration::ZERO, options)
     }
@@ -190,38 +186,38 @@ impl Client {
         }
     }
 
-    /// Has this one told what happens from now on. Frames of a line without addresses are told with unspecified ones.
+    /// Sets the observer. A line without addresses reports unspecified ones.
     pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
         self.watcher = Box::new(watcher);
     }
 
-    /// Has a line that is gone opened again by this, when something is asked that only reads.
+    /// Sets the function that reopens a lost line for a read.
     pub fn reopen_by(&mut self, open: impl Fn() -> Opening + Send + 'static) {
         self.opener = Some(Opener(Box::new(open)));
     }
 
-    /// Lets through what this does, from now on.
+    /// Sets the grant for all further requests.
     pub fn grant(&mut self, granted: Grant) {
         self.granted = granted;
     }
 
-    /// Own and other address of a TCP connection.
+    /// Local and remote address of a TCP connection.
     pub fn ends(&self) -> Option<Ends> {
         self.ends
     }
 
-    /// Asks one question or gives one order; a refusal is an error. Of a parameter (RPAR), a step (RSTX) or a palletizing
-    /// record (RPLT) the answer is what is stored, in the units and fields of [`Record`]; of an order it is `OK`.
+    /// Sends one request; a refusal is an error. A parameter (RPAR), step (RSTX) or palletizing record (RPLT) returns
+    /// the stored values, in the units of [`Record`]. An order returns `OK`.
     pub async fn ask(&mut self, request: &Request) -> Result<Record, Error> {
         Ok(self.try_ask(request).await??)
     }
 
-    /// Asks one question or gives one order; a refusal is an answer. Before an order the host is taken, where that is
-    /// needed. A dry run notes it: orders count as done then, and questions end in [`Error::NotKnown`].
+    /// Sends one request; a refusal is an answer. Switches the host ON first if an order requires it. In a dry run,
+    /// orders count as carried out and a read returns [`Error::NotKnown`].
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         if wants_host(request) {
             match self.take_host().await {
-                // The host is taken although the manual does not ask for it (ambiguity C14): then it decides itself.
+                // The manual does not require the host for this order (ambiguity C14): the controller decides.
                 Err(Error::PendantOn) if !request.row().needs_host => {}
                 taken => taken?,
             }
@@ -232,7 +228,7 @@ impl Client {
         self.ask_now(request).await
     }
 
-    /// The same without the host, and whatever the line owes.
+    /// [`Self::try_ask`] without host control and without the fence.
     async fn ask_now(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         let done = || Record::unlisted("OK");
         if self.is_dry() {
@@ -252,21 +248,21 @@ impl Client {
         Ok(Ok(content.unwrap_or(record)))
     }
 
-    /// Sends a request as it is, without the host, and returns the whole answer as it stands on the line, good or bad.
+    /// Sends a request without host control and returns the whole answer, also a refusal.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Error> {
         if request.risk() > Risk::Read && !is_stop(request) {
             self.fence().await?;
         }
         let planned = self.plan_all(std::slice::from_ref(request));
         if planned.is_err() && request.row().is_order() {
-            // What settles an order follows it.
+            // A fence follows the order (see [`Self::settle`]).
             self.plan_fence();
         }
         planned?;
         self.transact_fenced(request).await
     }
 
-    /// Sends a block that is in no table, and returns what came back. Nobody knows what it does, so it counts as a motion.
+    /// Sends a free-text block and returns the answer. Its effect is unknown, so it counts as a motion.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Error> {
         self.authorize(Risk::Motion, block)?;
         self.fence().await?;
@@ -284,11 +280,11 @@ impl Client {
         }
     }
 
-    /// Makes sure that the last order has the answer that was taken for its own: asks something harmless, unless a question
-    /// was answered since. A controller answers one block after the other, so whatever it says of the order comes before.
+    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since. The
+    /// controller answers in order, so every answer to the order arrives before the answer to the read.
     ///
     /// # Errors
-    /// [`Error::OutcomeUnknown`] if both answers came.
+    /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.
     pub async fn settle(&mut self) -> Result<(), Error> {
         let is_open = if self.is_dry() { self.transport.has_notes() } else { self.session.is_open() };
         if !is_open || self.is_gone {
@@ -297,18 +293,18 @@ impl Client {
         self.fence_at_end().await
     }
 
-    /// All five pages of the status (TO 2-2).
+    /// Reads all five status pages (TO 2-2).
     ///
     /// # Errors
-    /// [`Error::Mute`] if it is refused.
+    /// [`Error::Mute`] if the controller refuses.
     pub async fn status(&mut self) -> Result<Status, Error> {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
-    /// Some pages of the status, 0 to 4; the others are 0.
+    /// Reads some status pages, 0 to 4; the others are 0.
     ///
     /// # Errors
-    /// [`Error::Mute`] if it is refused.
+    /// [`Error::Mute`] if the controller refuses.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Error> {
         self.plan_all(&pages.iter().copied().map(status_page).collect::<Vec<_>>())?;
         let mut status = Status::default();
@@ -323,20 +319,20 @@ impl Client {
         Ok(status)
     }
 
-    /// Where the axes are: `x`, `y`, `z` and `r` in hundredths of a millimetre (MPST, TO 2-8).
+    /// Axis positions: `x`, `y`, `z` and `r` in hundredths of a millimetre (MPST, TO 2-8).
     ///
     /// # Errors
-    /// [`Error::Mute`] if it is refused.
+    /// [`Error::Mute`] if the controller refuses.
     pub async fn place(&mut self) -> Result<Record, Error> {
         self.ask_now(&Request::bare(Command::Mpst)).await?.map_err(|_| Error::Mute)
     }
 
-    /// What the line was like so far.
+    /// Line statistics so far.
     pub fn totals(&self) -> Totals {
         Totals { counters: self.session.counters(), waited: self.waited }
     }
 
-    /// Puts everything back as it was found and ends the connection. What the line was like is told in any case.
+    /// Undoes all temporary changes and closes the connection. Returns the line statistics also after an error.
     pub async fn close(mut self) -> (Totals, Result<(), Error>) {
         let put_back = self.put_back().await;
         let given_back = put_back.and(self.give_back().await);
@@ -347,7 +343,7 @@ impl Client {
         (totals, given_back)
     }
 
-    /// The line, for somebody else to use; `None` in a dry run.
+    /// Hands over the line; `None` in a dry run.
     pub fn into_line(self) -> Option<Line> {
         match self.transport {
             Transport::Line(line) => Some(*line),
@@ -355,23 +351,23 @@ impl Client {
         }
     }
 
-    /// Notices a silence at once, and asks nothing twice, until [`Client::stop`]: an axis will move until it is told to
-    /// stop, and patience must not be in the way of that.
+    /// Uses a short time limit without retries until [`Client::stop`]. A jog runs until it is stopped, so a lost
+    /// connection must be noticed at once.
     pub fn use_short_timeouts(&mut self) {
         self.set_policy(Policy { timeout: SILENCE, retries: 0, ..self.usual });
     }
 
-    /// What this client has set in motion, as far as it knows.
+    /// The motion that this client started and that may still run.
     pub fn moving(&self) -> Option<Moving> {
         self.moving
     }
 
-    /// Nothing that this client set in motion moves any more.
+    /// Records that the motion of this client has ended.
     pub fn has_ended(&mut self) {
         self.moves(None);
     }
 
-    /// Whether the line is gone.
+    /// Whether the line is lost.
     pub fn is_gone(&self) -> bool {
         self.is_gone
     }
@@ -390,13 +386,12 @@ impl Client {
         self.granted.check(risk, block)
     }
 
-    /// One request, one answer. Only what changes nothing is sent again after silence.
+    /// Authorizes and sends one request. Only a read is repeated after a timeout.
     async fn transact_fenced(&mut self, request: &Request) -> Result<Answer, Error> {
         self.authorize(request.risk(), &request.text())?;
         self.transact(request, request.risk() == Risk::Read).await
     }
 
-    /// The same of what may be sent.
     async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Answer, Error> {
         let risk = request.risk();
         request.check()?;
@@ -404,7 +399,7 @@ impl Client {
         self.acquire(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Destroy {
-            // It may write E01, or load it from a card.
+            // The request may change E01: a write, or a load from a card.
             self.letters = None;
         }
         if risk == Risk::Motion {
@@ -417,7 +412,7 @@ impl Client {
         }
         match ended {
             Ended::Answered(block) => {
-                // An order's answer tells nothing of what was before it; that of a question came after all else.
+                // The answer to an order may be a late one; the answer to a read is newer than all earlier answers.
                 self.is_fenced = risk == Risk::Read;
                 request.answer_kept(&block).map_err(|error| malformed(&block, &error))
             }
@@ -425,8 +420,7 @@ impl Client {
         }
     }
 
-    /// Moves characters and time until the exchange has ended. The future may be dropped: the next exchange lets what
-    /// is still owed pass.
+    /// Runs the exchange to its end. The future may be dropped: the next exchange discards the pending answer.
     async fn drive(&mut self, risk: Risk) -> Result<Ended, Error> {
         let ended = self.drive_alone(risk).await;
         if let Some(line) = self.transport.line() {
@@ -435,8 +429,8 @@ impl Client {
         ended
     }
 
-    /// Where a session shares the line out: waits until it is this client's, until the end of the next [`Client::drive`].
-    /// As long as this client moves the robot, no other does.
+    /// Waits for the turn of this client on a shared session; it lasts until the end of the next [`Client::drive`]. A
+    /// client that moves the robot keeps the others from moving it.
     async fn acquire(&mut self, risk: Risk) -> Result<(), Error> {
         let Some(line) = self.transport.line() else { return Ok(()) };
         let until = Instant::now() + self.policy.timeout.max(self.usual.timeout);
@@ -456,7 +450,7 @@ impl Client {
             let step = match self.session.poll(now) {
                 Step::Send(bytes) => {
                     let sent = self.send(&bytes).await;
-                    // A session takes a block whole or not at all; of another line nobody knows what it took.
+                    // A session sends a block completely or not at all; another line may have sent a part of it.
                     has_left |= sent.is_ok() || !self.transport.is_shared();
                     sent.map(|()| 0)
                 }
@@ -484,7 +478,7 @@ impl Client {
         line.send(bytes).await
     }
 
-    /// Waits for characters and puts them into the buffer; 0 if none came until then.
+    /// Receives into the buffer; returns 0 at the deadline.
     async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<usize> {
         let Some(line) = self.transport.line() else { return Ok(0) };
         let received = line.receive(buffer, until).await?.unwrap_or(0);
@@ -494,7 +488,6 @@ impl Client {
         Ok(received)
     }
 
-    /// No answer, or none that fits.
     fn unanswered(&self, ended: Ended, risk: Risk, request: Option<&Request>) -> Error {
         let unfitting = match ended {
             Ended::Unfitting { block, why } => Some((block, why)),
@@ -505,9 +498,9 @@ impl Client {
         if risk > Risk::Read { Error::OutcomeUnknown(unanswered) } else { Error::NoAnswer(unanswered) }
     }
 
-    /// The line has bad news, maybe while an order is open.
+    /// The error of a failed line; `is_open` if an order has no answer yet.
     fn broken(&mut self, error: io::Error, is_open: bool) -> Error {
-        // What the host did not pass on was not sent, and the line is as it was.
+        // A session that rejects a block has not sent it, and the line is unchanged.
         if let Some(busy) = SessionBusy::of(&error) {
             return Error::Session(busy);
         }
@@ -517,10 +510,10 @@ impl Client {
     }
 }
 
-/// What a line was like.
+/// Line statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Blocks sent and received, and what else came.
+    /// Blocks sent and received, and errors.
     pub counters: Counters,
     /// Time spent in exchanges.
     pub waited: Duration,
@@ -530,12 +523,12 @@ fn malformed(block: &str, why: &(impl ToString + ?Sized)) -> Error {
     Error::Malformed { block: block.to_owned(), why: why.to_string() }
 }
 
-/// Asks for a page of the status, 0 to 4 (STAS, TO 2-2).
+/// The request for a status page, 0 to 4 (STAS, TO 2-2).
 pub fn status_page(page: u8) -> Request {
     Request::of(Command::Stas, [Value::Number(page.into())])
 }
 
-/// Whether it stops what moves: that waits for nothing.
+/// Whether the request stops a motion. A stop needs no fence.
 pub fn is_stop(request: &Request) -> bool {
     match request.command() {
         Command::Stop => true,
@@ -544,8 +537,8 @@ pub fn is_stop(request: &Request) -> bool {
     }
 }
 
-/// JOG: one word for all axes, or one for an axis (0 to 3) while the others stop. Words are `RS` (reset), `SP` (stop), and
-/// a sign with `C` (inch), `L` (low speed) or `H` (high speed) (JGST, TO 2-7).
+/// A jog request (JGST, TO 2-7): one word for all axes, or for one axis (0 to 3) while the others stop. Words: `RS`
+/// (reset), `SP` (stop), or a sign with `C` (inch), `L` (low speed) or `H` (high speed).
 pub fn jog(word: &'static str, axis: Option<usize>) -> Request {
     let of = |index| if axis.is_none_or(|axis| axis == index) { word } else { "SP" };
     Request::of(Command::Jgst, [0, 1, 2, 3].map(|index| Value::Word(of(index))))

@@ -1,4 +1,4 @@
-//! What a dry run notes instead of sending it.
+//! Dry run of a Toyo client.
 
 use armctl_controller::Risk;
 use armctl_controller::toyo::describe::{Sender, describe};
@@ -11,18 +11,18 @@ use crate::plan::with_fields;
 use crate::{Plan, Reason};
 
 impl Client {
-    /// Whether nothing is sent, only noted.
+    /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
         matches!(self.transport, Transport::Notes(_))
     }
 
-    /// What was noted in a dry run so far, and what is sent when the client ends.
+    /// Takes the plan so far, with what is sent when the client ends.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_end();
         self.transport.notes().map(std::mem::take).unwrap_or_default()
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Dry run: plans reads whose answers are then unknown.
     pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Error> {
         if !self.is_dry() || requests.is_empty() {
             return Ok(());
@@ -33,17 +33,18 @@ impl Client {
         Err(Error::NotKnown)
     }
 
-    /// Notes in a dry run a request that is sent for a reason.
+    /// Dry run: plans a request with its purpose.
     pub fn plan(&mut self, request: &Request, about: &str) {
         self.note(request, Reason::about(about));
     }
 
-    /// Notes in a dry run a request that an answer before it decides about.
+    /// Dry run: plans a request that is sent only after a certain answer.
     pub fn plan_if(&mut self, request: &Request, on: &str) {
         self.note(request, Reason::default().depending_on(on));
     }
 
-    /// Notes in a dry run a block of which an answer before it decides a part, that stands as `?`, or whether it is sent.
+    /// Dry run: plans a block that depends on an earlier answer: either a part of it, written `?`, or whether it is
+    /// sent.
     pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
         if !self.is_dry() {
             return;
@@ -54,7 +55,7 @@ impl Client {
         self.hangs_on = reason.depends_on.map(ToOwned::to_owned);
     }
 
-    /// Notes in a dry run an order that an answer before it decides about, behind what goes before every order.
+    /// Dry run: plans an order that depends on an earlier answer, with the host switch and the fence before it.
     pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Error> {
         self.take_host().await?;
         self.fence().await?;
@@ -62,14 +63,14 @@ impl Client {
         Ok(())
     }
 
-    /// Says in a dry run what would be done with a file or a part.
+    /// Dry run: adds the planned action for a file or a part.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.transport.notes() {
             plan.items.push(item);
         }
     }
 
-    /// Says in a dry run what follows that cannot be shown.
+    /// Dry run: describes later steps whose frames are not known yet.
     pub fn then(&mut self, what: &str) {
         if let Some(plan) = self.transport.notes() {
             plan.then(what);

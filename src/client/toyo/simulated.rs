@@ -1,4 +1,4 @@
-//! The simulated controller at the end of a line: in this process, or served to others.
+//! Adapter from the simulated controller to a transport peer, in this process or on a server.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use armctl_transport::sim::Peer;
 pub struct Simulated(pub Simulator);
 
 impl Simulated {
-    /// In its start state.
+    /// A controller in this start state.
     pub fn new(start: Start) -> Self {
         Self(Simulator::new(start))
     }

@@ -1,4 +1,4 @@
-//! How what moves is stopped, and how it is known to stand.
+//! Stop procedure: the order, its repetition, and the check that the robot stands still.
 
 use std::time::Duration;
 
@@ -13,19 +13,19 @@ use super::borrowed::Host;
 use super::{Client, Error, jog, status_page};
 use crate::{Grant, STOP_EVERY, STOP_WITHIN};
 
-/// What has not come to rest by then is no program.
+/// Time after which the motion is assumed to be a jog, because a program would have stopped.
 const SLOW: Duration = Duration::from_secs(1);
-/// The pause between two looks.
+/// Poll interval of the position.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// What is asked while a stop is tried, is asked so often.
+/// Retries of each request while a stop runs.
 const REPETITIONS: u32 = 3;
 
-/// What moves.
+/// Kind of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moving {
-    /// An axis, until it is told to stop.
+    /// A jog: runs until it is stopped.
     Jog,
-    /// A program, a return to origin, servo power.
+    /// A program, an origin return, or servo power.
     Program,
 }
 
@@ -39,7 +39,6 @@ impl Moving {
     }
 }
 
-/// What came of one attempt.
 struct Attempt {
     is_refused: bool,
     is_busy: bool,
@@ -47,12 +46,12 @@ struct Attempt {
 }
 
 impl Client {
-    /// Stops what moves, and returns where it has come to stand, as [`Client::place`] does. The order is repeated until
-    /// then, whatever was granted and whatever the options say: a stop twice is a stop once, and a lost one lets the robot
+    /// Stops the motion and returns the final position, as [`Client::place`] does. The order is repeated until the
+    /// robot stands still, regardless of grant and options. Repeating a stop is harmless; a lost stop lets the robot
     /// move on.
     ///
     /// # Errors
-    /// [`Error::StandUnseen`] if nothing tells that it stands, [`Error::MovesOn`] if it moves on.
+    /// [`Error::StandUnseen`] if no answer confirms it, [`Error::MovesOn`] if the robot still moves.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
             self.plan(&moving.stop(), "until it stands");
@@ -80,25 +79,25 @@ impl Client {
         self.set_policy(self.usual);
         match &stopped {
             Ok(_) => self.has_ended(),
-            // The next stop shall find the host as it is.
+            // Leave the host ON: the next stop needs it.
             Err(_) => self.keep_host(),
         }
         stopped
     }
 
-    /// Sends a stop at once if the line owes an answer, which [`Client::stop`] would wait for first.
+    /// Sends a stop at once while an answer is pending. [`Client::stop`] would wait for that answer first.
     pub async fn send_urgent(&mut self, moving: Moving) {
         if let Some(bytes) = self.session.urgent(self.started.elapsed(), &moving.stop()) {
-            // A line that is broken fails again in the stop that follows.
+            // If the line is broken, the stop that follows reports it.
             self.send(&bytes).await.unwrap_or_default();
         }
     }
 
-    /// Ends only when it stands, or the line is gone. `why` is told what is in the way so far.
+    /// Returns only when the robot stands still or the line is lost. `why` holds the latest obstacle.
     async fn stop_until_it_stands(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
-        // Where it was at the last look, if nothing was executed then.
+        // Position of the previous attempt, if nothing ran then.
         let mut last = None;
         loop {
             let attempt = self.try_stop(moving, &stop).await;
@@ -108,13 +107,13 @@ impl Client {
                 Err(error) if self.is_gone => return Err(unstopped(error)),
                 Ok(Attempt { is_refused, is_busy, place }) => {
                     *why = Some(Error::MovesOn { is_refused });
-                    // What goes wrong here shows in the next attempt.
+                    // The next attempt shows any error of this one.
                     if is_refused && moving == Moving::Jog {
-                        // To stop a JOG takes the host, too.
+                        // Stopping a jog requires host control.
                         self.take_host_to_stop().await.unwrap_or_default();
                         self.transact(&stop, true).await.map(|_| ()).unwrap_or_default();
                     } else if moving == Moving::Program && (is_slow || (!is_busy && last.is_some())) {
-                        // It moves on, maybe although nothing is executed: somebody left an axis jogging.
+                        // Still moving, perhaps with no program running: an axis was left jogging.
                         self.stop_a_jog().await;
                     }
                     (!is_busy).then_some(place)
@@ -128,13 +127,14 @@ impl Client {
         }
     }
 
-    /// Orders the stop, then looks. That it was answered says little: only the robot itself tells that it stands.
+    /// Sends the stop, then reads status and position. The answer `@OK` alone does not show that the robot stands
+    /// still.
     async fn try_stop(&mut self, moving: Moving, stop: &Request) -> Result<Attempt, Error> {
         self.send_urgent(moving).await;
         let answer = self.transact(stop, true).await?;
         let mut state = self.status_of(&[0]).await?;
         if moving == Moving::Program && (state.executing() || state.homing()) {
-            // What is executed on may be an axis that somebody left jogging, which STOP does not stop.
+            // An axis may have been left jogging; STOP does not stop a jog.
             self.stop_a_jog().await;
             state = self.status_of(&[0]).await?;
         }
@@ -142,12 +142,12 @@ impl Client {
         Ok(Attempt { is_refused: answer == Answer::Refused, is_busy: state.executing() || state.homing(), place })
     }
 
-    /// Whatever was granted: a stop is always allowed.
+    /// Takes host control without a check of the grant: a stop is always allowed.
     async fn take_host_to_stop(&mut self) -> Result<(), Error> {
         self.take_host_by(&Grant::of(Risk::Write)).await
     }
 
-    /// Tells all axes to stop jogging; takes the host for it where that is needed. What goes wrong shows in the next look.
+    /// Stops the jog of all axes, and takes host control if required. The next attempt shows any error.
     async fn stop_a_jog(&mut self) {
         let stop = Moving::Jog.stop();
         if matches!(self.transact(&stop, true).await, Ok(Answer::Refused)) && self.take_host_to_stop().await.is_ok() {
@@ -155,8 +155,8 @@ impl Client {
         }
     }
 
-    /// What moves was refused before it moved. The stop goes out nevertheless, once; whatever else moves is not this
-    /// client's.
+    /// Sends one stop after a motion was refused before it began. Another motion on the controller is not the concern
+    /// of this client.
     pub async fn give_up(&mut self, moving: Moving) {
         self.set_policy(self.usual);
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
@@ -164,7 +164,6 @@ impl Client {
     }
 }
 
-/// Why nobody knows that it stands.
 fn unstopped(why: Error) -> Error {
     if matches!(why, Error::MovesOn { .. }) { why } else { Error::StandUnseen(Box::new(why)) }
 }

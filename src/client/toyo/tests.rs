@@ -1,4 +1,4 @@
-//! The client as a library, on simulators in virtual time.
+//! Tests of the client as a library, on simulators in virtual time.
 
 use std::sync::{Arc, Mutex};
 
@@ -6,7 +6,7 @@ use armctl_controller::toyo::simulator::Start;
 
 use super::*;
 
-/// To a simulator in this start state, behind a line with these faults.
+/// Connects to a simulator with this start state and these line faults.
 async fn connected(risk: Risk, state: &str, faults: Option<&str>) -> Client {
     let faults = faults.map(|text| text.parse().unwrap());
     let start = Box::new(Start::parse(state).unwrap());
@@ -77,7 +77,6 @@ async fn a_dry_run_notes_orders_and_knows_no_answers() {
     assert_eq!(blocks, ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@MCST CN01=0002", "@STAS SNO=3", "@HSOF"]);
 }
 
-/// Keeps what it is told.
 #[derive(Debug, Default)]
 struct Keeper(Arc<Mutex<(String, Vec<Event>)>>);
 

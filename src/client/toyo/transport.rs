@@ -1,4 +1,4 @@
-//! Where a controller is, and how the characters travel there.
+//! Endpoint of a controller, and the transport to it.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -22,10 +22,9 @@ use crate::{Ends, Plan};
 /// An open line to a controller.
 pub type Line = Stream<Box<dyn Peer + Send>>;
 
-/// Opens a line again that is gone.
 pub(super) struct Opener(pub Box<dyn Fn() -> Opening + Send>);
 
-/// A line that is being opened.
+/// A pending open of a line.
 pub type Opening = Pin<Box<dyn Future<Output = Result<Line, Error>> + Send>>;
 
 impl fmt::Debug for Opener {
@@ -34,61 +33,61 @@ impl fmt::Debug for Opener {
     }
 }
 
-/// Where a controller is.
+/// Address of a controller.
 #[derive(Debug, Clone)]
 pub enum Endpoint {
-    /// At a serial port of this machine.
+    /// A serial port of this machine.
     Serial(serial::Line),
-    /// At a serial line behind a device server, which passes bytes on as they are.
+    /// A serial line behind a device server, which passes bytes on unchanged.
     Tcp {
         /// Name or address.
         host: String,
-        /// Its TCP port.
+        /// TCP port.
         port: u16,
-        /// Bits a second of the line behind it.
+        /// Baud rate of the serial line behind it.
         baud: u32,
     },
-    /// In this process: a simulator, which starts when it is connected to.
+    /// A simulator in this process; it starts when a client connects.
     Simulator {
-        /// How it starts.
+        /// Its start state.
         start: Box<Start>,
-        /// Bits a second; characters take no time without.
+        /// Baud rate; without one, characters take no time.
         baud: Option<u32>,
-        /// What is wrong with the line to it.
+        /// Line faults.
         faults: Option<LineFaultSpec>,
     },
 }
 
-/// Bits a second that a controller has from the factory (TO 1-2).
+/// Factory baud rate of a controller (TO 1-2).
 pub const BAUD: u32 = 9600;
 
-/// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
+/// Bits per character: start bit, 8 data bits, parity, one stop bit (TO 1-2).
 pub const BITS: u32 = 11;
 
-/// From one try to open a port that is busy to the next.
+/// Retry interval for a busy port.
 const BUSY_EVERY: Duration = Duration::from_millis(20);
 
-/// A device server may take longer to accept than a controller to answer.
+/// Minimum time limit of a connection: a device server may be slower than a controller.
 const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 
 impl Endpoint {
-    /// A controller at a serial port with the usual settings: 9600 baud, 8 data bits, even parity, 1 stop bit (TO 1-2).
+    /// A serial port with the factory settings: 9600 baud, 8 data bits, even parity, 1 stop bit (TO 1-2).
     pub fn serial(path: impl Into<String>) -> Self {
         let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
         Self::Serial(serial::Line { path: path.into(), baud: BAUD, data_bits, parity, stop_bits })
     }
 
-    /// A controller behind a device server, whose line has 9600 baud.
+    /// A device server with a serial line of 9600 baud.
     pub fn tcp(host: impl Into<String>, port: u16) -> Self {
         Self::Tcp { host: host.into(), port, baud: BAUD }
     }
 
-    /// A fresh simulator, on a line without faults where characters take no time.
+    /// A new simulator on a line without faults or transmission time.
     pub fn simulator() -> Self {
         Self::Simulator { start: Box::default(), baud: None, faults: None }
     }
 
-    /// How long one character is on the line.
+    /// Transmission time of one character.
     pub fn character(&self) -> Duration {
         match self {
             Self::Serial(line) => line.pace().time(1),
@@ -97,7 +96,7 @@ impl Endpoint {
         }
     }
 
-    /// Opens it; a device server may take so long to accept, and 3 s at least.
+    /// Opens the line. The limit for a device server is `timeout`, but at least 3 s.
     ///
     /// # Errors
     /// [`Error::Port`] and [`Error::DeviceServer`].
@@ -121,7 +120,7 @@ impl Endpoint {
     }
 }
 
-/// Opens a port. One that another program uses is waited for, so long at most: a short command gives it back soon.
+/// Opens a port. Waits up to `timeout` for a busy one: a short command of another program frees it soon.
 async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, serial::OpenError> {
     let until = Instant::now() + timeout;
     loop {
@@ -138,12 +137,11 @@ fn pace(baud: u32) -> Pace {
     Pace::new(baud, BITS)
 }
 
-/// How the characters travel.
 #[derive(Debug)]
 pub(super) enum Transport {
     /// Over a line.
     Line(Box<Line>),
-    /// A dry run: what would be sent is noted.
+    /// A dry run: requests are only planned.
     Notes(Plan),
 }
 
@@ -156,7 +154,6 @@ impl Transport {
         }
     }
 
-    /// The notes of a dry run.
     pub(super) fn notes(&mut self) -> Option<&mut Plan> {
         match self {
             Self::Notes(plan) => Some(plan),
@@ -164,17 +161,16 @@ impl Transport {
         }
     }
 
-    /// Whether something was noted in a dry run.
     pub(super) fn has_notes(&self) -> bool {
         matches!(self, Self::Notes(plan) if !plan.frames.is_empty())
     }
 
-    /// Whether a session holds the line, and others may use it at the same time.
+    /// Whether a session holds the line, so that others may use it too.
     pub(super) fn is_shared(&self) -> bool {
         matches!(self, Self::Line(line) if matches!(**line, Stream::Session(_)))
     }
 
-    /// The addresses of a TCP connection, the own one first.
+    /// Local and remote address of a TCP connection.
     pub(super) fn ends(&self) -> Option<Ends> {
         match self {
             Self::Line(line) => match &**line {
@@ -186,7 +182,6 @@ impl Transport {
     }
 }
 
-/// What stands for the addresses of a line that has none.
 pub(super) fn no_ends() -> Ends {
     let nowhere = SocketAddr::from(([0, 0, 0, 0], 0));
     (nowhere, nowhere)

@@ -1,5 +1,5 @@
-//! Which axes a control group has. Controllers may answer a word for every axis there could be; then the axis
-//! configuration (0x74), asked once on a connection, tells which of them exist.
+//! Axes of a control group. A controller may answer with a word for each possible axis. Then the axis configuration
+//! (0x74), read once per connection, shows which axes exist.
 
 use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
@@ -8,18 +8,18 @@ use armctl_controller::yerc::query::{Coordinates, Query as _, ReadAxes};
 use super::Client;
 use crate::Reason;
 
-/// The axes that exist, a bit each.
+/// Set of existing axes, one bit per axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fitted(u8);
 
-/// Added status while a screen is open on the pendant during which axis names cannot be read (DX 3.3.5).
+/// Added status while a pendant screen is open during which axis names cannot be read (DX 3.3.5).
 const CONVERTING: u32 = 0x2150;
 
 impl Fitted {
-    /// As many as were answered.
+    /// All axes in the answer.
     pub const ALL: Self = Self(u8::MAX);
 
-    /// Those that have a name; all where none has one.
+    /// The axes with a name; all axes if none has a name.
     fn from_names(names: &AxisNames) -> Self {
         let mask = names.names.iter().enumerate().fold(0, |mask, (axis, name)| {
             let is_blank = name.as_bytes().iter().all(u8::is_ascii_whitespace);
@@ -28,12 +28,12 @@ impl Fitted {
         if mask == 0 { Self::ALL } else { Self(mask) }
     }
 
-    /// Whether there is such an axis, counted from 0.
+    /// Whether the axis exists, counted from 0.
     pub const fn has(self, axis: usize) -> bool {
         axis < MAX_AXES && self.0 >> axis & 1 == 1
     }
 
-    /// The values up to the last axis that exists; 0 for those before it that do not.
+    /// The values up to the last existing axis; 0 for missing axes before it.
     fn of(self, axes: Axes) -> Axes {
         let count = (0..axes.as_slice().len()).rev().find(|axis| self.has(*axis)).map_or(0, |last| last + 1);
         let values = axes.as_slice().iter().enumerate().take(count);
@@ -43,17 +43,17 @@ impl Fitted {
 }
 
 impl Client {
-    /// The values of the axes that the group has, of as many as were answered.
+    /// The values of the existing axes of a group, out of those in the answer.
     pub async fn fit(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, Fitted) {
         if axes.as_slice().len() < MAX_AXES {
-            // No group has eight axes: fewer words are those of the axes that are fitted.
+            // No group has eight axes, so a shorter answer contains only existing axes.
             return (axes, Fitted::ALL);
         }
         let fitted = self.fitted(group, coordinates).await;
         (fitted.of(axes), fitted)
     }
 
-    /// Notes in a dry run that [`Client::fit`] may ask for the axes.
+    /// Dry run: plans the read of the axis configuration by [`Client::fit`].
     pub fn plan_fit(&mut self, group: Group, coordinates: Coordinates) {
         let is_noted = self.fitted.iter().any(|known| (known.0, known.1) == (group, coordinates));
         let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return };
@@ -72,7 +72,7 @@ impl Client {
         let Ok(question) = ReadAxes::new(self.model_to_show(), group, coordinates) else { return Fitted::ALL };
         let fitted = match self.try_ask(&question).await {
             Ok(Ok(names)) => Fitted::from_names(&names),
-            // Asked again next time: the screen may be closed by then.
+            // Not stored: the screen may be closed at the next read.
             Ok(Err(refusal)) if refusal.status.added == CONVERTING => return Fitted::ALL,
             Ok(Err(_)) | Err(_) => Fitted::ALL,
         };

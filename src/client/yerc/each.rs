@@ -1,31 +1,31 @@
-//! Several questions, each with its own outcome: one refusal hides nothing that was answered.
+//! Batch of reads with one result each: a refusal of one read does not hide the others.
 
 use armctl_controller::yerc::query::Query;
 use armctl_controller::yerc::status::is_absent;
 
 use super::{Client, Error, Refusal};
 
-/// Why one of several questions has no answer. `E` is how errors are told.
+/// Why one read of a batch has no answer. `E` is the error type.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Denied<E = Error> {
-    /// The controller said no.
+    /// The controller refused.
     Refused(Refusal),
-    /// The answer made no sense, or contact was lost.
+    /// The answer was invalid, or the connection was lost.
     Failed(E),
-    /// Contact was lost before, by this.
+    /// Not sent, because the connection was lost before, with this error.
     NotAsked(E),
 }
 
-/// A question's outcome.
+/// Result of one read.
 pub type Outcome<T, E = Error> = Result<T, Denied<E>>;
 
 impl<E> Denied<E> {
-    /// Whether the controller says that there is no such thing.
+    /// Whether the controller reports that the object does not exist.
     pub fn is_absent(&self) -> bool {
         matches!(self, Self::Refused(refusal) if is_absent(refusal.status))
     }
 
-    /// The same with the error told in another way.
+    /// Converts the error.
     pub fn map<F>(self, tell: impl FnOnce(E) -> F) -> Denied<F> {
         match self {
             Self::Refused(refusal) => Denied::Refused(refusal),
@@ -35,23 +35,22 @@ impl<E> Denied<E> {
     }
 }
 
-/// Several questions, asked one after the other ([`Client::ask_in`]).
+/// State of a batch of reads ([`Client::ask_in`]).
 #[derive(Debug, Default)]
 pub struct Round {
-    /// Whether the controller has answered anything, a refusal included.
+    /// Whether the controller has answered a request, also with a refusal.
     is_heard: bool,
-    /// Answers that made no sense before any did.
     nonsense: u32,
-    /// Why nothing more is asked.
+    /// The error that ended the batch.
     lost: Option<Error>,
 }
 
-/// So many senseless answers and no other, and it is no controller that answers.
+/// Number of invalid answers, without a valid one, after which the peer counts as no controller.
 const MOST_NONSENSE: u32 = 2;
 
 impl Client {
-    /// Asks one question of several. It fails as a whole only while there is nothing to show; once contact is lost, the
-    /// rest is not asked.
+    /// Sends one read of a batch. Before the first answer, silence or repeated garbage ends the batch with an error.
+    /// After the connection is lost, the remaining reads are not sent.
     pub async fn ask_in<Q: Query>(&mut self, round: &mut Round, query: &Q) -> Result<Outcome<Q::Answer>, Error> {
         if let Some(lost) = &round.lost {
             return Ok(Err(Denied::NotAsked(lost.clone())));
@@ -73,7 +72,7 @@ impl Client {
         }
     }
 
-    /// Asks several questions; each has its own outcome. A dry run notes them all.
+    /// Sends several reads, each with its own result. A dry run plans them all.
     pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Error> {
         self.plan_all(queries)?;
         let mut round = Round::default();

@@ -1,4 +1,4 @@
-//! What can go wrong between a client and a controller, and a controller's "no".
+//! Errors of a client, and the refusal of a controller.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -17,109 +17,109 @@ use thiserror::Error;
 
 use crate::NotAuthorized;
 
-/// Why there is no answer, or none to go on with.
+/// Why a request has no usable answer.
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The controller said no.
+    /// The controller refused.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Nobody answered a request that may be sent again without harm.
+    /// No answer to a request that can be repeated without harm.
     #[error("no answer within {waited:?}")]
     NoAnswer {
-        /// How long was waited.
+        /// Total wait.
         waited: Duration,
-        /// What was seen meanwhile.
+        /// What was received.
         counters: Counters,
     },
-    /// Something answered, but not in this protocol.
+    /// Data was received, but no valid frame.
     #[error("no answer of the protocol within {waited:?}, but {counters}")]
     Garbage {
-        /// How long was waited.
+        /// Total wait.
         waited: Duration,
-        /// What came instead.
+        /// What was received.
         counters: Counters,
     },
-    /// An answer that does not hold what was asked for.
+    /// An answer without the requested content.
     #[error("unexpected answer: {0}")]
     Unexpected(#[from] PayloadError),
-    /// Nobody confirmed a request that changes something: it may or may not have been carried out. It was sent once.
+    /// A change without an answer: it may or may not have been carried out. It was sent once.
     #[error("sent once, no answer within {waited:?}: it may or may not have been done")]
     OutcomeUnknown {
-        /// What was sent.
+        /// The request.
         request: Request,
-        /// How long was waited.
+        /// Total wait.
         waited: Duration,
-        /// What was seen meanwhile.
+        /// What was received.
         counters: Counters,
     },
-    /// Nobody confirmed the stop, however often it was sent.
+    /// No answer to the stop, which was sent repeatedly.
     #[error("the stop was sent again and again, no answer within {waited:?}: nothing tells that the robot is held")]
     Unconfirmed {
-        /// How long was waited.
+        /// Total wait.
         waited: Duration,
     },
-    /// The line went away after a request that changes something was sent, and before it was answered.
+    /// The link was lost after a change was sent and before its answer.
     #[error("{cause}; it was sent, and may or may not have been done")]
     CutShort {
-        /// What was sent.
+        /// The request.
         request: Request,
-        /// What happened then.
+        /// The error of the link.
         cause: Box<Self>,
     },
-    /// A file or list that did not come, or not whole.
+    /// A file or list that was not received completely.
     #[error("the transfer failed: {0:?}")]
     Incomplete(DownloadEnd),
-    /// More than the client was granted.
+    /// The request is above the authorized risk.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
-    /// The session that holds the line has ended, or somebody else has the line.
+    /// The session on the link has ended, or another client uses the link.
     #[error("{0}")]
     Session(SessionBusy),
-    /// A name that is that of no host.
+    /// A host name that cannot be resolved.
     #[error("cannot find host '{host}'")]
     HostNotFound {
-        /// The name.
+        /// The host name.
         host: String,
     },
-    /// The socket has bad news.
+    /// An I/O error of the socket.
     #[error("{error}")]
     Io {
-        /// The controller's port; `None` where a session has the socket.
+        /// Port of the controller; `None` if a session has the socket.
         port: Option<u16>,
-        /// The news.
+        /// The cause.
         #[source]
         error: Arc<io::Error>,
     },
-    /// The controller does not tell what it is, and what was to be asked depends on it. Nothing else was sent.
+    /// The controller refused to report its model, which the request depends on. Nothing else was sent.
     #[error("the controller did not tell its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
     ModelRefused(Refusal),
-    /// Its software is that of no known model, and what was to be asked depends on it. Nothing else was sent.
+    /// The software version belongs to no known model, and the request depends on the model. Nothing else was sent.
     #[error("the system software '{version}' is of no model that armctl knows")]
     UnknownSoftware {
-        /// Its version, with what is no letter escaped.
+        /// Software version, with unusual characters escaped.
         version: String,
     },
-    /// It refused what the model takes that it was another time, and is another one now.
+    /// The controller is not the remembered model. It refused a request that the remembered model accepts.
     #[error("it was a {remembered}, and is a {found} now, which refused this")]
     AnotherModel {
-        /// What it was taken for.
+        /// The remembered model.
         remembered: Model,
-        /// What it says that it is.
+        /// The model that the controller reports.
         found: Model,
     },
-    /// A dry run sends nothing, and so has no answer.
+    /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
     NotKnown,
 }
 
 impl Error {
-    /// Whether something answered that made no sense.
+    /// Whether invalid data was received.
     pub fn is_malformed(&self) -> bool {
         matches!(self, Self::Garbage { .. } | Self::Unexpected(_))
     }
 
-    /// Whether there is no contact with the controller, or none any more.
+    /// Whether there is no connection to the controller, or no longer one.
     pub fn is_silence(&self) -> bool {
         match self {
             Self::NoAnswer { .. } | Self::HostNotFound { .. } | Self::Io { .. } => true,
@@ -129,31 +129,31 @@ impl Error {
     }
 }
 
-/// A controller's "no".
+/// A refusal of a controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("the controller refused {to}: {}", status::explain(*.status).name)]
 pub struct Refusal {
-    /// Why.
+    /// Error status.
     pub status: Status,
-    /// To what.
+    /// The refused request.
     pub to: Asked,
 }
 
 impl Refusal {
-    /// Of a request to the file server.
+    /// A refusal of a file request.
     pub const fn of_file(service: u8, status: Status) -> Self {
         Self { status, to: Asked::File(service) }
     }
 }
 
-/// What a controller said no to.
+/// Identification of a refused request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
     /// A request to the robot server.
     Robot {
-        /// Its command number.
+        /// Command number.
         command: u16,
-        /// Which of the things the command addresses.
+        /// Instance.
         instance: u16,
     },
     /// A request to the file server, by its service.
@@ -178,21 +178,21 @@ impl fmt::Display for Asked {
     }
 }
 
-/// How a transfer broke off.
+/// A transfer that ended early.
 #[derive(Debug, Clone)]
 pub struct TransferError<E> {
-    /// What had left or come by then. Of a file that is sent the controller may hold a part, or all.
+    /// Bytes sent or received until then. After an upload, the controller may hold a part of the file, or all of it.
     pub bytes: u64,
-    /// Why.
+    /// The cause.
     pub cause: Cause<E>,
 }
 
-/// Who ended a transfer.
+/// The side that ended a transfer.
 #[derive(Debug, Clone)]
 pub enum Cause<E> {
-    /// The line, or the controller.
+    /// The link or the controller.
     Client(Error),
-    /// Whoever reads or writes the file here.
+    /// The caller's function that reads or writes the file.
     Caller(E),
 }
 
@@ -214,7 +214,7 @@ impl<E> From<Error> for Cause<E> {
     }
 }
 
-/// Where nothing is read or written here, only the line can fail.
+/// Without such a function only the link can fail.
 impl From<Cause<Infallible>> for Error {
     fn from(cause: Cause<Infallible>) -> Self {
         match cause {

@@ -1,4 +1,4 @@
-//! The client of a Yaskawa FS100, DX100, DX200 or YRC1000: the one driver that moves datagrams between sessions and a transport.
+//! Yaskawa client (FS100, DX100, DX200, YRC1000): drives the sessions over datagrams.
 
 mod axes;
 mod each;
@@ -43,79 +43,78 @@ use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, STOP_WITHIN, Wat
 
 /// A connection to one controller.
 ///
-/// It asks one thing at a time. A call that is dropped before it has ended leaves the client usable: what comes late is
-/// told from what is asked next.
+/// It has one request at a time. A call that is dropped early leaves the client usable: the session discards late
+/// answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
     policy: Policy,
     ids: Ids,
     granted: Grant,
-    /// Whether a request left that moves the robot.
     has_moved: bool,
-    /// Model of the controller, as far as it is known: number ranges and layouts follow from it.
+    /// The model, as far as known; number ranges and layouts depend on it.
     known: Known,
-    /// What the controller said that it is.
+    /// Model and software version that the controller reported.
     identity: Option<Identity>,
-    /// The model that what a dry run notes is shown for, where it depends on one that nobody knows.
+    /// Dry run: the model that the plan is shown for, if the frames depend on an unknown one.
     shown_for: Option<Model>,
     started: Instant,
     buffer: Box<[u8; BUFFER]>,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
-    /// The last download, in case its final ACK got lost.
+    /// The last download, kept because its final ACK may be lost.
     finished: Option<Download>,
-    /// What ends the transfer that was broken off, or is under way.
+    /// The session that ends an open or aborted transfer at the controller.
     open: Option<Abandon>,
-    /// What the next request is for, in a dry run.
+    /// Dry run: purpose of the next request.
     purpose: Option<&'static str>,
-    /// Which axes groups have, as far as it was asked.
+    /// Existing axes of the groups read so far.
     fitted: Vec<(Group, Coordinates, Fitted)>,
 }
 
-/// How a client asks.
+/// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The controller's model; without one it is asked where a request depends on it. That of a simulator is its own.
+    /// Model of the controller; without one, it is read when a request depends on it. A simulator has its own model.
     pub model: Option<Model>,
-    /// The most that may leave.
+    /// The highest risk that may be sent.
     pub granted: Grant,
-    /// The longest wait of one try for its answer.
+    /// Time limit of one attempt.
     pub timeout: Duration,
-    /// Further tries, after silence, of a request that changes nothing, and of a block of a file.
+    /// Retries, after a timeout, of a request that changes nothing, and of a file block.
     pub retries: u32,
 }
 
 impl Options {
-    /// To read from a controller of this model, with the usual patience: 3 s, and 3 repeats.
+    /// Read only, for this model, with the default limits: 3 s, 3 retries.
     pub fn new(model: Model) -> Self {
         Self { model: Some(model), ..Self::auto() }
     }
 
-    /// The same of a controller of a model that it has to tell.
+    /// The same, with a model that the controller has to report.
     pub fn auto() -> Self {
         let Policy { timeout, retries, .. } = Policy::default();
         Self { model: None, granted: Grant::default(), timeout, retries }
     }
 
-    /// The same, and what is not riskier than this may leave.
+    /// Authorizes this risk and everything below it.
     #[must_use]
     pub fn granting(self, risk: Risk) -> Self {
         Self { granted: Grant::of(risk), ..self }
     }
 }
 
-/// What a client notices beside frames.
+/// An event of a client, other than a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    /// An exchange or a transfer has ended, and more was on the line than what was asked and its answer.
+    /// An exchange or transfer ended, and there was other traffic than the request and its answer.
     Disturbed(Counters),
-    /// A transfer was broken off, and the controller did not confirm its end: it may be busy with it until its timer ends.
+    /// A transfer was aborted, and the controller did not confirm its end. It may stay busy until its timer expires.
     LeftOpen,
 }
 
-/// What a client saw.
+/// Traffic of a client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Frames sent.
@@ -124,28 +123,28 @@ pub struct Totals {
     pub received: u64,
     /// Time spent in exchanges and transfers.
     pub waited: Duration,
-    /// Exchanges and transfers that ended.
+    /// Completed exchanges and transfers.
     pub exchanges: u32,
-    /// How often something came or went otherwise than it should: [`Counters`].
+    /// Unexpected events on the link: see [`Counters`].
     pub disturbances: u64,
 }
 
-/// Room for more than a frame, so that an oversized datagram shows.
+/// Larger than a frame, so that an oversized datagram is detected.
 const BUFFER: usize = 2048;
 
 /// Largest file that [`Client::read_file`] takes.
 const MAX_FILE: u64 = 1 << 30;
 
-/// What a session wants from the one who reads or writes the file.
+/// Request of a session to the caller's function that reads or writes the file.
 enum Want<'a, S> {
-    /// A piece that came.
+    /// A received piece.
     Take(&'a [u8]),
-    /// The session wants to be fed.
+    /// An upload session that needs the next piece.
     Feed(&'a mut S),
 }
 
 impl Client {
-    /// Connects to a controller. Nothing is sent: datagrams go out to nobody, too, so that only an answer shows that it is
+    /// Connects to a controller. Sends nothing: UDP has no connection, so only an answer shows that a controller is
     /// there.
     ///
     /// # Errors
@@ -155,13 +154,13 @@ impl Client {
         Ok(Self::over(endpoint.open().await?, Options { model, ..options }))
     }
 
-    /// Talks through a session that holds the line, and shares it with others.
+    /// Uses a session that holds the link and shares it with other clients.
     pub fn through(session: Box<Attached>, options: Options) -> Self {
         Self::over(Transport::Session(session), options)
     }
 
-    /// Sends nothing, but notes what would be sent ([`Client::take_plan`]). Orders count as done; what asks ends in
-    /// [`Error::NotKnown`].
+    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
+    /// returns [`Error::NotKnown`].
     pub fn dry_run(options: Options) -> Self {
         Self::over(Transport::Notes(Plan::default()), options)
     }
@@ -188,23 +187,23 @@ impl Client {
         }
     }
 
-    /// Has this one told what happens from now on.
+    /// Sets the observer.
     pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
         self.watcher = Box::new(watcher);
     }
 
-    /// Asks one question or gives one order; a refusal is an error.
+    /// Sends one request; a refusal is an error.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Error> {
         Ok(self.try_ask(query).await??)
     }
 
-    /// Asks one question or gives one order; a refusal is an answer. A dry run notes it: orders count as done then, and
-    /// questions end in [`Error::NotKnown`].
+    /// Sends one request; a refusal is an answer. In a dry run, orders count as carried out and a read returns
+    /// [`Error::NotKnown`].
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Error> {
         let request = query.request();
         if self.is_dry() && request.risk() > Risk::Read {
             self.plan_next(&request)?;
-            // What is accepted bears no data.
+            // An accepted order has no data.
             return query.decode(&[]).map(Ok).map_err(|_| Error::NotKnown);
         }
         let Reply { status, data, .. } = self.raw(&request).await?;
@@ -215,7 +214,7 @@ impl Client {
         Ok(Ok(query.decode(&data)?))
     }
 
-    /// Sends a request as it is and returns the whole answer, good or bad. Only what changes nothing is repeated.
+    /// Sends a request and returns the whole reply, also a refusal. Only a request that changes nothing is repeated.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
         self.prepare(request).await?;
         let reply = self.transact(request, request.risk() == Risk::Read).await?;
@@ -223,11 +222,11 @@ impl Client {
         Ok(reply)
     }
 
-    /// Stops the robot: HOLD on, whatever was granted. It is the one order that is repeated after silence, whatever the
-    /// options say of timeout and retries: HOLD twice is HOLD once, and a lost one lets the robot move on.
+    /// Stops the robot with HOLD on, without a check of the grant. This order is repeated after a timeout, regardless
+    /// of the options: repeating HOLD is harmless, and a lost one lets the robot move on.
     ///
     /// # Errors
-    /// [`Error::Unconfirmed`] if nobody has answered within 3 s.
+    /// [`Error::Unconfirmed`] without an answer within 3 s.
     pub async fn stop(&mut self) -> Result<(), Error> {
         let request = Hold(true).request();
         if self.is_dry() {
@@ -243,7 +242,7 @@ impl Client {
                     Err(error @ Error::Io { .. }) => lost = Some(error),
                     reply => return reply,
                 }
-                // A network that is gone may be back in a moment.
+                // A network error may be temporary.
                 sleep(STOP_EVERY).await;
             }
         };
@@ -259,15 +258,16 @@ impl Client {
         }
     }
 
-    /// Whether a request left that moves the robot.
+    /// Whether a motion request was sent.
     pub fn has_moved(&self) -> bool {
         self.has_moved
     }
 
-    /// A file as a whole, in the controller's encoding; at most a gigabyte.
+    /// Reads a whole file, in the encoding of the controller; at most 1 GiB.
     ///
     /// # Errors
-    /// [`Error::Refused`] if there is none, [`Error::Incomplete`] if it came in part: nothing is kept of it then.
+    /// [`Error::Refused`] if it does not exist, [`Error::Incomplete`] if it was not received completely: nothing is
+    /// kept then.
     pub async fn read_file(&mut self, file: &FileName) -> Result<Vec<u8>, Error> {
         let mut content = Vec::new();
         let take = |piece: &[u8]| {
@@ -283,8 +283,8 @@ impl Client {
         }
     }
 
-    /// Fetches a file or list. Every block goes to `take`, in order; at most `limit` bytes. `first_wait` is how long
-    /// the first answer may take where that is long.
+    /// Downloads a file or list. Passes the blocks to `take` in order; at most `limit` bytes. `first_wait` is the time
+    /// limit of the first answer if that one is slow.
     pub async fn download<E>(
         &mut self,
         request: &Request,
@@ -323,7 +323,7 @@ impl Client {
         }
         self.finished = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
-            // Only the batch backup changes something, and it is the one with a long first wait.
+            // The batch backup is the only download that changes something, and the only one with a long first wait.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
                 let waited = first_wait.unwrap_or(self.policy.timeout);
                 Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
@@ -335,8 +335,8 @@ impl Client {
         }
     }
 
-    /// Sends a file. `give` returns the next piece, empty at the end. The request leaves once; only blocks, which have a
-    /// number, are repeated after silence.
+    /// Sends a file. `give` returns the next piece, empty at the end. The request is sent once; numbered blocks are
+    /// repeated after a timeout.
     pub async fn upload<E>(
         &mut self,
         request: &Request,
@@ -351,7 +351,8 @@ impl Client {
         self.prepare(request).await?;
         self.abandon().await;
         let before = self.totals.sent;
-        // A controller that checks no ids could take a late block of the last upload into this one; a new port ends that.
+        // A controller that does not check ids could add a late block of the last upload to this one. A new port
+        // prevents that.
         self.transport.renew(channel(Division::File));
         self.finished = None;
         let mut session = Upload::new(&request.into(), self.policy, &self.ids);
@@ -378,12 +379,12 @@ impl Client {
         Ok(end)
     }
 
-    /// What it was like so far.
+    /// Traffic so far.
     pub fn totals(&self) -> Totals {
         self.totals
     }
 
-    /// Ends the connection, and says what it was like. A transfer that was broken off is ended at the controller.
+    /// Closes the connection and returns its traffic. Ends an aborted transfer at the controller.
     pub async fn close(mut self) -> Result<Totals, Error> {
         self.abandon().await;
         self.linger().await?;
@@ -393,7 +394,7 @@ impl Client {
         Ok(self.totals)
     }
 
-    /// Ends a transfer that was broken off at the controller, which else refuses others until its timer ends.
+    /// Ends an aborted transfer at the controller, which otherwise refuses others until its timer expires.
     async fn abandon(&mut self) {
         let Some(mut abandon) = self.open.take().filter(Abandon::is_open) else { return };
         let ended = self.drive(Division::File, &mut abandon, |_| Ok::<(), Infallible>(())).await;
@@ -403,8 +404,8 @@ impl Client {
         }
     }
 
-    /// On a line that loses frames, waits a moment for the last block to come again, which means that its ACK got lost:
-    /// without it the controller holds the transfer open.
+    /// On a lossy link, waits briefly for a repeat of the last block: a repeat means that the final ACK was lost.
+    /// Without the ACK the controller keeps the transfer open.
     async fn linger(&mut self) -> Result<(), Error> {
         let Some(mut last) = self.finished.take().filter(|last| last.counters() != Counters::default()) else {
             return Ok(());
@@ -422,7 +423,7 @@ impl Client {
         Ok(())
     }
 
-    /// The last check before anything leaves; a dry run notes it instead, and has no answer.
+    /// Authorizes a request, as the last step before it is sent. A dry run plans it and has no answer.
     async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
         if self.is_dry() {
@@ -442,7 +443,7 @@ impl Client {
         self.granted.check(request.risk(), &format!("request {:#04x}", request.command))
     }
 
-    /// One request, one answer.
+    /// Sends one request and waits for its reply.
     async fn transact(&mut self, request: &Request, is_repeatable: bool) -> Result<Reply, Error> {
         if request.division() == Division::File {
             self.abandon().await;
@@ -461,7 +462,7 @@ impl Client {
         }
     }
 
-    /// Moves datagrams and time until the session has ended. Who shares the link has it for so long.
+    /// Runs a session to its end. A shared link is reserved until then.
     async fn drive<S: Session, E>(
         &mut self,
         division: Division,
@@ -492,7 +493,7 @@ impl Client {
         let began = self.started.elapsed();
         let mut now = began;
         loop {
-            // The clock is read where time may have passed: after a wait, and after a visit to the disk.
+            // The clock is read only where time may have passed: after a wait, or after file access.
             match session.poll(now) {
                 Step::Send(bytes) => self.send(channel, &bytes).await?,
                 Step::Data(piece) => {
@@ -505,7 +506,7 @@ impl Client {
                 }
                 Step::Wait(until) => {
                     let received = self.receive(channel, self.started + until).await?;
-                    // A frame that arrived in the last moment counts.
+                    // A frame that arrived just before the deadline counts.
                     now = self.started.elapsed();
                     let Some(len) = received else { continue };
                     if division == Division::File
@@ -537,7 +538,7 @@ impl Client {
         Ok(())
     }
 
-    /// Waits for a datagram and puts it into the buffer; `None` if none came until then.
+    /// Receives a datagram into the buffer; `None` at the deadline.
     async fn receive(&mut self, channel: usize, until: Instant) -> Result<Option<usize>, Error> {
         let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
         let Some(len) = received.map_err(|error| self.broken(channel, error))? else { return Ok(None) };
@@ -546,7 +547,7 @@ impl Client {
         Ok(Some(len))
     }
 
-    /// Counts an exchange or transfer that has ended, and tells what else was on the line.
+    /// Counts a completed exchange or transfer, and reports other traffic.
     fn exchanged(&mut self, counters: Counters) {
         self.totals.exchanges += 1;
         self.totals.disturbances += counters.total();
@@ -555,13 +556,14 @@ impl Client {
         }
     }
 
-    /// Nobody answered a question that does no harm.
+    /// The error of an unanswered read.
     fn silence(&self, counters: Counters) -> Error {
         let waited = self.policy.patience();
         if counters.is_garbage() { Error::Garbage { waited, counters } } else { Error::NoAnswer { waited, counters } }
     }
 
-    /// A session that ends in the middle takes the answer with it. `before` is what had been sent before the request.
+    /// The error of a change whose session ended before the answer. `before` is the count of sent frames before the
+    /// request.
     fn cut_short<E>(&self, cause: Cause<E>, request: &Request, before: u64) -> Cause<E> {
         let (Some(why), Cause::Client(error)) = (self.transport.ended(), &cause) else { return cause };
         if request.risk() == Risk::Read {
@@ -574,7 +576,7 @@ impl Client {
         })
     }
 
-    /// The socket has bad news.
+    /// The error of a failed socket.
     fn broken(&self, channel: usize, error: io::Error) -> Error {
         match (self.transport.ended(), SessionBusy::of(&error)) {
             (Some(why), _) => Error::Session(SessionBusy::Ended(why.to_owned())),

@@ -1,7 +1,7 @@
-//! Which model a controller is: named, remembered, or asked when a request depends on it.
+//! Model of the controller: from the settings, remembered, or read when a request depends on it.
 //!
-//! Most requests are the same bytes to every model; they are sent without knowing. For the others the system information
-//! (0x89) is read first, once on a connection: the version of the software begins with letters that tell the controller.
+//! Most requests have the same bytes for every model, and are sent without it. For the others the system information
+//! (0x89) is read first, once per connection. The first letters of the software version identify the model.
 
 use armctl_controller::Risk;
 use armctl_controller::yerc::Model;
@@ -16,34 +16,34 @@ use armctl_controller::yerc::wire::Status;
 use super::{Asked, Client, Error, Refusal};
 use crate::Reason;
 
-/// Bytes of a version.
+/// Length of a version in bytes.
 const VERSION: usize = 24;
-/// The command that tells it.
+/// The command that reads it.
 const SYSTEM_INFO: u16 = 0x89;
-/// What requests are made for where every model takes the same.
+/// The model for requests that are the same for all models.
 const USUAL: Model = Model::Dx200;
 
-/// What a controller says it is.
+/// Identification of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// The model that its software is of, if it is that of a known one.
+    /// Model of this software; `None` if unknown.
     pub model: Option<Model>,
-    /// Version of the system software.
+    /// System software version.
     pub software: Text<VERSION>,
 }
 
-/// What is known of the model, and by whom.
+/// The known model, and its source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Known {
-    /// Nothing yet.
+    /// Unknown.
     Nothing,
-    /// It was named, and is not asked.
+    /// From the settings; never read.
     Named(Model),
-    /// It was this one another time.
+    /// From an earlier connection.
     Remembered(Model),
-    /// The controller told it on this connection.
+    /// Reported by the controller on this connection.
     Told(Model),
-    /// A dry run has nobody to ask.
+    /// Assumed in a dry run.
     Assumed,
 }
 
@@ -61,33 +61,33 @@ impl Known {
 }
 
 impl Client {
-    /// The model, as far as it is known without asking.
+    /// The model, as far as known without a request.
     pub fn known_model(&self) -> Option<Model> {
         self.known.model()
     }
 
-    /// The model for what is only shown: the known one, or the usual one.
+    /// The known model, or a default, for display only.
     pub fn model_to_show(&self) -> Model {
         self.known_model().unwrap_or(USUAL)
     }
 
-    /// Takes the model for the one that it was another time, until the controller says otherwise. Nothing where it was
-    /// named, or told.
+    /// Sets the model of an earlier connection, until the controller reports another one. No effect if the model is set
+    /// or reported.
     pub fn remember(&mut self, model: Model) {
         if self.known == Known::Nothing {
             self.known = Known::Remembered(model);
         }
     }
 
-    /// What the controller said on this connection that it is, whether it was asked for that or for its information.
+    /// Identification that the controller reported on this connection.
     pub fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
 
-    /// The model; asks the controller if nobody knows it. A dry run notes the question, and goes on as for a DX200.
+    /// The model; reads it if unknown. A dry run plans the read and continues with a DX200.
     ///
     /// # Errors
-    /// [`Error::ModelRefused`], [`Error::UnknownSoftware`]; what can go wrong on the way.
+    /// [`Error::ModelRefused`], [`Error::UnknownSoftware`], and errors of the link.
     pub async fn model(&mut self) -> Result<Model, Error> {
         match self.known {
             Known::Nothing => self.ask_model().await,
@@ -99,8 +99,8 @@ impl Client {
         }
     }
 
-    /// A model to make something for: the known one; any where all make the same, or none can; else the controller is
-    /// asked first. One that is remembered and cannot, where another can, is asked again.
+    /// The model for `make`: the known one, or any if all models have the same result or all fail. Otherwise it is read
+    /// first. A remembered model is read again if `make` fails for it, but not for all models.
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Error> {
         let can = || Model::ALL.iter().any(|model| make(*model).is_ok());
         match self.known {
@@ -120,7 +120,7 @@ impl Client {
                 }
                 let told = self.model().await?;
                 if self.is_dry() && first.is_err() {
-                    // Nobody can be asked: it is shown for one that can.
+                    // A dry run cannot read the model: the plan is shown for one that supports the request.
                     self.shown_for = Model::ALL.into_iter().find(|model| make(*model).is_ok());
                 }
                 Ok(self.shown_for.unwrap_or(told))
@@ -128,7 +128,7 @@ impl Client {
         }
     }
 
-    /// Reads what the controller is.
+    /// Reads the identification.
     async fn ask_model(&mut self) -> Result<Model, Error> {
         let question = ReadSystemInfo::new(USUAL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
         let request = question.request();
@@ -153,7 +153,7 @@ impl Client {
         }
     }
 
-    /// Notes what any answer says of the software.
+    /// Stores the software version of any reply that contains it.
     pub(super) fn hear(&mut self, request: &Request, reply: &Reply) {
         let tells_all = request.service == service::GET_ALL;
         let tells_version = tells_all || request.service == service::GET_SINGLE && request.attribute == 1;
@@ -168,13 +168,13 @@ impl Client {
         self.identity = Some(Identity { model, software });
     }
 
-    /// After a "no": whether the controller is still what it is remembered as, where the refusal may come of that.
+    /// Checks a remembered model after a refusal that another model could explain.
     ///
     /// # Errors
-    /// [`Error::AnotherModel`] if it is not.
+    /// [`Error::AnotherModel`] if the controller is another model.
     pub(super) async fn doubt(&mut self, request: &Request, status: Status) -> Result<(), Error> {
         let Known::Remembered(model) = self.known else { return Ok(()) };
-        // An FS100 with older software refuses these as well.
+        // An FS100 with older software refuses these requests too.
         if request.row().is_some_and(|row| row.availability == Availability::Fs114) {
             return Ok(());
         }
@@ -182,7 +182,7 @@ impl Client {
         if !(is_of_another_model(status) || changes && is_of_another_range(status)) {
             return Ok(());
         }
-        // Whatever comes of the question, the refusal is what is told.
+        // The original refusal is reported, whatever the result of this read.
         let found = self.ask_model().await.unwrap_or(model);
         if self.known == Known::Remembered(model) {
             self.known = Known::Told(model);
@@ -191,12 +191,12 @@ impl Client {
     }
 }
 
-/// Command or service that the controller does not know (DX 4 and 5).
+/// Unknown command or service (DX 4 and 5).
 const fn is_of_another_model(status: Status) -> bool {
     status.code == 0x08 || status.added == 0xA000
 }
 
-/// An instance or a size that it does not know (DX 4 and 5).
+/// Unknown instance or size (DX 4 and 5).
 const fn is_of_another_range(status: Status) -> bool {
     status.code == 0x28 || matches!(status.added, 0xA001 | 0xB002 | 0xB003 | 0xB004)
 }
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
     use crate::yerc::{Endpoint, Options};
 
-    /// To a simulator that nobody knows the model of.
+    /// Connects to a simulator of an unknown model.
     async fn unknown(start: &str) -> Client {
         let start = Start::parse(start, |_| Err("there are no files".to_owned())).unwrap();
         let endpoint = Endpoint::Simulator { start: Box::new(start), faults: None };
@@ -267,7 +267,7 @@ mod tests {
         client.remember(Model::Dx200);
         assert_eq!(client.model_for(strings).await.unwrap(), Model::Dx200);
         assert_eq!(client.totals.exchanges, 0);
-        // No FS100 has it; a refusal of that kind has the controller asked what it is.
+        // No FS100 supports this request; a refusal of this kind causes a read of the model.
         let error = client.try_ask(&ReadVariable::new(VariableKind::S32, 0)).await.unwrap_err();
         let (remembered, found) = (Model::Dx200, Model::Fs100);
         assert!(matches!(error, Error::AnotherModel { .. }), "{error}");

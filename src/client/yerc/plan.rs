@@ -1,4 +1,4 @@
-//! What a dry run notes instead of sending it.
+//! Dry run of a Yaskawa client.
 
 use armctl_controller::Risk;
 use armctl_controller::text::hex;
@@ -14,23 +14,23 @@ use crate::plan::{FieldInWords, in_common, with_fields};
 use crate::{NotAuthorized, Plan, Reason};
 
 impl Client {
-    /// Whether nothing is sent, only noted.
+    /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
         matches!(self.transport, Transport::Notes(_))
     }
 
-    /// What was noted in a dry run so far.
+    /// Takes the plan so far.
     pub fn take_plan(&mut self) -> Plan {
         self.transport.notes().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Says what the next request is for, where a dry run notes it.
+    /// Dry run: sets the purpose of the next request.
     pub fn is_for(&mut self, purpose: &'static str) -> &mut Self {
         self.purpose = self.is_dry().then_some(purpose);
         self
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Dry run: plans reads whose answers are then unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Error> {
         if !self.is_dry() || queries.is_empty() {
             return Ok(());
@@ -39,25 +39,25 @@ impl Client {
         Err(Error::NotKnown)
     }
 
-    /// Notes in a dry run a request that is sent whatever the answers before it are.
+    /// Dry run: plans a request that does not depend on earlier answers.
     pub fn plan_next(&mut self, request: &Request) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         self.note(request, Reason::default());
         Ok(())
     }
 
-    /// Notes in a dry run what is sent after an answer, and what it is about.
+    /// Dry run: plans a request that is sent after an answer, with its purpose.
     pub fn plan(&mut self, request: &Request, about: &str) {
         self.note(request, Reason::about(about));
     }
 
-    /// Notes in a dry run a request that an answer before it decides whether it is sent.
+    /// Dry run: plans a request that is sent only after a certain answer.
     pub fn plan_if(&mut self, request: &Request, reason: Reason<'_>) {
         self.note(request, reason);
     }
 
-    /// Notes in a dry run a request whose bytes, or whose sending, an answer before it decides. `other` is the same
-    /// request with other answers: where both differ nothing is known.
+    /// Dry run: plans a request that depends on an earlier answer. `other` is the request after another answer: bytes
+    /// that differ are unknown.
     pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
         let (frame, other_frame) = (request.frame(id), other.frame(id));
@@ -69,22 +69,22 @@ impl Client {
         }
     }
 
-    /// Says in a dry run what would be done with a file or a part.
+    /// Dry run: adds the planned action for a file or a part.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.transport.notes() {
             plan.items.push(item);
         }
     }
 
-    /// Says in a dry run what follows that cannot be shown.
+    /// Dry run: describes later steps whose frames are not known yet.
     pub fn then(&mut self, what: &str) {
         if let Some(plan) = self.transport.notes() {
             plan.then(what);
         }
     }
 
-    /// Notes in a dry run what [`Client::download`] would send: the request, and the ACK of the first block, which stands
-    /// for those of all. Nobody knows how many there are, and the first may be the last or have the number 0.
+    /// Dry run: plans [`Client::download`]: the request, and one ACK as an example. The number of blocks is unknown,
+    /// and the first block may be the last or have number 0.
     pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         let id = self.note(request, reason);
@@ -96,7 +96,7 @@ impl Client {
         Ok(())
     }
 
-    /// Notes in a dry run what [`Client::upload`] would send: all blocks, which are known beforehand.
+    /// Dry run: plans [`Client::upload`]: the request and all blocks.
     pub fn plan_upload<E: From<NotAuthorized>>(
         &mut self,
         request: &Request,
@@ -128,7 +128,7 @@ impl Client {
         id
     }
 
-    /// What a frame depends on, with the model where nobody knows that.
+    /// The dependency of a frame, with the model if that is unknown.
     fn depends_on(&self, reason: Reason<'_>) -> Option<String> {
         let model = self.shown_for.map(|model| format!("which model it is; shown as for a {model}"));
         match (reason.depends_on, model) {
@@ -137,14 +137,13 @@ impl Client {
         }
     }
 
-    /// Notes a frame that is either of two: where they differ nothing is known.
+    /// Plans a frame with two variants: bytes that differ are unknown.
     fn note_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
         if let Some(plan) = self.transport.notes() {
             plan.note(json!({ "hex": masked(frame, other) }), reason);
         }
     }
 
-    /// The data blocks of an upload.
     fn note_blocks(&mut self, id: u8, depends_on: Option<&str>, content: &[u8]) {
         let Some(plan) = self.transport.notes() else { return };
         let blocks: Vec<&[u8]> = content.chunks(MAX_DATA).collect();
@@ -158,7 +157,7 @@ impl Client {
     }
 }
 
-/// What an order that moves something says, in words: its instance, and its data. What is reserved is left out.
+/// Readable instance and data of a motion request, without reserved fields.
 fn fields(request: &Request, frame: &[u8]) -> Vec<FieldInWords> {
     const INSTANCE: usize = 26;
     if request.risk() < Risk::Motion {
@@ -169,7 +168,7 @@ fn fields(request: &Request, frame: &[u8]) -> Vec<FieldInWords> {
     told.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
 }
 
-/// Bytes as digits, with `??` where two frames differ.
+/// Hexadecimal digits, with `??` where two frames differ.
 fn masked(one: &[u8], other: &[u8]) -> String {
     let differs = |index: usize| other.get(index) != one.get(index);
     let digits = one.iter().enumerate().map(|(index, byte)| if differs(index) { "??".into() } else { hex(&[*byte]) });

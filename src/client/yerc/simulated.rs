@@ -1,4 +1,4 @@
-//! The simulated controller at the end of a transport: in this process, or as a server for many clients.
+//! Adapter from the simulated controller to a transport peer: for one client in this process, or many on a server.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use armctl_controller::yerc::wire::Division;
 use armctl_transport::server::Service;
 use armctl_transport::sim::Peer;
 
-/// Robot and file server have a port each, which transports count as channels.
+/// Channel of a server: the robot server and the file server have one port each.
 pub(super) const fn channel(division: Division) -> usize {
     match division {
         Division::Robot => 0,
@@ -19,7 +19,7 @@ const fn division(channel: usize) -> Division {
     if channel == 0 { Division::Robot } else { Division::File }
 }
 
-/// A simulated controller, whose clients have numbers.
+/// A simulated controller with numbered clients.
 #[derive(Debug)]
 pub struct Simulated(pub Simulator);
 
@@ -38,7 +38,6 @@ impl Service for Simulated {
     }
 }
 
-/// The only client of a simulator in this process.
 const ONLY_CLIENT: u64 = 0;
 
 impl Peer for Simulated {

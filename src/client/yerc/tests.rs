@@ -1,4 +1,4 @@
-//! The client as a library, on simulators in virtual time.
+//! Tests of the client as a library, on simulators in virtual time.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ async fn simulated(risk: Risk) -> Client {
     connected(risk, None).await
 }
 
-/// To a simulator, behind a line with these faults.
+/// Connects to a simulator with these line faults.
 async fn connected(risk: Risk, faults: Option<&str>) -> Client {
     let faults = faults.map(|text| text.parse().unwrap());
     let endpoint = Endpoint::Simulator { start: Box::new(Start::for_model(MODEL)), faults };
@@ -97,7 +97,6 @@ async fn a_caller_that_fails_ends_a_transfer() {
     assert!(matches!(broken, TransferError { bytes, cause: Cause::Caller("gone") } if bytes > 0));
 }
 
-/// Counts what it is told.
 #[derive(Debug, Default)]
 struct Counter(Arc<std::sync::Mutex<(Vec<Direction>, Vec<Event>)>>);
 
@@ -124,7 +123,7 @@ async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
     assert_eq!(told.1, [Event::Disturbed(repeated)]);
 }
 
-/// Errors are matched on, sent around, and told.
+/// Callers match errors, send them between threads and print them.
 #[test]
 fn errors_are_errors() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}

@@ -1,4 +1,4 @@
-//! Where a controller is, and how the bytes travel there.
+//! Endpoint of a controller, and the transport to it.
 
 use std::io;
 use std::net::SocketAddr;
@@ -16,40 +16,40 @@ use super::error::Error;
 use super::simulated::Simulated;
 use crate::{Ends, Plan};
 
-/// Where a controller is.
+/// Address of a controller.
 #[derive(Debug, Clone)]
 pub enum Endpoint {
-    /// On the network.
+    /// A controller on the network.
     Udp {
         /// Name or address.
         host: String,
-        /// UDP ports of its robot server and its file server.
+        /// UDP ports of the robot server and the file server.
         ports: [u16; 2],
     },
-    /// In this process: a simulator, which starts when it is connected to.
+    /// A simulator in this process; it starts when a client connects.
     Simulator {
-        /// How it starts.
+        /// Its start state.
         start: Box<Start>,
-        /// What is wrong with the line to it.
+        /// Line faults.
         faults: Option<FaultSpec>,
     },
 }
 
-/// UDP ports of a controller's robot server and file server.
+/// Default UDP ports of the robot server and the file server.
 pub const PORTS: [u16; 2] = [10040, 10041];
 
 impl Endpoint {
-    /// A controller on the network, at the usual ports.
+    /// A controller on the network, at the default ports.
     pub fn udp(host: impl Into<String>) -> Self {
         Self::Udp { host: host.into(), ports: PORTS }
     }
 
-    /// A fresh simulator of this model, behind a line without faults.
+    /// A new simulator of this model, without line faults.
     pub fn simulator(model: Model) -> Self {
         Self::Simulator { start: Box::new(Start::for_model(model)), faults: None }
     }
 
-    /// The model, where that is known beforehand.
+    /// The model, if known before a connection.
     pub fn model(&self) -> Option<Model> {
         match self {
             Self::Udp { .. } => None,
@@ -66,7 +66,7 @@ impl Endpoint {
         })
     }
 
-    /// Opens it for a session to hold, for many clients.
+    /// Opens the transport for a session, which shares it between clients.
     pub async fn hold(self) -> Result<Datagrams, Error> {
         Ok(match self {
             Self::Udp { host, ports } => Datagrams::udp(connect(host, ports).await?),
@@ -82,21 +82,20 @@ async fn connect(host: String, ports: [u16; 2]) -> Result<Udp, Error> {
     Udp::open(&host, &ports).await.map_err(|_| Error::HostNotFound { host })
 }
 
-/// How the bytes travel.
 #[derive(Debug)]
 pub(super) enum Transport {
-    /// To a controller on the network.
+    /// A controller on the network.
     Udp(Udp),
-    /// To the simulator in this process.
+    /// A simulator in this process.
     Sim(Box<InProcess<Simulated>>),
-    /// Through a session.
+    /// A session that holds the link.
     Session(Box<Attached>),
-    /// A dry run: what would be sent is noted.
+    /// A dry run: requests are only planned.
     Notes(Plan),
 }
 
 impl Transport {
-    /// Own and other address of a channel; those of the loopback where this process has none.
+    /// Local and remote address of a channel; loopback addresses if this process has no socket.
     pub(super) fn ends(&self, channel: usize) -> Ends {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
@@ -105,7 +104,7 @@ impl Transport {
         }
     }
 
-    /// The controller's port of a channel, where this process has the socket.
+    /// Port of the controller for a channel, if this process has the socket.
     pub(super) fn port(&self, channel: usize) -> Option<u16> {
         match self {
             Self::Udp(udp) => Some(udp.peer(channel).port()),
@@ -113,7 +112,6 @@ impl Transport {
         }
     }
 
-    /// The session, if it goes through one.
     pub(super) fn session(&mut self) -> Option<&mut Attached> {
         match self {
             Self::Session(session) => Some(session),
@@ -121,7 +119,6 @@ impl Transport {
         }
     }
 
-    /// Why the session has ended, if it goes through one that has.
     pub(super) fn ended(&self) -> Option<&str> {
         match self {
             Self::Session(session) => session.ended(),
@@ -129,7 +126,6 @@ impl Transport {
         }
     }
 
-    /// The notes of a dry run.
     pub(super) fn notes(&mut self) -> Option<&mut Plan> {
         match self {
             Self::Notes(plan) => Some(plan),
@@ -137,7 +133,7 @@ impl Transport {
         }
     }
 
-    /// Gives a channel a new socket, so that nothing late on the old one is heard or mistaken.
+    /// Opens a new socket for a channel, so that a late datagram on the old one is never received.
     pub(super) fn renew(&mut self, channel: usize) {
         match self {
             Self::Udp(udp) => udp.renew(channel),
@@ -146,7 +142,6 @@ impl Transport {
         }
     }
 
-    /// Sends one datagram.
     pub(super) async fn send(&mut self, channel: usize, bytes: &[u8]) -> io::Result<()> {
         match self {
             Self::Udp(udp) => udp.send(channel, bytes).await,
@@ -159,7 +154,7 @@ impl Transport {
         }
     }
 
-    /// Waits for one datagram, but not longer than `until`; what does not fit the buffer is cut.
+    /// Receives one datagram; `None` at the deadline. A datagram larger than the buffer is cut.
     pub(super) async fn receive(
         &mut self,
         channel: usize,
@@ -175,7 +170,7 @@ impl Transport {
     }
 }
 
-/// A channel as sessions count it.
+/// The channel number in the session protocol.
 pub(super) fn number(channel: usize) -> u8 {
     u8::try_from(channel).unwrap_or(u8::MAX)
 }

@@ -1,4 +1,4 @@
-//! What can go wrong between a client and a controller, and a controller's "no".
+//! Errors of a client, and the refusal of a controller.
 
 use armctl_controller::yrcx::alarm::Alarm;
 use armctl_controller::yrcx::image::Words;
@@ -13,139 +13,140 @@ use thiserror::Error;
 
 use crate::NotAuthorized;
 
-/// Why there is no answer, or none to go on with.
+/// Why a request has no usable answer.
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The controller said no, at once or in the middle.
+    /// The controller refused, at the start or during execution.
     #[error(transparent)]
     Refused(#[from] Box<Refusal>),
-    /// A command did not leave. Nothing was done.
+    /// A command was not sent. Nothing was done.
     #[error("{} was not sent: {why}", .command.row().id)]
     NotSent {
-        /// Which command.
+        /// The command.
         command: Command,
-        /// What was in the way.
+        /// The reason.
         why: NotSentReason,
     },
-    /// Nobody answered a command that may be given again without harm.
+    /// No answer to a command that can be repeated without harm.
     #[error("no answer to {}: {why}", .command.row().id)]
     NoAnswer {
-        /// Which command.
+        /// The command.
         command: Command,
-        /// What was seen instead.
+        /// What was observed instead.
         why: Silence,
     },
-    /// Nobody confirmed a command that changes something: it may or may not have been carried out, or still be under way.
-    /// It was given once.
+    /// No confirmation of a command that changes something: it may or may not have been carried out, or may still run.
+    /// It was sent once.
     #[error("{} was sent, and may or may not have been done: {why}", .command.row().id)]
     OutcomeUnknown {
-        /// Which command.
+        /// The command.
         command: Command,
-        /// What was seen instead.
+        /// What was observed instead.
         why: Silence,
-        /// How the stop input SI(06) is shown now; `None` while the link is down.
+        /// Current state of the stop input SI(06); `None` while the link is down.
         stop: Option<bool>,
-        /// Whether it was left off, because the end of a motion was not seen.
+        /// Whether the stop input was left off, because the end of a motion was not observed.
         is_stop_held: bool,
-        /// Why the session has ended that held the link, if it has.
+        /// Why the session that held the link has ended, if it has.
         ended: Option<String>,
     },
-    /// Signals were not switched to the end.
+    /// A signal procedure was not completed.
     #[error("{name}: {outcome}")]
     Unfinished {
-        /// The name of the procedure.
+        /// Name of the procedure.
         name: &'static str,
-        /// What happened.
+        /// Its outcome.
         outcome: sequence::Outcome,
     },
-    /// A jog was ended before its time.
+    /// A jog ended before its time.
     #[error("{by}; the jog was ended for that")]
     Cut {
-        /// What ended it.
+        /// The cause.
         by: Box<Error>,
         /// The jog.
         order: Box<Order>,
-        /// Where the robot stands, or what went wrong in stopping it.
+        /// Final position, or the error of the stop.
         ended: Result<Values, Box<Self>>,
     },
-    /// A jog was not seen to end, and nothing reaches the controller any more: the axis may still move.
+    /// The end of a jog was not observed, and the link is lost: the axis may still move.
     #[error("the axis may still move: nothing reaches the controller any more")]
     StillMoving {
-        /// What ended the jog before its time.
+        /// The cause, if the jog ended before its time.
         cut: Option<Box<Error>>,
     },
-    /// A remote command of this client, which goes on by itself, has not ended yet; the controller takes one at a time.
+    /// An earlier command of this client still runs; the controller takes one at a time.
     #[error("{} is still under way", .command.row().id)]
     UnderWay {
-        /// Which command.
+        /// The command.
         command: Command,
     },
-    /// A remote command that another client of the same session left to itself has not ended yet.
+    /// An earlier command of another client of the session still runs.
     #[error("another client's command is still under way")]
     OthersUnderWay {
-        /// WI0 to WI15 of it.
+        /// Its words WI0 to WI15.
         words: Box<Words>,
     },
-    /// A procedure is under way already.
+    /// Another signal procedure still runs.
     #[error("other signals are being switched")]
     SignalsUnderWay,
-    /// Words did not leave in time.
+    /// Words were not sent in time.
     #[error("the words did not leave")]
     WordsNotSent,
-    /// The fieldbus carries signals alone, without the words of remote commands.
+    /// The fieldbus carries only signals, not the words of remote commands.
     #[error("{} is a remote command, and the fieldbus carries signals alone", .command.row().id)]
     SignalsAlone {
-        /// Which command.
+        /// The command.
         command: Command,
     },
-    /// The client only sees what the controller shows ([`Options::commands`](super::Options::commands)).
+    /// A monitoring client cannot command the controller ([`Options::commands`](super::Options::commands)).
     #[error("{what} needs a connection that commands the controller")]
     NotCommanding {
-        /// What would have been done.
+        /// The refused action.
         what: String,
     },
-    /// The connection ends with the client, and so would what shall go on ([`Options::is_held`](super::Options::is_held)).
+    /// The connection ends with the client, and the robot stops with it
+    /// ([`Options::is_held`](super::Options::is_held)).
     #[error("the connection would end now, and the controller stop the robot")]
     NotHeld,
-    /// The link is there, but the controller shows nothing.
+    /// The link is up, but the controller sends no data.
     #[error("the controller shows nothing")]
     Silent,
-    /// The controller shows what is no image.
+    /// The data of the controller is too short for an image.
     #[error("the controller shows {bytes} bytes, fewer than an image")]
     NoImage {
-        /// So many bytes.
+        /// Bytes received.
         bytes: usize,
     },
-    /// The link cannot do what it should.
+    /// An error of the link.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// More than the client was granted.
+    /// The request is above the authorized risk.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
-    /// The session that holds the link has ended, or somebody else has the link.
+    /// The session on the link has ended, or another client uses the link.
     #[error("{0}")]
     Session(SessionBusy),
-    /// A dry run sends nothing, and so has no answer.
+    /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
     NotKnown,
-    /// A fault of this client: what ended has no outcome.
+    /// An internal error: an exchange ended without an outcome.
     #[error("{what} ended without a report")]
     NoReport {
-        /// The command or the procedure.
+        /// The command or procedure.
         what: &'static str,
     },
 }
 
-/// A controller's "no".
+/// A refusal of a controller.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("the controller refused {}: alarm {alarm}, {}", .order.row().id, .alarm.text())]
 pub struct Refusal {
-    /// To what.
+    /// The refused order.
     pub order: Order,
-    /// Why.
+    /// The alarm.
     pub alarm: Alarm,
-    /// Where the robot is, after a jog that was stopped (4.2.6).
+    /// Final position after a jog that was stopped (4.2.6).
     pub positions: Values,
 }
 

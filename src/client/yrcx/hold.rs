@@ -1,4 +1,4 @@
-//! What a session must know to hold the link to a controller, for many clients.
+//! Rules of a session that shares the link to a controller between clients.
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
@@ -9,11 +9,11 @@ use tokio::time::Instant;
 
 use super::Error;
 
-/// Has a session hold this link; `commands` says whether it commands the controller. The controller is to show something
-/// until then.
+/// Starts a session on this link; `commands` if it commands the controller. Waits for the first image of the
+/// controller until the deadline.
 ///
 /// # Errors
-/// [`Error::Silent`] if it does not.
+/// [`Error::Silent`] without an image.
 pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Images, Error> {
     let size = link.output_size();
     let has_commands = Image::has_commands(size);
@@ -32,12 +32,13 @@ pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Ima
     if images.begin(until).await {
         return Ok(images);
     }
-    // That the controller shows nothing is worth more than how the end of that went.
+    // The missing image is the useful error, not a failed close.
     let _ = Held::Images(images).close().await;
     Err(Error::Silent)
 }
 
-/// What is shown after a loss: nothing is asked for any more, but what was off to keep the robot still stays off.
+/// The image after a loss of the link: the resting one, except that an emergency-stop or stop input that was off
+/// stays off.
 pub(super) fn after_loss(before: &Image) -> Image {
     let mut after = resting();
     for signal in [input::EMERGENCY_STOP, input::STOP] {
@@ -46,7 +47,6 @@ pub(super) fn after_loss(before: &Image) -> Image {
     after
 }
 
-/// The image of what is shown.
 fn image(bytes: &[u8]) -> Image {
     Image::from_link(bytes).unwrap_or_default()
 }

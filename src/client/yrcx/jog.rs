@@ -1,4 +1,4 @@
-//! Jogs: motions that go on until the stop input goes off (4.2.6). Whatever happens, it goes off.
+//! Jog: a motion that runs until the stop input goes off (4.2.6). The client switches it off in every case.
 
 use std::time::Duration;
 
@@ -17,26 +17,24 @@ use super::turns::LONG;
 use super::{Client, Done, Transport};
 use crate::Reason;
 
-/// Faults of the link that are survived while a jog is being stopped. A link that has none but faults is given up.
+/// Limit of link faults while a jog is stopped.
 const MOST_FAULTS: u32 = 100;
 
-/// How a jog ended.
 pub(super) struct Seen {
     pub(super) outcome: Outcome,
-    /// Whether it had not ended before it was stopped.
+    /// Whether the jog was still running when it was stopped.
     is_stopped: bool,
-    /// What ended it before its time.
+    /// The cause, if it ended before its time.
     cut: Option<Error>,
 }
 
 impl Client {
-    /// Jogs for `time` from the moment that the command leaves, or until the call is dropped, after which
-    /// [`stop`](Self::stop) must follow; stops it, and says where the robot is. That the stop input ended it is no refusal
-    /// then.
+    /// Jogs for `time` after the command was sent, then stops and returns the position. If the call is dropped,
+    /// [`stop`](Self::stop) must follow. The stop alarm that ends the jog does not count as a refusal.
     ///
     /// # Errors
-    /// The jog was refused, ended by itself, or was not seen to end: the stop input stays off then. [`Error::Cut`] if
-    /// something else ended it before its time.
+    /// The jog was refused or ended by itself, or its end was not observed: then the stop input stays off.
+    /// [`Error::Cut`] if another cause ended it before its time.
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
@@ -58,7 +56,7 @@ impl Client {
         Err(Error::Cut { by, order: Box::new(order.clone()), ended })
     }
 
-    /// Jogs, and stops. An exchange that does not end as it should leaves the stop input off.
+    /// Jogs and stops. The stop input stays off if the exchange does not end normally.
     pub(super) async fn see_through(&mut self, order: &Order, time: Option<Duration>) -> Result<Seen, Error> {
         self.start(order).await?;
         self.bequeath_stop(true);
@@ -73,7 +71,7 @@ impl Client {
         }
         let Some(outcome) = self.ended.take() else {
             return Err(match cut {
-                // The session did not pass the jog on, so that there is nothing to stop.
+                // The session did not send the jog, so there is nothing to stop.
                 Some(denied @ Error::Session(SessionBusy::ReadOnly)) if self.exchange.is_none() => {
                     self.bequeath_stop(false);
                     denied
@@ -87,7 +85,7 @@ impl Client {
         Ok(Seen { outcome, is_stopped, cut })
     }
 
-    /// Has a session that holds the link switch the stop input off if this process is killed; or no more.
+    /// Sets or clears the last will of the session: it switches the stop input off if this process is killed.
     fn bequeath_stop(&mut self, on: bool) {
         let Transport::Image(link) = &mut self.transport else { return };
         let mut mask = Image::default();
@@ -96,7 +94,7 @@ impl Client {
         link.set_last_will(on.then_some((&mask[..], &off[..])));
     }
 
-    /// Turns until the jog has gone on for its time, or has ended.
+    /// Runs until the jog reaches its time or ends.
     async fn go_on(&mut self, time: Option<Duration>) -> Result<(), Error> {
         while let Some(exchange) = &self.exchange {
             let until = match time.zip(exchange.sent()) {

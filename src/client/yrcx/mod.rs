@@ -1,12 +1,11 @@
-//! The client of an OMRON / Yamaha YRCX: the one driver that moves images between sessions and a link over a fieldbus.
+//! OMRON / Yamaha YRCX client: drives the sessions over process images on a fieldbus.
 //!
-//! At most one remote command is under way, and beside it one procedure of signals: both are polled in every turn, as the
-//! controller takes them at the same time (chapters 1 and 2 of the manual). Calls may be dropped at any await; what was
-//! under way stays in the client, so that [`Client::stop`] can end it properly. What a dropped call leaves behind goes on
-//! only while another call is awaited.
+//! At most one remote command and one signal procedure run at a time; the controller accepts both together (chapters
+//! 1 and 2 of the manual). Both are polled in every turn. Calls may be dropped at any await: the client keeps the
+//! running command, and [`Client::stop`] can end it properly. A command of a dropped call advances only while another
+//! call is awaited.
 //!
-//! Any [`ImageLink`] will do: over EtherNet/IP, DeviceNet or PROFIBUS, through a session that holds one, or to a simulator
-//! in this process.
+//! Any [`ImageLink`] works: EtherNet/IP, DeviceNet, PROFIBUS, a session, or a simulator in this process.
 
 mod error;
 mod hold;
@@ -45,82 +44,80 @@ pub use self::simulated::Simulated;
 pub use self::stop::Stopped;
 use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
-/// A connection to one controller.
-///
-/// It is for one thread: links over a fieldbus are.
+/// A connection to one controller. It belongs to one thread, as fieldbus links do.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Client {
     transport: Transport,
-    /// Bytes of what is shown; 0 where nothing is.
+    /// Size of the output image in bytes; 0 without one.
     size: usize,
-    /// Whether this connection may show something; else it only sees.
+    /// Whether this connection owns the output image; otherwise it only monitors.
     is_owner: bool,
-    /// What the controller is shown.
+    /// The output image to send.
     output: Output,
-    /// What was handed to the transport last.
+    /// The output image last passed to the transport.
     shown: Option<Image>,
-    /// Whether that has not left yet. Nothing else is shown meanwhile: a command must not overtake its data.
+    /// Whether the transport has not sent it yet. No newer image is passed until then: a command must not overtake its
+    /// data.
     in_flight: bool,
-    /// What the controller shows; `None` while the link is down.
+    /// The input image; `None` while the link is down.
     input: Option<Image>,
     is_up: bool,
-    /// The remote command that is under way, and how the last one ended.
+    /// The running remote command, and the outcome of the last one.
     exchange: Option<Exchange>,
     ended: Option<Outcome>,
-    /// The procedure that is under way, and how the last one ended.
+    /// The running procedure, and the outcome of the last one.
     sequence: Option<Sequence>,
     finished: Option<sequence::Outcome>,
     policy: Policy,
-    /// For an output of a procedure.
+    /// Time limit of a procedure for one output signal.
     patience: Duration,
     timeout: Duration,
     retries: u32,
     granted: Grant,
-    /// Whether something was started that goes on by itself: a program, or what signals set in motion.
+    /// Whether a program, or a motion by signals, was started that continues by itself.
     has_started: bool,
-    /// General-purpose words that were shown before a remote command, to be put back after it.
+    /// General-purpose words before a remote command, which are restored after it.
     words: Words,
-    /// Whether the link outlives the client, so that what it began may go on.
+    /// Whether the link outlives the client, so that a motion or program can continue.
     is_held: bool,
-    /// Whether a session holds it, and others may use it at the same time.
+    /// Whether a session holds the link, so that others may use it too.
     is_shared: bool,
-    /// Whether a remote command has ended, so that somebody else may give the next one.
+    /// Whether a remote command has ended, so that another client may send the next one.
     is_over: bool,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
 }
 
-/// How the images travel.
 #[derive(Debug)]
 enum Transport {
     Image(Box<ImageLink>),
-    /// A dry run: what would be sent is noted.
+    /// A dry run: requests are only planned.
     Notes(Plan),
-    /// Not at all.
+    /// No transport.
     Nothing,
 }
 
-/// How a client asks.
+/// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Whether it commands the controller; else it only sees the signals that this shows.
+    /// Whether the client commands the controller; otherwise it only monitors the signals.
     pub commands: bool,
-    /// Whether the connection outlives the client, so that a motion or a program may go on behind it. A controller stops
-    /// when its connection ends.
+    /// Whether the connection outlives the client, so that a motion or program can continue. A controller stops when
+    /// its connection ends.
     pub is_held: bool,
-    /// The most that may leave.
+    /// The highest risk that may be sent.
     pub granted: Grant,
-    /// The longest wait of one try: for the controller to be ready, to take a command, and to show something. What it
-    /// carries out has patience of its own: 10 s at least, 30 s for what switches motor power, and no end for motions.
+    /// Time limit of one attempt: until the controller is ready, takes a command, or sends an image. Execution has its
+    /// own limits: at least 10 s, 30 s for motor power, none for motions.
     pub timeout: Duration,
-    /// Further tries of a command that changes nothing. No try begins after `timeout` times (`retries` + 1).
+    /// Retries of a command that changes nothing. No attempt begins after `timeout` times (`retries` + 1).
     pub retries: u32,
 }
 
 impl Default for Options {
-    /// To read, over a connection that commands the controller, with the usual patience: 3 s, and 3 repeats.
+    /// Read only, on a connection that commands the controller, with the default limits: 3 s, 3 retries.
     fn default() -> Self {
         Self {
             commands: true,
@@ -133,99 +130,99 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The same, and what is not riskier than this may leave.
+    /// Authorizes this risk and everything below it.
     #[must_use]
     pub fn granting(self, risk: Risk) -> Self {
         Self { granted: Grant::of(risk), ..self }
     }
 }
 
-/// What a client notices.
+/// An event of a client.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Event {
-    /// This image has left for the controller.
+    /// This image was sent to the controller.
     Shown(Image),
-    /// The controller shows this image.
+    /// This image was received from the controller.
     Seen(Image),
-    /// CPU OK (SO(01)) is off in the first image of a connection that only sees: the controller does not work, or this is
-    /// nothing that a controller shows.
+    /// CPU OK (SO(01)) is off in the first image of a monitoring connection: the controller is not working, or the data
+    /// does not come from a controller.
     CpuNotOk,
-    /// The link was lost. Whatever was under way is over, and the controller stops.
+    /// The link was lost. Everything that ran has ended, and the controller stops.
     Lost {
-        /// Why.
+        /// The cause.
         why: LinkError,
-        /// Whether it is being opened again.
+        /// Whether the link is being reopened.
         is_reopening: bool,
     },
     /// The link is open again.
     Reopened {
-        /// How the stop input SI(06) is shown; `None` where this connection only sees.
+        /// State of the stop input SI(06); `None` on a monitoring connection.
         stop: Option<bool>,
     },
-    /// There was a status before this command, which is reset now.
+    /// The controller had this status before the command; it is reset first.
     Leftover(Command, Status),
-    /// This command has ended, and the controller is not ready again.
+    /// The command has ended, and the controller is not ready again.
     NotReleased(Command),
-    /// A command that was left alone was refused or broken off.
+    /// A command that ran on without a caller was refused or aborted.
     BrokenOff(Command, Alarm),
-    /// A command that was left alone has ended without an answer.
+    /// A command that ran on without a caller ended without an answer.
     Unanswered(Error),
-    /// Another client of the session had left a command alone, which has ended.
+    /// A command that another client of the session had left running has ended.
     LeftByOthers {
         /// WI0 to WI15.
         words: Words,
         /// WO0 to WO15.
         answer: Words,
     },
-    /// The stop input SI(06) goes off now.
+    /// The stop input SI(06) is about to go off.
     Stopping,
 }
 
-/// What a client saw.
+/// Activity of a client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Remote commands given.
+    /// Remote commands sent.
     pub commands: u32,
-    /// Time from sending them to their ends.
+    /// Total time from sending to the end of the commands.
     pub waited: Duration,
-    /// How often the link was lost.
+    /// Losses of the link.
     pub losses: u32,
 }
 
-/// Least patience with what the manual gives no time for.
+/// Minimum time limit where the manual gives none.
 const QUICK: Duration = Duration::from_secs(10);
 const POWER: Duration = Duration::from_secs(30);
 
 impl Client {
-    /// Takes over a link, and waits until the controller has shown something: [`over`](Self::over) and
-    /// [`ready`](Self::ready). The controller is shown the resting image: emergency stop and stop inputs on, all else off.
+    /// Takes over a link and waits for the first image of the controller: [`over`](Self::over) and
+    /// [`ready`](Self::ready). Sends the resting image: emergency stop and stop inputs on, everything else off.
     ///
     /// # Errors
-    /// [`Error::Silent`] if it shows nothing within the time-out. The link is closed then.
+    /// [`Error::Silent`] without an image within the time limit. The link is then closed.
     pub async fn connect(link: ImageLink, options: Options) -> Result<Self, Error> {
         let mut client = Self::over(link, options);
         match client.ready().await {
             Ok(()) => Ok(client),
             Err(error) => {
-                // That the controller shows nothing is worth more than how the end of that went.
+                // The missing image is the useful error, not a failed close.
                 let _ = client.close().await;
                 Err(error)
             }
         }
     }
 
-    /// Connects to a fresh simulator in this process.
+    /// Connects to a new simulator in this process.
     ///
     /// # Errors
-    /// None is known.
+    /// None are known.
     pub async fn simulated(start: Start, options: Options) -> Result<Self, Error> {
         let peer = Box::new(Simulated::new(start));
         Self::connect(ImageLink::in_process(peer), Options { is_held: true, ..options }).await
     }
 
-    /// Takes over a link. Nothing is shown yet: see [`ready`](Self::ready). In a session it is shared with others, who
-    /// take turns in giving remote commands.
+    /// Takes over a link. Sends nothing yet: see [`ready`](Self::ready). Clients of a session share the link and take
+    /// turns with remote commands.
     pub fn over(link: ImageLink, options: Options) -> Self {
         let size = link.output_size();
         let mut client = Self::new(Transport::Image(Box::new(link)), size, options);
@@ -233,14 +230,14 @@ impl Client {
         client
     }
 
-    /// Sends nothing, but notes what would be sent ([`Client::take_plan`]). Orders count as done; what asks ends in
-    /// [`Error::NotKnown`].
+    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
+    /// returns [`Error::NotKnown`].
     pub fn dry_run(options: Options) -> Self {
         Self::new(Transport::Notes(Plan::default()), Image::BYTES, options)
     }
 
-    /// Without a link: for whoever asks nothing of the controller, but of the device on its fieldbus. Whatever is asked
-    /// of the controller ends in [`Error::Silent`].
+    /// A client without a link, for requests to the fieldbus device only. A request to the controller returns
+    /// [`Error::Silent`].
     pub fn apart(options: Options) -> Self {
         Self::new(Transport::Nothing, Image::BYTES, Options { commands: false, ..options })
     }
@@ -285,17 +282,17 @@ impl Client {
         }
     }
 
-    /// Has this one told what happens from now on.
+    /// Sets the observer.
     pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
         self.watcher = Box::new(watcher);
     }
 
-    /// What may leave from now on.
+    /// Sets the grant for all further requests.
     pub fn grant(&mut self, granted: Grant) {
         self.granted = granted;
     }
 
-    /// The last check before something leaves: whether `what` may.
+    /// Checks one request, as the last step before it is sent.
     ///
     /// # Errors
     /// [`Error::NotAuthorized`].
@@ -303,7 +300,7 @@ impl Client {
         Ok(self.granted.check(risk, what)?)
     }
 
-    /// Whether a session holds the link, and others may use it at the same time.
+    /// Whether a session holds the link, so that others may use it too.
     pub fn is_shared(&self) -> bool {
         self.is_shared
     }
@@ -313,22 +310,22 @@ impl Client {
         self.is_held
     }
 
-    /// Whether commands can be given, or signals only be seen.
+    /// Whether the client can send commands, or only monitors signals.
     pub fn commands(&self) -> bool {
         self.is_owner
     }
 
-    /// Whether the fieldbus carries the words of remote commands, or signals alone.
+    /// Whether the fieldbus carries the words of remote commands, or only signals.
     pub fn has_commands(&self) -> bool {
         self.size == 0 || Image::has_commands(self.size)
     }
 
-    /// What was done so far.
+    /// Activity so far.
     pub fn totals(&self) -> Totals {
         self.totals
     }
 
-    /// What the link counted; `None` for what has no network of its own.
+    /// Traffic of the link; `None` without a network.
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.transport {
             Transport::Image(link) => link.traffic(),
@@ -336,11 +333,11 @@ impl Client {
         }
     }
 
-    /// Ends the connection: [`leave`](Self::leave), and [`end`](Self::end). A controller takes the end of a connection that
-    /// no session holds for a fault of the link: it stops, and raises an alarm.
+    /// Ends the connection: [`leave`](Self::leave), then [`end`](Self::end). Without a session, a controller treats the
+    /// end of the connection as a link fault: it stops and raises an alarm.
     ///
     /// # Errors
-    /// What went wrong in leaving, or else in ending.
+    /// The first error of the two.
     pub async fn close(mut self) -> Result<Totals, Error> {
         let left = self.leave().await;
         let totals = self.totals;
@@ -350,10 +347,10 @@ impl Client {
         Ok(totals)
     }
 
-    /// Ends the connection as it stands; one that a session holds goes on.
+    /// Ends the connection at once; a session keeps its own.
     ///
     /// # Errors
-    /// The other end did not hear of it.
+    /// The peer did not receive the close.
     pub async fn end(self) -> Result<(), LinkError> {
         match self.transport {
             Transport::Image(link) => link.close().await,

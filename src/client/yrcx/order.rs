@@ -1,4 +1,4 @@
-//! Remote commands: one order, one answer (chapter 2).
+//! Remote commands with one answer (chapter 2).
 
 use std::time::Duration;
 
@@ -17,29 +17,29 @@ use super::error::{Error, Refusal};
 use super::{Client, Event};
 use crate::Reason;
 
-/// What was carried out.
+/// Result of a command that was carried out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
-    /// What the answer holds, by the fields of its row (chapter 4 of the manual); nothing in a dry run. [`Values`] says in
-    /// which units.
+    /// Data of the answer, by the fields of its table row (chapter 4 of the manual); empty in a dry run. See [`Values`]
+    /// for the units.
     pub values: Values,
-    /// From the first time that the command was sent to its end.
+    /// Time from the first attempt to the end.
     pub elapsed: Duration,
 }
 
-/// A whole answer, good or bad.
+/// A whole answer, also a refusal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
-    /// What the controller says.
+    /// The decoded answer.
     pub answer: Answer,
-    /// The same as WO0 to WO15.
+    /// Its words WO0 to WO15.
     pub words: Words,
-    /// From the first time that the command was sent to its end.
+    /// Time from the first attempt to the end.
     pub elapsed: Duration,
 }
 
 impl Reply {
-    /// What was carried out, or why it was not.
+    /// The result, or the refusal.
     pub(super) fn of(self, order: &Order) -> Result<Done, Refusal> {
         match self.answer {
             Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
@@ -47,29 +47,28 @@ impl Reply {
         }
     }
 
-    /// The same, with a refusal as an error.
     pub(super) fn done(self, order: &Order) -> Result<Done, Error> {
         self.of(order).map_err(|refusal| Box::new(refusal).into())
     }
 }
 
 impl Client {
-    /// Gives a remote command and waits for its end; a refusal is an error. Only what reads is given again, within the
-    /// time-out. A dry run notes it.
+    /// Sends a remote command and waits for its end; a refusal is an error. Only a read is repeated, within the time
+    /// limit. A dry run plans it.
     ///
     /// # Errors
-    /// [`Error::Refused`] with the alarm; [`Error::NotSent`] and [`Error::NoAnswer`], after which it may be given again
-    /// without harm; [`Error::OutcomeUnknown`], after which it must not.
+    /// [`Error::Refused`] with the alarm. [`Error::NotSent`] and [`Error::NoAnswer`]: it can be repeated without harm.
+    /// [`Error::OutcomeUnknown`]: it must not be repeated.
     pub async fn ask(&mut self, order: &Order) -> Result<Done, Error> {
         self.raw(order).await?.done(order)
     }
 
-    /// The same; a refusal is an answer.
+    /// [`ask`](Self::ask) with a refusal as an answer.
     pub async fn try_ask(&mut self, order: &Order) -> Result<Result<Done, Refusal>, Error> {
         Ok(self.raw(order).await?.of(order))
     }
 
-    /// The same with the whole answer, good or bad.
+    /// [`ask`](Self::ask) with the whole answer.
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
@@ -94,11 +93,11 @@ impl Client {
         }
     }
 
-    /// Gives a remote command and waits until it has ended, or the controller is seen to carry it out (`None`): it then
-    /// goes on, and the client gives no other until it ends.
+    /// Sends a remote command and waits until it has ended, or until the controller executes it (`None`). A command in
+    /// execution continues, and the client sends no other until it ends.
     ///
     /// # Errors
-    /// [`Error::NotHeld`] where the end of the connection would stop it; else those of [`ask`](Self::ask).
+    /// [`Error::NotHeld`] if the end of the connection would stop it; also those of [`ask`](Self::ask).
     pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Error> {
         if !self.is_held {
             return Err(Error::NotHeld);
@@ -119,7 +118,6 @@ impl Client {
         }
     }
 
-    /// One command, one answer.
     async fn transact(&mut self, order: &Order) -> Result<Outcome, Error> {
         if order.row().pace == Pace::Jog {
             return Ok(self.see_through(order, None).await?.outcome);
@@ -130,7 +128,7 @@ impl Client {
         Ok(outcome)
     }
 
-    /// Takes note of how an order ended.
+    /// Counts a finished command, and reports a leftover status.
     pub(super) fn count(&mut self, order: &Order, outcome: &Outcome) {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
@@ -140,11 +138,10 @@ impl Client {
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
             self.watcher.event(Event::NotReleased(order.command()));
         }
-        // Motions have ended with their answer; a program has begun.
+        // A motion has ended with its answer; a program has only begun.
         self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
     }
 
-    /// What came of an exchange that has ended.
     pub(super) fn reply(&self, outcome: Outcome) -> Result<Reply, Error> {
         match outcome.ended {
             Ended::Answered(answer) => {
@@ -154,7 +151,6 @@ impl Client {
         }
     }
 
-    /// Why an exchange that has ended has no answer.
     pub(super) fn unanswered(&self, outcome: &Outcome) -> Error {
         let command = outcome.row.command;
         match outcome.ended {
@@ -172,7 +168,7 @@ impl Client {
         }
     }
 
-    /// The check before something leaves, and whether this connection may command at all.
+    /// Authorizes a command, and checks that this connection may command the controller.
     pub(super) fn authorize_command(&self, name: &str, risk: Risk) -> Result<(), Error> {
         self.authorize(name, risk)?;
         if !self.is_owner && !self.is_dry() {

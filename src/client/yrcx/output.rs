@@ -1,4 +1,4 @@
-//! Continuous output: a remote command whose answer goes on (4.7.4).
+//! Continuous output: a remote command with repeated answers (4.7.4).
 
 use std::time::Duration;
 
@@ -10,12 +10,12 @@ use tokio::time::Instant;
 use super::error::Error;
 use super::{Client, Done};
 
-/// The run status may come before what is output with it: so long, zeros are taken for that.
+/// The running status may precede its data: within this time, zeros count as missing data.
 const FILLS_WITHIN: Duration = Duration::from_millis(100);
 
 impl Client {
-    /// What continuous output shows next (4.7.4). The first call begins it; it goes on until another command, or the end of
-    /// the link, ends it with the status reset.
+    /// Returns the next values of continuous output (4.7.4). The first call starts it. It runs until another command,
+    /// or the end of the link, resets the status.
     pub async fn next_output(&mut self, order: &Order) -> Result<Done, Error> {
         let is_under_way = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
         if self.is_dry() || !is_under_way {

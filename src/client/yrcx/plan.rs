@@ -1,4 +1,4 @@
-//! What a dry run notes instead of sending it.
+//! Dry run of a YRCX client.
 
 use armctl_controller::Risk;
 use armctl_controller::yrcx::describe;
@@ -12,17 +12,17 @@ use crate::plan::{FieldInWords, in_common, with_fields};
 use crate::{Plan, Reason};
 
 impl Client {
-    /// Whether nothing is sent, only noted.
+    /// Whether this is a dry run.
     pub fn is_dry(&self) -> bool {
         matches!(self.transport, Transport::Notes(_))
     }
 
-    /// What was noted in a dry run so far.
+    /// Takes the plan so far.
     pub fn take_plan(&mut self) -> Plan {
         self.notes().map(std::mem::take).unwrap_or_default()
     }
 
-    /// In a dry run, notes all the questions, whose answers are not known then.
+    /// Dry run: plans reads whose answers are then unknown.
     ///
     /// # Errors
     /// [`Error::NotKnown`], in a dry run.
@@ -36,13 +36,13 @@ impl Client {
         Err(Error::NotKnown)
     }
 
-    /// Notes in a dry run an order that depends on answers.
+    /// Dry run: plans an order that depends on earlier answers.
     pub fn plan(&mut self, order: &Order, about: &str) {
         self.note(order, Reason::about(about));
     }
 
-    /// Notes in a dry run an order whose words, or whose sending, an answer before it decides. `other` is the same order
-    /// with other answers: where both differ nothing is known.
+    /// Dry run: plans an order that depends on an earlier answer. `other` is the order after another answer: words that
+    /// differ are unknown.
     pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
@@ -50,21 +50,21 @@ impl Client {
         self.plan_frame(with_fields(json!({ "wi": words }), &fields), reason);
     }
 
-    /// Notes in a dry run what goes to the device on the fieldbus and not to the controller.
+    /// Dry run: plans a frame to the fieldbus device instead of the controller.
     pub fn plan_frame(&mut self, frame: Value, reason: Reason<'_>) {
         if let Some(plan) = self.notes() {
             plan.note(frame, reason);
         }
     }
 
-    /// Says in a dry run what would be done with a file or a part.
+    /// Dry run: adds the planned action for a file or a part.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.notes() {
             plan.items.push(item);
         }
     }
 
-    /// Says in a dry run what follows that cannot be shown.
+    /// Dry run: describes later steps whose frames are not known yet.
     pub fn then(&mut self, what: &str) {
         if let Some(plan) = self.notes() {
             plan.then(what);
@@ -82,7 +82,7 @@ impl Client {
         self.plan_frame(with_fields(json!({ "wi": hex(order.words()) }), &fields(order)), reason);
     }
 
-    /// Notes what each edge of a procedure shows.
+    /// Plans the image of each step of a procedure.
     pub(super) fn note_steps(&mut self, procedure: &Procedure) {
         let Transport::Notes(plan) = &mut self.transport else { return };
         let image = &mut self.output.next;
@@ -104,7 +104,7 @@ impl Client {
     }
 }
 
-/// What an order that moves something says, in words. What is not said is left out.
+/// Readable fields of a motion order, without absent ones.
 fn fields(order: &Order) -> Vec<FieldInWords> {
     if order.risk() < Risk::Motion {
         return Vec::new();
@@ -113,7 +113,7 @@ fn fields(order: &Order) -> Vec<FieldInWords> {
     notes.filter(|note| !note.meaning.starts_with("none")).map(|note| (note.name, note.meaning)).collect()
 }
 
-/// Words as they are written: `0x0604`.
+/// Words as text: `0x0604`.
 pub fn hex(words: &[u16]) -> Vec<String> {
     words.iter().map(|word| format!("0x{word:04X}")).collect()
 }

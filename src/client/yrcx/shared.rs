@@ -1,4 +1,4 @@
-//! A link that a session holds: what others show, and whose turn it is.
+//! Shared link of a session: output of other clients, and turns.
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{Image, Output};
@@ -12,8 +12,8 @@ use super::error::Error;
 use super::{Client, Event, Transport};
 
 impl Client {
-    /// Finds out whether a session holds the link, and takes over what it shows. Who asks takes no command of the
-    /// controller then: the session has it.
+    /// Takes over the output image of the session, if a session holds the link. The session commands the controller,
+    /// not this client.
     pub(super) fn join(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
         if link.shown().is_none() {
@@ -23,7 +23,6 @@ impl Client {
         self.shown_now();
     }
 
-    /// Takes over what the session shows.
     pub(super) fn shown_now(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
         let Some(image) = link.shown().and_then(image) else { return };
@@ -35,7 +34,7 @@ impl Client {
         }
     }
 
-    /// Somebody else switched bits, or gave a remote command.
+    /// Applies bits or a command that another client has sent.
     pub(super) fn shown_by_others(&mut self, now: Now, change: &Change) {
         let (Some(mask), Some(value)) = (image(&change.mask), image(&change.value)) else { return };
         let mut shown = Output::new(self.shown.unwrap_or_default());
@@ -44,7 +43,7 @@ impl Client {
         self.output.changed(now, &mask, &value);
     }
 
-    /// Becomes the only one who moves the robot, before something does.
+    /// Reserves motion for this client, before it sends a motion.
     pub(super) async fn claim_motion(&mut self, risk: Risk) -> Result<(), Error> {
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
         if risk < Risk::Motion {
@@ -53,8 +52,8 @@ impl Client {
         link.claim_motion().await.map_err(Error::Session)
     }
 
-    /// Becomes the only one who moves the robot before what an order replaces is read: where another client moves it, that
-    /// is said at once instead of waiting for a turn to read. Nothing is sent to the controller.
+    /// Reserves motion before the values that an order replaces are read. If another client moves the robot, this fails
+    /// at once instead of waiting for a turn. Sends nothing to the controller.
     ///
     /// # Errors
     /// [`Error::Session`].
@@ -62,8 +61,8 @@ impl Client {
         self.claim_motion(order.risk()).await
     }
 
-    /// Waits until nobody else gives a remote command. What others gave until then is known when this returns: whoever
-    /// begins with what was shown before it would take his own command for one that is shown already, or for none.
+    /// Waits for the turn to send a remote command, and applies everything that others sent before. With an older image
+    /// a client could mistake its new command for one already sent.
     pub(super) async fn acquire(&mut self) -> Result<(), Error> {
         self.is_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
@@ -71,7 +70,7 @@ impl Client {
         self.catch_up().await
     }
 
-    /// Lets others give a remote command once the last one has ended.
+    /// Passes the turn on once the last command has ended.
     pub(super) fn release(&mut self) {
         if std::mem::take(&mut self.is_over)
             && let Transport::Image(link) = &mut self.transport
@@ -80,7 +79,7 @@ impl Client {
         }
     }
 
-    /// Whether the link can come back.
+    /// An error if the link cannot come back.
     pub(super) fn still_there(&self) -> Result<(), Error> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
@@ -89,7 +88,8 @@ impl Client {
         }
     }
 
-    /// Sees to it that a command that another client left to itself has ended: to take it away would stop what it does.
+    /// Checks that a command that another client left running has ended: replacing it would stop it.
+    /// [`Error::OthersUnderWay`] while it runs.
     pub(super) async fn end_others(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {
@@ -104,7 +104,7 @@ impl Client {
                     self.release();
                     return Err(Error::OthersUnderWay { words: Box::new(words) });
                 }
-                // It may not have been taken yet.
+                // The controller may not have taken the command yet.
                 Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
                 _ => {
                     self.watcher.event(Event::LeftByOthers { words, answer: seen });

@@ -1,4 +1,4 @@
-//! The signals beside remote commands (chapter 1): procedures that switch them, and what the controller shows.
+//! Dedicated signals (chapter 1): procedures that switch them, and the input image.
 
 use std::time::Duration;
 
@@ -13,11 +13,11 @@ use super::error::Error;
 use crate::STOP_WITHIN;
 
 impl Client {
-    /// Carries out a procedure of signals, such as [`Procedure::run`], and says how long it took. A dry run notes what
-    /// each edge shows.
+    /// Carries out a signal procedure, such as [`Procedure::run`], and returns its duration. A dry run plans the image
+    /// of each step.
     ///
     /// # Errors
-    /// [`Error::Unfinished`] if the controller did not confirm it.
+    /// [`Error::Unfinished`] without confirmation by the controller.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Error> {
         if !procedure.only_awaits() {
             self.authorize_command(procedure.name, procedure.risk)?;
@@ -30,7 +30,7 @@ impl Client {
         self.switch(procedure, longest).await
     }
 
-    /// The same in this time and without the check: a stop is always allowed.
+    /// [`carry_out`](Self::carry_out) with a time limit and without authorization: a stop is always allowed.
     pub(super) async fn switch(&mut self, procedure: Procedure, longest: Duration) -> Result<Duration, Error> {
         self.catch_up().await?;
         self.claim_motion(procedure.risk).await?;
@@ -44,10 +44,10 @@ impl Client {
         }
     }
 
-    /// What the controller shows now.
+    /// The current input image.
     ///
     /// # Errors
-    /// [`Error::Silent`] if it shows nothing within the time-out.
+    /// [`Error::Silent`] without an image within the time limit.
     pub async fn look(&mut self) -> Result<Image, Error> {
         if self.is_dry() {
             return Err(Error::NotKnown);
@@ -65,10 +65,10 @@ impl Client {
         }
     }
 
-    /// Waits until what the controller shows matters, and returns it, as long as it takes.
+    /// Waits, without a limit, for an input image that meets the condition.
     ///
     /// # Errors
-    /// [`Error::Silent`] when the link is lost; the next call waits for it to be open again.
+    /// [`Error::Silent`] when the link is lost; the next call waits until it is open again.
     pub async fn look_until(&mut self, mut matters: impl FnMut(&Image) -> bool) -> Result<Image, Error> {
         loop {
             let was_up = self.is_up;
@@ -82,7 +82,7 @@ impl Client {
         }
     }
 
-    /// What the controller is shown; `None` where that is for somebody else to show.
+    /// The output image; `None` if another client owns it.
     pub fn shown(&self) -> Option<&Image> {
         (self.is_owner || self.is_shared).then_some(&self.output.next)
     }

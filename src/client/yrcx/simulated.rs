@@ -1,4 +1,4 @@
-//! The simulated controller at the end of a link in this process.
+//! Adapter from the simulated controller to a link in this process.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use armctl_transport::image::ImagePeer;
 pub struct Simulated(pub Simulator);
 
 impl Simulated {
-    /// One that begins like this.
+    /// A controller in this start state.
     pub fn new(start: Start) -> Self {
         Self(Simulator::new(start))
     }
@@ -19,7 +19,7 @@ impl Simulated {
 
 impl ImagePeer for Simulated {
     fn input(&mut self, now: Duration, image: Option<&[u8]>) {
-        // A link carries whole images; anything else would be nobody's.
+        // A link carries only whole images.
         let image = image.and_then(Image::from_link);
         self.0.input(now, image.as_ref());
     }

@@ -1,4 +1,4 @@
-//! The stop of what a client set in motion.
+//! Stop of the motion or command of a client.
 
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::answer::Answer;
@@ -15,32 +15,32 @@ use super::error::Error;
 use super::{Client, Event};
 use crate::STOP_WITHIN;
 
-/// What there was to stop.
+/// What a stop ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stopped {
-    /// Nothing was sent that moves the robot.
+    /// Nothing: no motion was sent.
     Nothing,
-    /// A motion, by the stop input, which is on again.
+    /// A motion. The stop input was switched off and is on again.
     Motion {
-        /// Which.
+        /// The order.
         order: Box<Order>,
-        /// Where the robot is, if the answer says so (4.2.6).
+        /// Final position, if the answer contains it (4.2.6).
         positions: Values,
     },
-    /// What goes on by itself, a program or what signals set in motion, by the stop input, which is on again.
+    /// A program, or a motion by signals. The stop input was switched off and is on again.
     Started,
-    /// A command that moves nothing.
+    /// A command without motion.
     Command(Command),
-    /// Nothing: the command had ended already, with this alarm if it did not end well.
+    /// Nothing: the command had already ended, with this alarm after a failure.
     HadEnded(Command, Option<Alarm>),
 }
 
 impl Client {
-    /// Stops what this client set in motion, whatever was granted: the stop input SI(06) goes off, and on again once the
-    /// end is seen (chapter 1, 3.8). Within 3 s it is known whether it was.
+    /// Stops what this client started, without a check of the grant. The stop input SI(06) goes off, and on again once
+    /// the end is observed (chapter 1, 3.8). Takes at most 3 s.
     ///
     /// # Errors
-    /// [`Error::OutcomeUnknown`] if the end was not seen: the stop input stays off.
+    /// [`Error::OutcomeUnknown`] if the end was not observed: the stop input stays off.
     pub async fn stop(&mut self) -> Result<Stopped, Error> {
         self.abandon_sequence();
         let until = Instant::now() + STOP_WITHIN;
@@ -75,7 +75,7 @@ impl Client {
         Ok(Stopped::Started)
     }
 
-    /// Whether a jog is under way, which nothing but a stop ends.
+    /// Whether a jog runs, which only a stop ends.
     pub fn is_jogging(&self) -> bool {
         self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == Pace::Jog)
     }

@@ -1,4 +1,4 @@
-//! The client as a library, on simulators and peers in virtual time.
+//! Tests of the client as a library, on simulators and other peers in virtual time.
 
 use std::fmt;
 use std::sync::{Arc, Mutex};
@@ -38,7 +38,7 @@ fn jog() -> Order {
     order(Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, 0).with(Key::Report, 1))
 }
 
-/// Shows the same image whatever it is shown; nothing from a moment on, if it is to go then.
+/// Sends the same image regardless of its input; with a time, nothing after it.
 #[derive(Debug)]
 struct Deaf(Option<Duration>);
 
@@ -61,7 +61,7 @@ async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
     Client::connect(link, Options::default().granting(risk)).await.unwrap()
 }
 
-/// Takes a command, and runs from then on whatever it is shown.
+/// Takes a command and then runs forever.
 #[derive(Debug, Default)]
 struct Stuck {
     runs: bool,
@@ -107,7 +107,7 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
     }
 }
 
-/// A client of the session at a spot.
+/// A client of the session at this spot.
 async fn attached(spot: &Spot) -> Client {
     let Found::Session(attached) =
         attach_at(spot, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
@@ -130,7 +130,7 @@ async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
         let (mut one, mut other) = (attached(&spot).await, attached(&spot).await);
         let (here, there) = (point(1), point(2));
         for _ in 0..100 {
-            // Both want the line at once: one of them waits, while the words of the other come and go.
+            // Both clients need the link at once: each must wait for the command of the other.
             let (first, second) = tokio::join!(one.ask(&here), other.ask(&there));
             first.unwrap();
             second.unwrap();
@@ -246,7 +246,6 @@ async fn what_only_looks_sees_and_gives_no_commands() {
     assert!(matches!(apart.ask(&point(1)).await, Err(Error::NotCommanding { .. })));
 }
 
-/// Remembers what it is told.
 #[derive(Debug, Default)]
 struct Onlooker(Arc<Mutex<Vec<Event>>>);
 
@@ -278,7 +277,7 @@ async fn a_controller_that_shows_nothing_is_none() {
     assert!(matches!(Client::connect(link, Options::default()).await, Err(Error::Silent)));
 }
 
-/// Errors are matched on, sent around, and told.
+/// Callers match errors, send them between threads and print them.
 #[test]
 fn errors_are_errors() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}

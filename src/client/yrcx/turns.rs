@@ -1,4 +1,4 @@
-//! The turns of a client: poll what is under way, show what it wants shown, wait for what happens.
+//! Event loop of a client: poll sessions, send the output image, wait for events.
 
 use std::time::Duration;
 
@@ -19,17 +19,17 @@ use super::error::Error;
 use super::hold::after_loss;
 use super::{Client, Event, Reply, Transport};
 
-/// A session that waits for nothing is asked again after this.
+/// Poll interval of a session without a deadline.
 pub(super) const LONG: Duration = Duration::from_secs(3600);
-/// How long the last change may take to leave before the connection is closed.
+/// Time limit for sending the last change before the connection is closed.
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
 impl Client {
-    /// Waits until the controller has shown something, and, where this client commands it, has been shown the resting
-    /// image: emergency stop and stop inputs on, all else off.
+    /// Waits for the first input image and, on a commanding connection, until the resting image is sent: emergency stop
+    /// and stop inputs on, everything else off.
     ///
     /// # Errors
-    /// [`Error::Silent`] if it shows nothing within the time-out.
+    /// [`Error::Silent`] without an image within the time limit.
     pub async fn ready(&mut self) -> Result<(), Error> {
         let until = Instant::now() + self.timeout;
         while self.input.is_none() || (self.is_owner && self.output.last_sent().is_none()) {
@@ -39,13 +39,12 @@ impl Client {
             self.turn_until(until).await?;
         }
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
-            // Whoever only reads is not told by the board that it reads something else.
+            // The board accepts any monitoring connection, so the client has to notice a wrong image itself.
             self.watcher.event(Event::CpuNotOk);
         }
         Ok(())
     }
 
-    /// Begins a remote command.
     pub(super) async fn start(&mut self, order: &Order) -> Result<(), Error> {
         if !self.has_commands() {
             return Err(Error::SignalsAlone { command: order.command() });
@@ -62,14 +61,14 @@ impl Client {
         Ok(())
     }
 
-    /// Has the words of remote commands for itself: nothing is under way there.
+    /// Reserves the words of remote commands, which no other command may use.
     pub(super) async fn have_words(&mut self) -> Result<(), Error> {
         self.end_earlier().await?;
         self.acquire().await?;
         self.end_others().await
     }
 
-    /// Sees to it that a command that was left alone has ended, and tells if it did not end well.
+    /// Ends an earlier command of this client and reports its failure. [`Error::UnderWay`] while it runs.
     async fn end_earlier(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
             self.turn_until(Instant::now()).await?;
@@ -96,7 +95,7 @@ impl Client {
         Ok(())
     }
 
-    /// Turns until the remote command has ended. A link that was lost is waited for until then.
+    /// Runs until the remote command has ended. Waits for a lost link until the deadline.
     pub(super) async fn until_ended(&mut self, until: Option<Instant>) -> Result<Outcome, Error> {
         loop {
             if let Some(outcome) = self.ended.take() {
@@ -107,19 +106,17 @@ impl Client {
         }
     }
 
-    /// After a motion whose link was lost, waits for a while until it is up again: how the stop input stands then is
-    /// worth knowing.
+    /// After a motion whose link was lost, waits until the link is up again, to report the state of the stop input.
     pub(super) async fn await_link(&mut self, outcome: &Outcome, until: Option<Instant>) {
         let moves = matches!(outcome.row.pace, Pace::Motion | Pace::Jog);
         if !moves || outcome.ended != Ended::OutcomeUnknown(Silence::LinkLost) {
             return;
         }
         let until = until.unwrap_or_else(|| Instant::now() + self.timeout);
-        // What goes wrong meanwhile is told by whatever comes next.
+        // The next call reports any error of this wait.
         while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
     }
 
-    /// Begins a procedure.
     pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Error> {
         if self.sequence.is_some() {
             return Err(Error::SignalsUnderWay);
@@ -132,7 +129,6 @@ impl Client {
         Ok(())
     }
 
-    /// Turns until the procedure has ended.
     pub(super) async fn until_finished(&mut self) -> Result<sequence::Outcome, Error> {
         loop {
             if let Some(outcome) = self.finished.take() {
@@ -142,35 +138,35 @@ impl Client {
         }
     }
 
-    /// Gives up a procedure. What it raised for a moment goes off.
+    /// Aborts a procedure. Signals that it pulsed go off.
     pub(super) fn abandon_sequence(&mut self) {
         let now = self.now();
         if let Some(mut sequence) = self.sequence.take() {
             sequence.lost(now);
-            // Its outcome is known: it was given up.
+            // The outcome is known: aborted.
             let _ = sequence.poll(now, &mut self.output);
         }
     }
 
-    /// Takes what has happened since the last turn, without waiting.
+    /// Handles all pending events, without waiting.
     pub(super) async fn catch_up(&mut self) -> Result<(), Error> {
         let now = Instant::now();
         while self.event(now).await? {}
         self.still_there()
     }
 
-    /// Lets what is over in a moment end, and the last change leave, for a second at most. A motion that was left alone
-    /// is not waited for.
+    /// Waits at most 1 s for short commands to end and for the last change to be sent. A motion that was left running
+    /// continues.
     ///
     /// # Errors
-    /// What went wrong with the line meanwhile.
+    /// Errors of the link.
     pub async fn leave(&mut self) -> Result<(), Error> {
         self.abandon_sequence();
         if self.is_dry() || !self.is_owner {
             return Ok(());
         }
         let now = self.now();
-        // A jog has no end of its own.
+        // A jog does not end by itself.
         let is_short = |exchange: &Exchange| exchange.order().row().pace != Pace::Motion;
         if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
             exchange.interrupt(now);
@@ -186,12 +182,12 @@ impl Client {
         Ok(())
     }
 
-    /// One turn. Returns when something has happened, or was due.
+    /// One turn: returns after an event or a deadline.
     pub(super) async fn turn(&mut self) -> Result<(), Error> {
         self.turn_until(Instant::now() + LONG).await
     }
 
-    /// The same, but not longer than `until`.
+    /// [`turn`](Self::turn) with a deadline.
     pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Error> {
         let mut due = until;
         if !self.in_flight {
@@ -200,7 +196,7 @@ impl Client {
             self.release();
             match next {
                 Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(LONG))),
-                // Something has ended, which somebody waits for.
+                // The caller waits for an exchange that has just ended.
                 None => return Ok(()),
             }
         }
@@ -211,7 +207,7 @@ impl Client {
         self.started.elapsed()
     }
 
-    /// Polls what is under way; when it wants to be polled again, unless something has ended.
+    /// Polls the sessions. Returns the next deadline; `None` if one has ended.
     fn poll(&mut self) -> Option<Now> {
         let now = self.now();
         let mut due = Now::MAX;
@@ -241,7 +237,7 @@ impl Client {
         (!has_ended).then_some(due)
     }
 
-    /// Hands what is to be shown to the transport, if it is not what is shown already.
+    /// Passes the output image to the transport, if it has changed.
     fn show(&mut self) -> Result<(), Error> {
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
         if !self.is_up || !self.is_owner || self.shown == Some(self.output.next) {
@@ -253,7 +249,7 @@ impl Client {
         Ok(())
     }
 
-    /// Waits for the next event and passes it on; whether there was one before `until`.
+    /// Handles the next event; `false` without one before `until`.
     async fn event(&mut self, until: Instant) -> Result<bool, Error> {
         let link = match &mut self.transport {
             Transport::Image(link) => link,
@@ -284,7 +280,7 @@ impl Client {
             Passed::Shown(change) => self.shown_by_others(now, &change),
             Passed::Denied => {
                 self.in_flight = false;
-                // What was sent before has yet to end.
+                // A command that was sent before is still followed to its end.
                 self.exchange.take_if(|exchange| exchange.sent().is_none());
                 self.sequence = None;
                 self.words = Words::default();

@@ -1,4 +1,4 @@
-//! General-purpose words, which are shown where remote commands are: one at a time has them.
+//! General-purpose words, which share their place in the image with remote commands.
 
 use armctl_controller::Risk;
 use armctl_controller::yrcx::register::{Register, general};
@@ -10,11 +10,11 @@ use super::{Client, hex};
 use crate::Reason;
 
 impl Client {
-    /// Shows these values in general-purpose words, all in one image. They stay until something else is shown there: a
-    /// remote command has the words for itself as long as it lasts, and puts them back.
+    /// Sets general-purpose words, all in one image. They stay until other words replace them. A remote command uses
+    /// the place while it runs, and restores the words at its end.
     ///
     /// # Errors
-    /// [`Error::WordsNotSent`] if they did not leave within the time-out.
+    /// [`Error::WordsNotSent`] if they were not sent within the time limit.
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
         self.authorize_command("set-words", Risk::Write)?;
         if self.is_dry() {

@@ -1,4 +1,4 @@
-//! `armctl backup`, `restore` and `diff`: the same for robots of any family, whose own commands do the work.
+//! `armctl backup`, `restore` and `diff` for robots of any family. The commands of the family do the work.
 
 use std::path::PathBuf;
 
@@ -18,9 +18,9 @@ use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::settings::Robot;
 
-/// `armctl restore`.
+/// Arguments of `armctl restore`.
 pub type Restore = words::Restore<Fleet>;
-/// `armctl diff`.
+/// Arguments of `armctl diff`.
 pub type Diff = words::Diff<Fleet>;
 
 /// `armctl backup`: makes one, or looks whether one is still sound.
@@ -34,17 +34,17 @@ pub struct Backup {
 }
 
 impl Backup {
-    /// Whether it takes a robot.
+    /// Whether the command needs a robot.
     pub fn takes_robot(&self) -> bool {
         !self.verify
     }
 
-    /// What makes a backup.
+    /// Arguments for making a backup.
     pub fn making(&self) -> &words::Backup<Fleet> {
         &self.making
     }
 
-    /// Does it.
+    /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         if self.verify {
             return run.local("backup.check", &Checked::of(self.making.folder())?);
@@ -53,7 +53,7 @@ impl Backup {
     }
 }
 
-/// `armctl diff`: of folders, of a folder and a robot, or of two robots.
+/// `armctl diff`: compares two folders, a folder and a robot, or two robots.
 pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     let are_robots = diff.robots(&run.sources.inventory).is_some();
     let is_plural = run.sources.selection.is_plural() && diff.options().folder().is_err();
@@ -76,7 +76,7 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     }
     for (robot, outcome) in robots.iter().zip(run.gather(&reading, &robots).await) {
         let failure = match outcome {
-            // What a controller refuses to tell is a difference.
+            // Data that a controller refuses is a difference, not a failure.
             Ok(report) => report.failure().filter(|failure| failure.kind != Kind::Refused),
             Err(failure) => Some(failure),
         };
@@ -88,7 +88,7 @@ pub async fn diff(diff: Diff, run: &Run) -> Result<(), RunError> {
     run.local("diff", &diff.options().two_controllers([reading.place(old), reading.place(new)])?)
 }
 
-/// Reads robots into folders, to compare them.
+/// Reads robots into folders for a comparison.
 struct Reading {
     folder: PathBuf,
     scope: Vec<String>,
@@ -136,7 +136,7 @@ impl Backups for Fleet {
     }
 }
 
-/// The connection of a robot of any family, and what it can be asked.
+/// Splits a context of any family into its face and connection.
 fn opened(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
     let Context { link, screen, robot, authority, .. } = context;
     match link {

@@ -1,4 +1,4 @@
-//! `armctl names`: names of signals, variables and registers, in robots.toml and as read from a controller.
+//! `armctl names`: names of signals, variables and registers, from robots.toml and from the controller.
 
 use clap::{Args, Subcommand};
 
@@ -42,7 +42,7 @@ pub struct Set {
 }
 
 impl Names {
-    /// Does it.
+    /// Runs the command.
     pub fn run(self, run: &Run) -> Result<(), RunError> {
         let robot = one(run)?;
         match self {
@@ -59,7 +59,7 @@ impl Names {
     }
 }
 
-/// The robot that is meant.
+/// The one selected robot.
 fn one(run: &Run) -> Result<Robot, Failure> {
     let mut robots = run.sources.robots(None)?;
     match (robots.pop(), robots.len()) {
@@ -71,7 +71,7 @@ fn one(run: &Run) -> Result<Robot, Failure> {
     }
 }
 
-/// The schemas of what is reported.
+/// Schemas of the reports.
 pub fn schemas() -> [SchemaEntry; 2] {
     [SchemaEntry::of::<Listing>("names.list"), SchemaEntry::of::<entry::WasSet>("names.set")]
 }

@@ -1,4 +1,4 @@
-//! `armctl robots`: the inventory, and robots that are there.
+//! `armctl robots`: commands for the inventory, and discovery of controllers.
 
 pub mod check;
 pub mod discover;
@@ -61,17 +61,17 @@ pub struct Show {
 }
 
 impl Robots {
-    /// Whether it makes the file where there is none.
+    /// Whether the command creates a missing inventory file.
     pub fn makes_inventory(&self) -> bool {
         matches!(self, Self::Add(_))
     }
 
-    /// Whether it is about the file, whatever is in it.
+    /// Whether the command only uses the file, even if its content is not valid.
     pub fn is_about_file(&self) -> bool {
         matches!(self, Self::Edit | Self::Path)
     }
 
-    /// Does it.
+    /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         let inventory = &run.sources.inventory;
         if let Some(path) = &inventory.path {
@@ -121,7 +121,7 @@ impl Show {
     }
 }
 
-/// The model that the controller told another time, where nobody names it.
+/// Model that the controller reported earlier, if no setting names one.
 fn told_model(robot: &Robot) -> Option<Value> {
     if robot.model.value.named().is_some() {
         return None;
@@ -131,7 +131,7 @@ fn told_model(robot: &Robot) -> Option<Value> {
     Some(Value { name: "told_model", value: format!("{} ({})", told.model(), told.software()), origin })
 }
 
-/// A setting as a row.
+/// A setting as a table row.
 fn row<T>(name: &'static str, setting: &Setting<T>, show: impl Fn(&T) -> String) -> Value {
     Value { name, value: show(&setting.value), origin: setting.origin.to_string() }
 }
@@ -159,7 +159,7 @@ struct Listed {
 }
 
 impl List {
-    /// The robots that flags choose; all of them without.
+    /// Selected robots; all without a selection.
     fn of(run: &Run) -> Result<Self, Failure> {
         let (inventory, selection) = (&run.sources.inventory, &run.sources.selection);
         if selection.sim || selection.target.is_some() {

@@ -1,4 +1,4 @@
-//! `armctl serve`: what is known of robots, for other programs.
+//! `armctl serve`: robot data for other programs.
 
 use clap::Subcommand;
 
@@ -13,7 +13,7 @@ pub enum Serve {
 }
 
 impl Serve {
-    /// Does it.
+    /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Metrics(metrics) => metrics.run(run).await,

@@ -1,4 +1,4 @@
-//! What those have in common that run as services: what they say of robots as they run, and to the service manager.
+//! Common parts of long-running services: log of robot events, and notifications to the service manager.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -21,10 +21,10 @@ use crate::settings::Robot;
 use crate::transport::journal::{Journal, PLACE};
 use crate::transport::supervisor::Supervisor;
 
-/// How long a service may take to end, once it is asked to.
+/// Time limit for a service to stop.
 pub const END: Duration = Duration::from_millis(800);
 
-/// A service as it runs: what it says, and who is told how it is.
+/// A running service with its log and service manager.
 #[derive(Debug)]
 pub struct Service {
     log: Log,
@@ -33,37 +33,37 @@ pub struct Service {
 }
 
 impl Service {
-    /// Finds the service manager that the environment names, and room for a socket each robot.
+    /// Finds the service manager of the environment, and raises the limit of open files.
     pub fn begin(screen: Screen) -> Result<Self, Failure> {
         make_room();
         let supervisor = Supervisor::find().map_err(|error| unreached(&error))?;
         Ok(Self { log: Log::new(screen), supervisor, news: RefCell::default() })
     }
 
-    /// Notes what was told of a poll.
+    /// Logs a poller event.
     pub fn note(&self, event: &Event) {
         self.news.borrow_mut().note(&self.log, event);
     }
 
-    /// Says what happens, with fields for the journal.
+    /// Logs a message with journal fields.
     pub fn say(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         self.log.say(level, text, fields);
     }
 
-    /// How the robots are, in a line: `3 robots, 2 answer`.
+    /// Status line of the robots: `3 robots, 2 answer`.
     pub fn robots(&self) -> String {
         self.news.borrow().status()
     }
 
-    /// Tells the service manager that so many robots are looked at from now on.
+    /// Reports to the service manager that polling has started.
     pub fn ready(&self, robots: usize) -> Result<(), Failure> {
         let plural = if robots == 1 { "" } else { "s" };
         self.supervisor.ready(&format!("{robots} robot{plural}")).map_err(|error| unreached(&error))
     }
 
-    /// Tells it again and again that this process is alive, and how: as long as it is, this is polled. Does not end.
+    /// Sends watchdog messages with the status to the service manager. Does not end.
     pub async fn pulses(&self, status: impl Fn() -> String) {
-        /// How often the status is told where nobody waits for it.
+        /// Interval of the status without a watchdog.
         const STATUS: Duration = Duration::from_secs(30);
 
         let every = self.supervisor.pulse().unwrap_or(STATUS);
@@ -79,10 +79,10 @@ impl Service {
         }
     }
 
-    /// Tells it that this comes to its end.
+    /// Reports to the service manager that the service stops.
     pub fn stopping(&self) {
         self.log.summarize(true);
-        // Nobody is left to be told that this cannot be told.
+        // An error cannot be reported any more.
         let _told = self.supervisor.stopping();
     }
 }
@@ -91,7 +91,7 @@ fn unreached(error: &io::Error) -> Failure {
     Failure::io("NOTIFY_SOCKET", error)
 }
 
-/// Where a service says what happens: in the journal of systemd where stderr is that, or else on stderr.
+/// Log of a service: the systemd journal if stderr is connected to it, otherwise stderr.
 #[derive(Debug)]
 struct Log {
     screen: Screen,
@@ -103,7 +103,7 @@ struct Log {
 impl Log {
     #[cfg(unix)]
     fn new(screen: Screen) -> Self {
-        // One that is not reached has stderr, as it has of every process.
+        // If the journal cannot be opened, use stderr.
         let journal = log::is_journal_socket().then(|| Journal::at(Path::new(PLACE)).ok()).flatten();
         Self { screen, repeats: RefCell::default(), journal }
     }
@@ -120,7 +120,7 @@ impl Log {
         }
     }
 
-    /// Prints how often lines were repeated.
+    /// Prints the number of repeated lines.
     fn summarize(&self, is_end: bool) {
         let due = self.repeats.borrow_mut().due(Instant::now(), is_end);
         self.print_all(due);
@@ -139,7 +139,7 @@ impl Log {
         }
     }
 
-    /// Writes an entry of the journal; whether it has taken that.
+    /// Writes a journal entry. Returns whether it succeeded.
     #[cfg(unix)]
     fn is_written(&self, level: Level, text: &str, fields: &[(&str, &str)]) -> bool {
         let Some(journal) = &self.journal else { return false };
@@ -156,14 +156,14 @@ impl Log {
     }
 }
 
-/// Says once when something begins or ends, however often it is seen.
+/// Logs changes only once, however often they are seen.
 #[derive(Debug, Default)]
 struct News {
-    /// Whether each robot answers; nothing where that is not known yet.
+    /// Whether each robot answers; `None` if unknown.
     answers: BTreeMap<RobotId, Option<bool>>,
-    /// What could not be read, of the inventory and of the texts of alarms.
+    /// Last read errors of the inventory and of the alarm texts.
     unread: [Option<String>; 2],
-    /// Whether robots come and go, and not only begin.
+    /// Whether the start is over, so that robots now appear because of a change.
     has_begun: bool,
 }
 
@@ -208,10 +208,10 @@ impl News {
         format!("{robots} robot{plural}, {answer} {verb}")
     }
 
-    /// Says why something cannot be read, once for each reason.
+    /// Logs a read error, once per text.
     fn unread(&mut self, log: &Log, which: usize, why: Option<&Failure>) {
         let Some(failure) = why else {
-            // A look at a robot without a fault needs no texts, and says nothing of them.
+            // A poll without a fault does not need alarm texts, so it does not clear their error.
             if which == 0 {
                 self.unread[which] = None;
             }
@@ -225,17 +225,17 @@ impl News {
     }
 }
 
-/// Says something of a robot.
+/// Logs a message about a robot.
 fn say(log: &Log, level: Level, robot: &Robot, what: &str) {
     log.say(level, &format!("{}: {what}", robot.label()), &fields_of(robot));
 }
 
-/// What the journal finds a robot by.
+/// Journal fields of a robot.
 fn fields_of(robot: &Robot) -> [(&'static str, &str); 2] {
     [("robot", robot.name.as_str()), ("family", robot.family.name())]
 }
 
-/// Says that one does not answer as it should.
+/// Logs a failed poll.
 fn failed(log: &Log, robot: &Robot, failure: &Failure) {
     let kind = kind(failure);
     let mut fields = fields_of(robot).to_vec();
@@ -247,21 +247,20 @@ fn failed(log: &Log, robot: &Robot, failure: &Failure) {
     log.say(Level::Warning, &text, &fields);
 }
 
-/// The class of a failure, as the envelope has it: `no_answer`.
+/// Kind of a failure, as in the envelope: `no_answer`.
 pub fn kind(failure: &Failure) -> String {
     let name = serde_json::to_value(failure.kind).ok();
     name.as_ref().and_then(serde_json::Value::as_str).unwrap_or("other").to_owned()
 }
 
-/// Lets this process have as many files and sockets open as it may: there is one for each robot, and what a process
-/// begins with is meant for less.
+/// Raises the soft limit of open files to the hard limit, because each robot needs a socket.
 pub fn make_room() {
     #[cfg(unix)]
     {
         use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
         let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
-        // Where that cannot be, a robot that finds no room says so.
+        // If this fails, the robot without a socket reports it.
         let _refused = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     }
 }

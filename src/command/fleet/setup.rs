@@ -1,4 +1,4 @@
-//! `armctl setup`: from nothing to a robot that is named, checked and read-only, question by question.
+//! `armctl setup`: interactive setup of a robot: address, check, name, access.
 
 use clap::Args;
 
@@ -24,17 +24,17 @@ use crate::settings::target::{Family, Given, Target};
 )]
 pub struct Setup {}
 
-/// Names that are tried as a proposal.
+/// Limit of the numbers in a proposed name.
 const MOST_NAMES: u32 = 999;
 
-/// Who is set up.
+/// Target and family of the new robot.
 struct Found {
     family: Family,
     target: Target,
 }
 
 impl Setup {
-    /// Does it.
+    /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         if !run.screen.can_ask() {
             return Err(Failure::usage("setup asks questions, and there is no terminal to ask at")
@@ -42,7 +42,7 @@ impl Setup {
                 .into());
         }
         let path = file::path(run)?.display().to_string();
-        // From here on Ctrl-C ends in a message and an exit code.
+        // From here on, Ctrl-C ends with a message and an exit code.
         catch_interrupts();
         run.screen
             .ask_note("Set up a robot. Enter takes what is in brackets; until the last answer nothing is written.");
@@ -58,7 +58,7 @@ impl Setup {
     }
 }
 
-/// A question that got no answer is about no controller here.
+/// Failure for a missing answer to a question.
 fn unanswered(failure: Failure) -> Failure {
     match failure.kind {
         Kind::Rejected => Failure::new(Kind::Rejected, "there was no answer; nothing was written")
@@ -83,7 +83,7 @@ async fn yes(run: &Run, question: impl Into<String>, usual: bool) -> Result<bool
     answered(screen, move || screen.ask_yes(&question, usual)).await
 }
 
-/// An address whose check is good enough for whoever sits there.
+/// Asks for an address until its check succeeds or the user accepts it.
 async fn reached(run: &Run) -> Result<Found, Failure> {
     loop {
         let found = address(run).await?;
@@ -128,7 +128,7 @@ async fn typed(run: &Run) -> Result<Found, Failure> {
     complete(run, &given.parse()?, None).await
 }
 
-/// One of those that can be found; `None` if it is not among them.
+/// Searches for controllers, and lets the user choose one; `None` if it is not listed.
 async fn look(run: &Run) -> Result<Option<(Given, Option<Family>)>, Failure> {
     let found = interruptible(Discover::usual()?.find(run)).await??;
     let mut places = found.places();
@@ -149,7 +149,7 @@ async fn simulator(run: &Run) -> Result<Found, Failure> {
     complete(run, &given.parse()?, Some(family)).await
 }
 
-/// Asks for what an address does not tell.
+/// Asks for what the address does not contain.
 async fn complete(run: &Run, given: &Given, known: Option<Family>) -> Result<Found, Failure> {
     let told = match given {
         Given::Url(target) => target.family(),
@@ -170,7 +170,7 @@ async fn family(run: &Run) -> Result<Family, Failure> {
     FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
 }
 
-/// Shows each layer; whether none failed.
+/// Checks each layer and shows it. Returns whether all succeeded.
 async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
     let robot = run.sources.at(&found.target, found.family)?;
     let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
@@ -181,7 +181,7 @@ async fn check(run: &Run, found: &Found) -> Result<bool, Failure> {
     Ok(layers::first_failed(&layers).is_none())
 }
 
-/// What it is called, and what it may be told.
+/// Asks for name and access.
 async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
     let free = (1..=MOST_NAMES).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
@@ -198,7 +198,7 @@ async fn described(run: &Run, family: Family, target: Target) -> Result<NewRobot
         && !read_only
         && yes(run, "Hold: open a session by itself where a command needs one?", false).await?;
     let is_default = match &inventory.default {
-        // The first one is, without a question.
+        // The first robot becomes the default without a question.
         None if inventory.robots.is_empty() => true,
         None => yes(run, "Take it when no robot is named (default)?", true).await?,
         Some(other) => yes(run, format!("Take it when no robot is named, instead of {other}?"), false).await?,

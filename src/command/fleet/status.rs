@@ -1,4 +1,4 @@
-//! `armctl status`: one line per robot, of whichever family.
+//! `armctl status`: one line per robot of any family.
 
 use clap::Args;
 
@@ -15,30 +15,30 @@ use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::{Robot, target};
 
-/// Robots of any family, for what all of them can be asked.
+/// Robots of any family, for commands that all families support.
 #[derive(Debug)]
 pub struct Fleet;
 
 /// A connection to a robot of any family.
 pub enum Link {
-    /// One, and what its family can be asked.
+    /// An open connection with the face of its family.
     Open(&'static dyn Face, Box<dyn Connection>),
-    /// To nobody.
+    /// No connection, with the reason.
     Absent(Box<Absent>),
 }
 
 /// A robot that could not be reached, and how to try again.
 pub struct Absent {
-    /// Why not.
+    /// The reason.
     pub failure: Failure,
     robot: Robot,
     access: Access,
-    /// Whether somebody asked since: then the next one tries again.
+    /// Whether the reason was reported: the next command then tries again.
     is_asked: bool,
 }
 
 impl Link {
-    /// Tries again to reach a robot that was not there when it was asked last.
+    /// Tries again to connect to a robot that did not answer the last command.
     pub async fn reach(&mut self, screen: &Screen) -> Result<(), Failure> {
         let Self::Absent(absent) = self else { return Ok(()) };
         if !std::mem::replace(&mut absent.is_asked, true) {
@@ -53,7 +53,7 @@ impl Link {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
-                // Others share its link from here on, as they do from the beginning of a watch.
+                // Other commands share its link, as they do from the start of a watch.
                 connection.close(screen).await?;
                 let robot = shared(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;
@@ -72,7 +72,7 @@ impl Family for Fleet {
         let face = families::of(robot.family);
         match face.driver().connect(robot, access.clone(), screen).await {
             Ok(connection) => Ok(Link::Open(face, connection)),
-            // A robot that is not there has a line as well.
+            // A robot that does not answer gets a line in the table as well.
             Err(failure) if failure.kind == Kind::NoAnswer => {
                 Ok(Link::Absent(Box::new(Absent { failure, robot: robot.clone(), access, is_asked: false })))
             }
@@ -143,7 +143,7 @@ impl Command for Overview {
         Ok(report)
     }
 
-    /// `32 robots, 30 answer, 1 alarm`.
+    /// Summary line: `32 robots, 30 answer, 1 alarm`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let count = |field: &str| {
             let is_so = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
@@ -157,7 +157,7 @@ impl Command for Overview {
     }
 }
 
-/// How a robot is, asked among other lines of this process.
+/// Overview of a robot, with the connections of an interactive session.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
     let overview = Overview {};
     let access = Access::reading(overview.connect_mode());

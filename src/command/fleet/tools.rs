@@ -14,9 +14,9 @@ use crate::command::{Report, SchemaEntry};
 use crate::output::view::{Cell, Table, View};
 use crate::settings::target::Family;
 
-/// `armctl decode FAMILY`.
+/// Arguments of `armctl decode FAMILY`.
 pub type Decode = OfFamily<Decoding>;
-/// `armctl explain FAMILY`.
+/// Arguments of `armctl explain FAMILY`.
 pub type Explain = OfFamily<Explaining>;
 
 /// Which simulator to serve.
@@ -27,7 +27,7 @@ pub struct Sim {
 }
 
 impl Sim {
-    /// Does it; without a family, says which there are.
+    /// Runs the command. Without a family, lists the simulators.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self.family {
             Some(simulator) => simulator.run(run).await,
@@ -35,7 +35,7 @@ impl Sim {
         }
     }
 
-    /// Whether it only lists them.
+    /// Whether it only lists the simulators.
     pub fn is_list(&self) -> bool {
         self.family.is_none()
     }
@@ -80,15 +80,15 @@ impl Report for Simulators {
     }
 }
 
-/// The schemas of all that they report.
+/// Schemas of the reports.
 pub fn schemas() -> Vec<SchemaEntry> {
     let tools = ToolKind::ALL.into_iter().flat_map(|kind| FAMILIES.map(|face| face.tool(kind)));
     tools.flat_map(|tool| (tool.schemas)()).collect()
 }
 
-/// A word behind which families stand.
+/// A command word followed by a family.
 pub trait Word {
-    /// What they do there.
+    /// Tool of the families.
     const KIND: ToolKind;
 }
 
@@ -114,7 +114,7 @@ impl Word for Simulating {
     const KIND: ToolKind = ToolKind::Simulate;
 }
 
-/// What was typed behind such a word: a family, and what it takes.
+/// Family and arguments after such a word.
 pub struct OfFamily<W> {
     family: Family,
     task: Box<dyn ToolTask>,
@@ -126,7 +126,7 @@ impl<W: Word> OfFamily<W> {
         families::of(family).tool(W::KIND)
     }
 
-    /// Does it.
+    /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         self.task.run(run).await
     }

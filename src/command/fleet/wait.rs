@@ -1,4 +1,4 @@
-//! `armctl wait`: until robots of any family are in a state.
+//! `armctl wait`: waits until robots of any family are in a state.
 
 use std::time::Duration;
 
@@ -9,7 +9,6 @@ use crate::command::frame::run::Repeat;
 use crate::failure::Failure;
 use crate::settings::duration;
 
-/// Pause between two looks.
 const EVERY: Duration = Duration::from_millis(200);
 
 /// Wait until a condition holds, of several robots for all of them, and print how they are then
@@ -27,10 +26,7 @@ pub struct Wait {
 }
 
 impl Wait {
-    /// How `status` is repeated for it.
-    ///
-    /// # Errors
-    /// A condition that is none.
+    /// Repetition of `status` for this condition.
     pub fn repeat(&self, given: &Repeat) -> Result<Repeat, Failure> {
         let until = Some(Condition::new(&self.condition)?);
         let every = given.every.or(Some(EVERY));

@@ -10,18 +10,6 @@ use crate::controller::findings::Findings;
 use crate::controller::sheet::{Column, Dialect, update, write};
 use crate::failure::Failure;
 
-/// A file that rows are written into.
-#[derive(Debug, Args)]
-#[group(skip)]
-pub struct SheetOptions {
-    /// Write them into this new CSV file
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
-    /// How it is written.
-    #[command(flatten)]
-    pub manner: SheetManner,
-}
-
 /// How a file is written.
 #[derive(Debug, Args)]
 #[group(skip)]
@@ -44,20 +32,6 @@ pub struct SheetTarget {
     dialect: Dialect,
     /// What is there and stays.
     old: Option<Vec<u8>>,
-}
-
-impl SheetOptions {
-    /// Where rows of one robot go, if somebody wants a file.
-    pub fn target(&self, several: bool) -> Result<Option<SheetTarget>, Failure> {
-        match &self.csv {
-            Some(file) => self.manner.target(file.clone(), several).map(Some),
-            None if self.manner.is_given() => {
-                Err(Failure::usage("--force, --update and --decimal-comma are about the file of --csv")
-                    .hint("name it with --csv FILE"))
-            }
-            None => Ok(None),
-        }
-    }
 }
 
 impl SheetManner {

@@ -6,7 +6,9 @@ use super::numbers::{Numbers, not_held, number, read_back};
 use super::rows::Listed;
 use crate::command::ValueKind;
 use crate::command::commands;
-use crate::command::frame::store::{Answers, Field, Get, Ids, List, Store, Words, Writable, ids, table_commands};
+use crate::command::frame::store::{
+    Answers, Field, Get, Ids, List, Single, Store, Words, Writable, ids, table_commands,
+};
 use crate::command::frame::watch::Watch;
 use crate::command::toyo::complete;
 use crate::controller::Risk;
@@ -60,6 +62,7 @@ impl Store for Counters {
     type Wire = Record;
     type Value = i32;
     type More = Listed;
+    type Options = Single;
 
     const WORDS: Words = Words {
         nouns: ["counter", "counters"],
@@ -84,27 +87,31 @@ impl Store for Counters {
         names_of::counter(u8::try_from(counter).unwrap_or(u8::MAX))
     }
 
-    fn fields() -> Vec<Field> {
-        vec![Field { name: "count", heading: "count", is_number: true }]
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self)
     }
 
-    fn texts(record: &Record) -> Vec<String> {
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::number("count", "count")]
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
         vec![count(record).map_or_else(|| record.written(), |count| count.to_string())]
     }
 
-    fn value(record: &Record) -> Option<i32> {
+    fn value(&self, record: &Record) -> Option<i32> {
         count(record)
     }
 
-    fn more(_counter: i32, record: Option<&Record>) -> Listed {
+    fn more(&self, _counter: i32, record: Option<&Record>) -> Listed {
         Listed::of(record)
     }
 
-    fn is_blank(record: &Record) -> bool {
+    fn is_blank(&self, record: &Record) -> bool {
         count(record) == Some(0)
     }
 
-    async fn read(link: &mut Link, screen: &Screen, counters: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, counters: &[i32]) -> Result<Answers<Record>, Failure> {
         let requests: Vec<Request> = counters.iter().copied().map(read).collect();
         Ok(Answers::of(read_each(link, screen, "reading counters", &requests).await?))
     }
@@ -128,18 +135,18 @@ impl Writable for Counters {
 
     const RISK: Risk = Risk::Write;
 
-    fn draft(_counter: i32, texts: &[Option<&str>]) -> Result<Option<i32>, String> {
+    fn draft(&self, _counter: i32, texts: &[Option<&str>]) -> Result<Option<i32>, String> {
         texts.first().copied().flatten().map(|text| number(&fields()[1], text)).transpose()
     }
 
-    fn whole(counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
+    fn whole(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
         let missing = || Failure::usage(format!("{}: a count is needed", Self::name(counter)));
         let count = draft.ok_or_else(|| missing().hint("give a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
         record.map_err(|error| wrong(&error))
     }
 
-    async fn plan(link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, counter: i32, draft: &Option<i32>) -> Result<(), Failure> {
         let text = match draft {
             Some(count) => order(counter, *count).text(),
             None => format!("@MCST {}=?", Self::name(counter)),
@@ -147,7 +154,13 @@ impl Writable for Counters {
         link.plan_overwriting(&read(counter), &text).await
     }
 
-    async fn write(link: &mut Link, _screen: &Screen, counter: i32, new: &Record) -> Result<(), Failure> {
+    async fn write(
+        &self,
+        link: &mut Link,
+        _screen: &Screen,
+        counter: i32,
+        (_, new): (Option<&Record>, &Record),
+    ) -> Result<(), Failure> {
         let wanted = count(new).unwrap_or_default();
         let order = order(counter, wanted);
         link.ask(&order).await?;
@@ -174,6 +187,7 @@ impl Store for Timers {
     type Wire = Record;
     type Value = f64;
     type More = Listed;
+    type Options = Single;
 
     const WORDS: Words = Words {
         nouns: ["timer", "timers"],
@@ -198,27 +212,31 @@ impl Store for Timers {
         names_of::timer(u8::try_from(number).unwrap_or(u8::MAX))
     }
 
-    fn fields() -> Vec<Field> {
-        vec![Field { name: "time_s", heading: "time (s)", is_number: true }]
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self)
     }
 
-    fn texts(record: &Record) -> Vec<String> {
-        vec![Self::value(record).map_or_else(|| record.written(), |seconds| format!("{seconds:.1}"))]
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::number("time_s", "time (s)")]
     }
 
-    fn value(record: &Record) -> Option<f64> {
+    fn texts(&self, record: &Record) -> Vec<String> {
+        vec![self.value(record).map_or_else(|| record.written(), |seconds| format!("{seconds:.1}"))]
+    }
+
+    fn value(&self, record: &Record) -> Option<f64> {
         record.is_listed().then(|| f64::from(record.number("time").unwrap_or(0)) / 10.0)
     }
 
-    fn more(_timer: i32, record: Option<&Record>) -> Listed {
+    fn more(&self, _timer: i32, record: Option<&Record>) -> Listed {
         Listed::of(record)
     }
 
-    fn is_blank(record: &Record) -> bool {
+    fn is_blank(&self, record: &Record) -> bool {
         record.number("time") == Some(0)
     }
 
-    async fn read(link: &mut Link, screen: &Screen, timers: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, timers: &[i32]) -> Result<Answers<Record>, Failure> {
         let requests = timers.iter().map(|number| Request::of(table::Command::Mtmr, [Value::Number(*number)]));
         let requests: Vec<Request> = requests.collect();
         Ok(Answers::of(read_each(link, screen, "reading timers", &requests).await?))

@@ -26,19 +26,22 @@ const LINES: &[(&str, Risk)] = &[
     ("param set P01 ax2=150", Destroy), ("param set P01 1 2 3 4", Destroy), ("param set E22 1000 0 0 0", Destroy),
     ("param restore FOLDER/parameters.toml", Destroy),
     ("point get 1", Read), ("point list", Read), ("teach 1", Destroy), ("point set 1 z=5", Destroy), ("point set 1 1 2 3 4", Destroy),
-    ("point set --from FOLDER/points.csv --task 2", Destroy),
+    ("point get 1 --task 2", Write), ("point copy 1 2", Destroy), ("point dump FOLDER/taught.csv 1-2", Read),
+    ("point restore FOLDER/points.csv --task 2", Destroy),
     ("speed-table get 1", Read), ("speed-table set 1 77", Destroy), ("speed-table list", Read), ("speed-table dump FOLDER/speed.csv", Read),
     ("speed-table copy 2 3", Destroy), ("speed-table restore FOLDER/rows.csv", Destroy),
     ("accel-table get 1", Read), ("accel-table set 1 0.77", Destroy), ("accel-table list", Read), ("accel-table dump FOLDER/accel.csv", Read),
     ("accel-table copy 2 1", Destroy), ("accel-table restore FOLDER/times.csv", Destroy),
     ("torque-table get 1", Read), ("torque-table set 1 load=1", Destroy), ("torque-table list", Read), ("torque-table dump FOLDER/torque.csv", Read),
     ("torque-table copy 1 2", Destroy), ("torque-table restore FOLDER/limits.csv", Destroy),
-    ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy),
+    ("mvm get 1", Read), ("mvm set 1 pieces1=9 approach-z=1", Destroy), ("mvm list", Read), ("mvm copy 1 2", Destroy),
+    ("mvm dump FOLDER/mvm.csv 1", Read), ("mvm restore FOLDER/groups.csv", Destroy),
     ("program list", Read), ("program get", Read), ("program diff FOLDER/program.txt", Read), ("program show", Read), ("program search 5", Write),
     ("program put FOLDER/program.txt", Destroy), ("program put FOLDER/program.txt --keep-rest", Destroy),
     ("program insert 1 HOME --task 2", Destroy), ("program delete 1", Destroy), ("program delete 1 --to 2", Destroy),
     ("program copy 1 2 --at 3", Destroy), ("program copy 1 2 --at 3 --from-task 1 --to-task 2", Destroy),
     ("palletizing get 1", Read), ("palletizing set 1 end 7", Destroy), ("palletizing set 1 start tag=7", Destroy),
+    ("palletizing list 1", Read), ("palletizing dump FOLDER/pallet.csv 1", Read), ("palletizing restore FOLDER/records.csv 1", Destroy),
     ("palletizing copy 2 1", Destroy), ("palletizing select 1", Write), ("palletizing progress", Read),
     ("easy get 1", Read), ("easy set 1 1 2 3", Destroy), ("easy set 1 loop=9", Destroy), ("easy copy 2 1", Destroy),
     ("easy list", Read), ("easy dump FOLDER/easy.csv", Read), ("easy restore FOLDER/programs.csv", Destroy),
@@ -62,7 +65,9 @@ const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
 /// What is on it beside its start state.
-const BEFORE: [&str; 7] = [
+const BEFORE: [&str; 9] = [
+    "point set 2 7 7 7 7",
+    "mvm set 2 pieces1=4",
     "torque-table set 2 load=2",
     "counter set 1 3",
     "easy set 1 5 6 7",
@@ -77,9 +82,11 @@ fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("parameters.toml", "[parameters]\nM09 = 'J'\nE06 = { ax1 = 900, ax2 = 900, ax3 = 900, ax4 = 900 }\n");
-    write("points.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
+    write("points.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,5,5,5,5\n2,6,6,6,6\n");
     write("rows.csv", "name,speed_mm_s\n1,77\n");
     write("times.csv", "name,time_s\n1,0.77\n");
+    write("groups.csv", "name,pieces1\n1,9\n");
+    write("records.csv", "name,value\nend,7\n");
     write("limits.csv", "name,load\n1,1\n");
     write("programs.csv", "name,loops\n1,9\n");
     write("counts.csv", "name,count\nCN01,5\n");
@@ -283,7 +290,7 @@ fn a_question_shows_old_and_new_and_spares_what_nobody_wrote() {
     let sent = heard.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
     // What is as it shall be, and what nobody wrote, is no question.
-    for line in ["param set P01 ax2=1000", "point set 2 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
+    for line in ["param set P01 ax2=1000", "point set 4 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
         if let Err(failure) = bench.unasked(&words) {
             panic!("{line}: {failure}");

@@ -34,11 +34,6 @@ impl Numbers {
     }
 }
 
-/// Numbers in the order given, those that follow each other as `5-9`.
-pub fn runs(numbers: &[i32]) -> String {
-    typed::runs(numbers, "-")
-}
-
 /// Reads a number, which must be in the range of the field; of one with decimals, in units of the last.
 pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     match field.read(text) {
@@ -109,7 +104,6 @@ mod tests {
         let parse = |text| Numbers::parse(field(), text);
         let given = [parse("7").unwrap(), parse("2-4").unwrap(), parse("3..5").unwrap()];
         assert_eq!(Numbers::of(&given, field()), [7, 2, 3, 4, 5]);
-        assert_eq!(runs(&Numbers::of(&given, field())), "7, 2-5");
         assert_eq!(Numbers::of(&[], field()).len(), 99);
         assert_eq!(parse("100").unwrap_err(), "counter: 100 is out of range (a number, 1 to 99)");
         assert_eq!(parse("5-2").unwrap_err(), "the range ends before it begins; did you mean 2-5?");

@@ -13,8 +13,10 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::stores::{parameter_cell, parameter_sketch};
 use super::values::{Changes, NOT_IN_MANUAL, word};
-use crate::command::frame::dry_run::unknown;
-use crate::command::frame::store::{Answers, Field, Ids, Store, Words, Writable, ids, table_commands};
+use crate::client::toyo::Letters;
+use crate::command::frame::store::{
+    Answers, Differing, Field, Ids, Single, Store, Words, Writable, ids, table_commands,
+};
 use crate::command::robot::item::asked;
 use crate::controller::Risk;
 use crate::controller::toyo::field::{self, Form, Value};
@@ -107,6 +109,7 @@ impl<K: Kind> Store for Rows<K> {
     type Wire = Record;
     type Value = K::Value;
     type More = Listed;
+    type Options = Single;
 
     const WORDS: Words = K::WORDS;
     const IDS: Ids = K::IDS;
@@ -123,73 +126,175 @@ impl<K: Kind> Store for Rows<K> {
         row.to_string()
     }
 
-    fn fields() -> Vec<Field> {
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self(PhantomData))
+    }
+
+    fn fields(&self) -> Vec<Field> {
         K::FIELDS.to_vec()
     }
 
-    fn texts(record: &Record) -> Vec<String> {
-        if record.layout() == UNLISTED {
-            return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
-        }
-        body::<K>(record).map(|(field, value)| plain(field, value)).collect()
+    fn texts(&self, record: &Record) -> Vec<String> {
+        texts(record, K::body().fields.len())
     }
 
-    fn value(record: &Record) -> Option<K::Value> {
+    fn value(&self, record: &Record) -> Option<K::Value> {
         record.is_listed().then(|| K::value(record))
     }
 
-    fn more(_row: i32, record: Option<&Record>) -> Listed {
+    fn more(&self, _row: i32, record: Option<&Record>) -> Listed {
         Listed::of(record)
     }
 
-    fn is_blank(record: &Record) -> bool {
-        K::ZERO_IS_BLANK && record.is_listed() && body::<K>(record).all(|(_, value)| *value == Value::Number(0))
+    fn is_blank(&self, record: &Record) -> bool {
+        K::ZERO_IS_BLANK && is_zero(record, K::body().fields.len())
     }
 
-    async fn read(link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, rows: &[i32]) -> Result<Answers<Record>, Failure> {
         let requests = rows.iter().copied().map(K::read).collect::<Result<Vec<Request>, Failure>>()?;
         let what = format!("reading {}", K::WORDS.nouns[1]);
         Ok(Answers::of(read_each(link, screen, &what, &requests).await?))
     }
 }
 
-impl<K: Kind> Writable for Rows<K> {
+impl<K: Kind> EepromRow for Rows<K> {
+    fn body(&self, _row: i32) -> Layout {
+        K::body()
+    }
+
+    fn request(&self, row: i32) -> Result<Request, Failure> {
+        K::read(row)
+    }
+
+    fn cell(&self, row: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        K::cell(row, values)
+    }
+
+    fn sketch(&self, row: i32, values: &[Option<Value>]) -> String {
+        K::sketch(row, values)
+    }
+}
+
+/// A table of which each row is one record in the EEPROM.
+pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
+    /// Whether rows have different fields: a file has one column for all of them, `ax1=100 ax2=0`.
+    const IS_MIXED: bool = false;
+
+    /// Letters of the axes, where rows are coordinates.
+    fn letters(&self) -> Letters {
+        Letters::USUAL
+    }
+
+    /// Words of a command line that stand for others, such as a file of them.
+    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+        Ok(words.to_vec())
+    }
+
+    /// The fields of a row, behind what tells it from the others.
+    fn body(&self, key: Self::Key) -> Layout;
+
+    /// What reads a row.
+    fn request(&self, key: Self::Key) -> Result<Request, Failure>;
+
+    /// A row with its values.
+    fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
+
+    /// The block that writes a row; `?` stands for values that are kept.
+    fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
+
+    /// Whether values go together.
+    fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// See [`Writable::consequences`].
+    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// See [`Writable::afterwards`].
+    fn afterwards(&self, _written: &[Self::Key]) -> Option<String> {
+        None
+    }
+}
+
+impl<T: EepromRow> Writable for T {
     type Draft = Changes;
 
     const RISK: Risk = Risk::Destroy;
 
-    fn draft(_row: i32, texts: &[Option<&str>]) -> Result<Changes, String> {
-        let fields = K::body().fields;
+    fn draft(&self, key: T::Key, texts: &[Option<&str>]) -> Result<Changes, String> {
+        if T::IS_MIXED {
+            let words: Vec<String> =
+                texts.iter().flatten().flat_map(|text| text.split_whitespace()).map(ToOwned::to_owned).collect();
+            return self.typed(key, &words).map_err(|failure| failure.message);
+        }
+        let fields = self.body(key).fields;
         let values = fields.iter().zip(texts).map(|(field, text)| text.map(|text| word(field, text)).transpose());
         values.collect::<Result<_, _>>().map(Changes::of)
     }
 
-    fn typed(row: i32, words: &[String]) -> Result<Changes, Failure> {
-        Changes::read(&asked(K::WORDS.nouns[0], &row.to_string()), &K::body(), words)
+    fn typed(&self, key: T::Key, words: &[String]) -> Result<Changes, Failure> {
+        let what = asked(T::WORDS.nouns[0], &T::name(key));
+        let changes = Changes::read_by(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
+        if let Some(values) = changes.whole() {
+            self.check(key, &values)?;
+        }
+        Ok(changes)
     }
 
-    fn whole(row: i32, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
+    fn whole(&self, key: T::Key, changes: &Changes, old: Option<&Record>) -> Result<Record, Failure> {
         let values = match (changes.whole(), old) {
             (Some(values), _) => values,
             (None, Some(old)) => changes.over(old)?,
-            (None, None) => return Err(unknown()),
+            (None, None) => {
+                let message =
+                    format!("{} was not read: there are no values to keep", asked(T::WORDS.nouns[0], &T::name(key)));
+                return Err(Failure::usage(message).hint("nothing was written; give all values"));
+            }
         };
-        Ok(K::cell(row, values)?.wanted)
+        self.check(key, &values)?;
+        Ok(self.cell(key, values)?.wanted)
     }
 
-    async fn plan(link: &mut Link, row: i32, changes: &Changes) -> Result<(), Failure> {
-        link.plan_overwriting(&K::read(row)?, &K::sketch(row, changes.values())).await
+    fn consequences(&self, rows: &[Differing<'_, T>]) -> Vec<String> {
+        EepromRow::consequences(self, rows)
     }
 
-    async fn write(link: &mut Link, screen: &Screen, row: i32, new: &Record) -> Result<(), Failure> {
-        let values = body::<K>(new).map(|(_, value)| value.clone()).collect();
-        link.overwrite(screen, &K::cell(row, values)?, &mut Cells::default()).await
+    fn afterwards(&self, written: &[T::Key]) -> Option<String> {
+        EepromRow::afterwards(self, written)
+    }
+
+    async fn plan(&self, link: &mut Link, key: T::Key, changes: &Changes) -> Result<(), Failure> {
+        link.plan_overwriting(&self.request(key)?, &self.sketch(key, changes.values())).await
+    }
+
+    async fn write(
+        &self,
+        link: &mut Link,
+        screen: &Screen,
+        key: T::Key,
+        (_, new): (Option<&Record>, &Record),
+    ) -> Result<(), Failure> {
+        let fields = self.body(key).fields.len();
+        let values = new.values()[new.values().len().saturating_sub(fields)..].to_vec();
+        link.overwrite(screen, &self.cell(key, values)?, &mut Cells::default()).await
     }
 }
 
-/// The values of a row behind its number.
-fn body<K: Kind>(record: &Record) -> impl Iterator<Item = (&'static field::Field, &Value)> {
-    record.pairs().skip(record.values().len().saturating_sub(K::body().fields.len()))
+/// What a record holds, each value as it is typed; as it came, where the manual does not list it.
+pub fn texts(record: &Record, fields: usize) -> Vec<String> {
+    if record.layout() == UNLISTED {
+        return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
+    }
+    let keys = record.values().len().saturating_sub(fields);
+    record.pairs().skip(keys).map(|(field, value)| plain(field, value)).collect()
+}
+
+/// Whether all values of a record behind its keys are zero.
+pub fn is_zero(record: &Record, fields: usize) -> bool {
+    let keys = record.values().len().saturating_sub(fields);
+    record.is_listed() && record.pairs().skip(keys).all(|(_, value)| *value == Value::Number(0))
 }
 
 /// A value as it is typed.
@@ -273,17 +378,13 @@ pub struct TorqueRow {
     load: f64,
 }
 
-const fn number(name: &'static str, heading: &'static str) -> Field {
-    Field { name, heading, is_number: true }
-}
-
 impl TableOf for Speed {
     type Value = f64;
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
     const WORDS: Words =
         words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
-    const FIELDS: &'static [Field] = &[number("speed_mm_s", "speed (mm/s)")];
+    const FIELDS: &'static [Field] = &[Field::number("speed_mm_s", "speed (mm/s)")];
 
     fn value(record: &Record) -> f64 {
         decimal(record, "speed")
@@ -296,7 +397,7 @@ impl TableOf for Accel {
     const IDS: Ids = ids!("toyo.accel-table");
     const WORDS: Words =
         words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
-    const FIELDS: &'static [Field] = &[number("time_s", "time (s)")];
+    const FIELDS: &'static [Field] = &[Field::number("time_s", "time (s)")];
 
     fn value(record: &Record) -> f64 {
         decimal(record, "time")
@@ -309,7 +410,7 @@ impl TableOf for Torque {
     const IDS: Ids = ids!("toyo.torque-table");
     const WORDS: Words =
         words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
-    const FIELDS: &'static [Field] = &[number("limit", "limit"), number("load", "load")];
+    const FIELDS: &'static [Field] = &[Field::number("limit", "limit"), Field::number("load", "load")];
 
     fn value(record: &Record) -> TorqueRow {
         TorqueRow { limit: decimal(record, "limit"), load: decimal(record, "load") }

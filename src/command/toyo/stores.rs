@@ -2,15 +2,14 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
-use serde_json::Value as Json;
 
 use super::eeprom::{Cell, Cells};
 use super::items::plan_twice;
 use super::link::Link;
-use super::values::{self, Shown};
+use super::values;
 use crate::client::toyo::Letters;
 use crate::command::frame::interrupt::interruptible;
-use crate::command::frame::orders::{Old, Written, unwritten};
+use crate::command::frame::orders::unwritten;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::{LayoutProblem, Record};
 use crate::controller::toyo::request::Request;
@@ -28,8 +27,6 @@ pub struct StoreTask {
     pub noun: &'static str,
     /// One of them, with its article, and several.
     pub things: [&'static str; 2],
-    /// Whether the command takes `--resume=KEY`.
-    pub resumes: bool,
 }
 
 /// A cell in a row of them.
@@ -81,12 +78,6 @@ impl Store {
         Self { letters, ..self }
     }
 
-    /// With what it holds; `None` in a dry run.
-    #[must_use]
-    pub fn over(self, found: Option<Record>) -> Self {
-        Self { found: found.into(), ..self }
-    }
-
     /// Whether it is known to hold something else.
     pub fn differs(&self) -> bool {
         matches!(&self.found, CellState::This(found) if !self.cell.is(found))
@@ -113,13 +104,7 @@ fn difference(cell: &Cell, found: &Record, letters: &Letters) -> [String; 2] {
     if cell.read.command() == table::Command::Rstx {
         return [found.written(), cell.wanted.written()];
     }
-    let (old, new) = (values::shown_by(found, letters), values::shown_by(&cell.wanted, letters));
-    let is_named = new.len() > 1;
-    let differ = |one: &[Shown], other: &[Shown]| {
-        let differing = one.iter().filter(|shown| !other.contains(shown)).cloned();
-        values::line(&differing.collect::<Vec<_>>(), is_named)
-    };
-    [differ(&old, &new), differ(&new, &old)]
+    values::difference(found, &cell.wanted, letters)
 }
 
 /// What is replaced that somebody wrote.
@@ -128,11 +113,6 @@ pub fn replaced(work: StoreTask, stores: &[Store]) -> Vec<Replaced> {
 }
 
 /// What is replaced, for a person to confirm; `of` says where: ` of task 1`.
-pub fn replacing(work: StoreTask, stores: &[Store], of: &str) -> Change {
-    overwriting(work.things, &replaced(work, stores), of)
-}
-
-/// The same of any things.
 pub fn overwriting([one, several]: [&str; 2], replaced: &[Replaced], of: &str) -> Change {
     let change = match replaced.len() {
         0 => return Change::nothing(),
@@ -175,28 +155,6 @@ pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Optio
     format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
 }
 
-/// What tells a cell from the others.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Key {
-    /// As typed: `P01`, `17`.
-    name: String,
-}
-
-/// Cells, with what they held and hold.
-pub type WrittenCells = Vec<Written<Key>>;
-
-/// What cells held and hold, each value by its name.
-pub fn written(stores: &[Store]) -> WrittenCells {
-    let values = |record: &Record, letters: &Letters| -> serde_json::Map<String, Json> {
-        values::shown_by(record, letters).into_iter().map(|shown| (shown.name, shown.value)).collect()
-    };
-    let of = |store: &Store| {
-        let old = if let CellState::This(found) = &store.found { Some(values(found, &store.letters)) } else { None };
-        Written::new(Key { name: store.key.clone() }, Old::read(old), values(&store.cell.wanted, &store.letters))
-    };
-    stores.iter().map(of).collect()
-}
-
 /// Result of one cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -207,8 +165,6 @@ pub enum StoreResult {
     Unchanged,
     /// Refused by a controller that does not have it.
     NotThere,
-    /// Left out by `--resume`.
-    LeftOut,
 }
 
 /// The cell of a parameter, or of a row of a table, with all fields of its layout.
@@ -221,15 +177,6 @@ pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Resu
         read: Request::read_parameter(parameter, row)?,
         write: Request::write_parameter(parameter, &values)?,
         wanted: parameter.layout.record(values)?,
-    })
-}
-
-/// How many are left out by `--resume=KEY`: those before it. Without a key, none is.
-pub fn left_out(stores: &[Store], resume: Option<&str>) -> Result<usize, Failure> {
-    let Some(key) = resume.filter(|key| !key.is_empty()) else { return Ok(0) };
-    stores.iter().position(|store| store.key.eq_ignore_ascii_case(key)).ok_or_else(|| {
-        Failure::usage(format!("--resume={key}: the file does not have it"))
-            .hint("--resume alone compares everything, and writes what differs")
     })
 }
 
@@ -246,27 +193,24 @@ impl Link {
     }
 }
 
-/// Stores one after the other, each unless it holds that already; the first ones are left out. The first failure ends
-/// it, and tells what was stored, what may have been, and what was not; so does Ctrl-C. In a dry run all is noted.
+/// Stores one after the other, each unless it holds that already. The first failure ends it, and tells what was stored, what may have been, and what was not; so does Ctrl-C. In a dry run all is noted.
 pub async fn store_all(
     link: &mut Link,
     screen: &Screen,
     work: StoreTask,
     stores: &[Store],
-    left_out: usize,
 ) -> Result<Vec<StoreResult>, Failure> {
-    let mut fates = vec![StoreResult::LeftOut; left_out.min(stores.len())];
-    let rest = &stores[fates.len()..];
-    if link.is_dry() || rest.len() == 1 {
-        for store in rest {
+    let mut fates = Vec::with_capacity(stores.len());
+    if link.is_dry() || stores.len() == 1 {
+        for store in stores {
             fates.push(one(link, screen, store).await?);
         }
         return Ok(fates);
     }
-    let mut progress = screen.items_progress(work.doing, rest.len() as u64);
+    let mut progress = screen.items_progress(work.doing, stores.len() as u64);
     // The caller waits for Ctrl-C too, but asks this work first; so it ends here, with the account.
     let outcome = interruptible(async {
-        for store in rest {
+        for store in stores {
             fates.push(one(link, screen, store).await?);
             progress.advance(1);
         }
@@ -276,7 +220,7 @@ pub async fn store_all(
     drop(progress);
     match outcome {
         Ok(Ok(())) => Ok(fates),
-        Ok(Err(failure)) | Err(failure) => Err(account(failure, work, rest, &fates[stores.len() - rest.len()..])),
+        Ok(Err(failure)) | Err(failure) => Err(account(failure, work, stores, &fates)),
     }
 }
 
@@ -306,7 +250,6 @@ async fn one(link: &mut Link, screen: &Screen, store: &Store) -> Result<StoreRes
 /// The failure, and what became of each cell; it came up at the one behind the last fate.
 fn account(failure: Failure, work: StoreTask, stores: &[Store], fates: &[StoreResult]) -> Failure {
     let (done, rest) = stores.split_at(fates.len().min(stores.len()));
-    let next = rest.first();
     // Only these are known to have changed nothing.
     let is_known = matches!(failure.kind, Kind::Refused | Kind::NoAnswer | Kind::Usage);
     let (unknown, rest) = rest.split_at(if is_known { 0 } else { 1.min(rest.len()) });
@@ -324,10 +267,7 @@ fn account(failure: Failure, work: StoreTask, stores: &[Store], fates: &[StoreRe
             parts.push(format!("{words}: {}", span(work, stores)));
         }
     }
-    let again = match next {
-        Some(next) if work.resumes => format!("--resume={} goes on there", next.key),
-        _ => "the same command goes on: what is stored already is not written again".to_owned(),
-    };
+    let again = "the same command goes on: what is stored already is not written again".to_owned();
     let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
     Failure { message: parts.join("; "), ..failure }.hint(hint)
 }
@@ -349,8 +289,7 @@ fn span(work: StoreTask, stores: &[Store]) -> String {
 mod tests {
     use super::*;
 
-    const WORK: StoreTask =
-        StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"], resumes: true };
+    const WORK: StoreTask = StoreTask { doing: "storing points", noun: "point", things: ["a point", "points"] };
 
     fn stores() -> Vec<Store> {
         let parameter = Parameter::named("T1").unwrap();
@@ -369,20 +308,17 @@ mod tests {
         };
         assert_eq!(
             told(Kind::Refused, &[StoreResult::Written, StoreResult::Unchanged]),
-            "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | --resume=3 goes on there"
+            "no; done: points 1 to 2 (1 written, 1 unchanged); not written: points 3 to 5 | \
+             the same command goes on: what is stored already is not written again"
         );
         assert_eq!(
             told(Kind::OutcomeUnknown, &[StoreResult::Written]),
             "no; done: point 1 (1 written, 0 unchanged); written or not: point 2; not written: points 3 to 5 | \
-             --resume=2 goes on there"
+             the same command goes on: what is stored already is not written again"
         );
-        assert_eq!(told(Kind::NoAnswer, &[]), "no; nothing was written | --resume=1 goes on there");
-    }
-
-    #[test]
-    fn resuming_leaves_out_what_is_before() {
-        assert_eq!(left_out(&stores(), None).unwrap(), 0);
-        assert_eq!(left_out(&stores(), Some("3")).unwrap(), 2);
-        assert_eq!(left_out(&stores(), Some("9")).unwrap_err().kind, Kind::Usage);
+        assert_eq!(
+            told(Kind::NoAnswer, &[]),
+            "no; nothing was written | the same command goes on: what is stored already is not written again"
+        );
     }
 }

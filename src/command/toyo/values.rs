@@ -125,6 +125,23 @@ pub fn line(shown: &[Shown], is_named: bool) -> String {
     texts.join(" ")
 }
 
+/// Values in a line as they are typed: `ax1=100.00 ax2=0.00`, and a single one without its name.
+pub fn as_typed(shown: &[Shown]) -> String {
+    let typed = |one: &Shown| if shown.len() > 1 { format!("{}={}", one.name, one.text) } else { one.text.clone() };
+    shown.iter().map(typed).collect::<Vec<_>>().join(" ")
+}
+
+/// The values in which two records differ, in a line each; coordinates by these letters.
+pub fn difference(old: &Record, new: &Record, letters: &Letters) -> [String; 2] {
+    let (old, new) = (shown_by(old, letters), shown_by(new, letters));
+    let is_named = new.len() > 1;
+    let differ = |one: &[Shown], other: &[Shown]| {
+        let differing = one.iter().filter(|shown| !other.contains(shown)).cloned();
+        line(&differing.collect::<Vec<_>>(), is_named)
+    };
+    [differ(&old, &new), differ(&new, &old)]
+}
+
 impl ValueSlot {
     fn shown(&self, layout: &Layout, values: &[Value]) -> Shown {
         let pairs: Vec<(&Field, &Value)> =

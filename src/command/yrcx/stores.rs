@@ -13,7 +13,7 @@ use super::numbers::{Numbers, named};
 use super::several::{ask_each, is_undefined};
 use crate::command::ValueKind;
 use crate::command::frame::dry_run::Reason;
-use crate::command::frame::store::{Answers, Field, Ids, Store, Words, Writable};
+use crate::command::frame::store::{Answers, Field, Ids, Single, Store, Words, Writable};
 use crate::command::robot::item::Plain;
 use crate::controller::Risk;
 use crate::controller::names::Kind as Label;
@@ -89,6 +89,7 @@ impl<K: Kind> Store for Numbered<K> {
     type Wire = Row;
     type Value = K::Value;
     type More = Plain;
+    type Options = Single;
 
     const WORDS: Words = K::WORDS;
     const IDS: Ids = K::IDS;
@@ -111,24 +112,31 @@ impl<K: Kind> Store for Numbered<K> {
         named(K::RECORDS.read, key::<K>(), number)
     }
 
-    fn fields() -> Vec<Field> {
-        let fields = K::RECORDS.columns[1..].iter().zip(K::HEADINGS);
-        fields.map(|((name, key), heading)| Field { name, heading, is_number: is_number(*key) }).collect()
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self(PhantomData))
     }
 
-    fn texts(row: &Row) -> Vec<String> {
+    fn fields(&self) -> Vec<Field> {
+        let fields = K::RECORDS.columns[1..].iter().zip(K::HEADINGS);
+        let field = |((name, key), heading): (&(&'static str, Key), &&'static str)| {
+            if is_number(*key) { Field::number(name, heading) } else { Field::text(name, heading) }
+        };
+        fields.map(field).collect()
+    }
+
+    fn texts(&self, row: &Row) -> Vec<String> {
         row.texts.clone()
     }
 
-    fn value(row: &Row) -> Option<K::Value> {
+    fn value(&self, row: &Row) -> Option<K::Value> {
         K::value(&row.values)
     }
 
-    fn more(_number: i32, _row: Option<&Row>) -> Plain {
+    fn more(&self, _number: i32, _row: Option<&Row>) -> Plain {
         Plain {}
     }
 
-    fn is_blank(row: &Row) -> bool {
+    fn is_blank(&self, row: &Row) -> bool {
         K::is_blank(&row.values)
     }
 
@@ -136,7 +144,7 @@ impl<K: Kind> Store for Numbered<K> {
         is_undefined(failure)
     }
 
-    async fn read(link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
+    async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
         let order = |number: &i32| Ok(link.draft(K::RECORDS.read)?.with(key::<K>(), *number).build()?);
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
@@ -159,7 +167,7 @@ impl<K: Kind> Writable for Numbered<K> {
 
     const RISK: Risk = K::RISK;
 
-    fn draft(number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
+    fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
         let draft: Draft = texts.iter().map(|text| text.map(ToOwned::to_owned)).collect();
         if let Some(texts) = draft.iter().cloned().collect::<Option<Vec<String>>>() {
             stored::<K>(number, texts).map_err(|failure| failure.message)?;
@@ -167,7 +175,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(draft)
     }
 
-    fn whole(number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
+    fn whole(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
         let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
             (Some(text), _) => Ok(text.clone()),
             (None, Some(old)) => Ok(old.texts[at].clone()),
@@ -182,7 +190,7 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(Row::new::<K>(number, values))
     }
 
-    async fn plan(link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
+    async fn plan(&self, link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
         let reason = Reason::default().depending_on("what is there: it is written if that differs");
         // Two rows that agree only in what is given.
         let filled = |which: usize| {
@@ -198,7 +206,13 @@ impl<K: Kind> Writable for Numbered<K> {
         Ok(())
     }
 
-    async fn write(link: &mut Link, _screen: &Screen, number: i32, new: &Row) -> Result<(), Failure> {
+    async fn write(
+        &self,
+        link: &mut Link,
+        _screen: &Screen,
+        number: i32,
+        (_, new): (Option<&Row>, &Row),
+    ) -> Result<(), Failure> {
         let (order, _) = stored::<K>(number, new.texts.clone())?;
         link.ask(&order).await.map(drop)
     }

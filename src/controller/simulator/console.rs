@@ -1,9 +1,9 @@
-//! Lines of a console: words that all families read alike, and what they answer.
+//! Console commands that all simulators share, and their output.
 
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-/// `on` or `off`.
+/// Parses `on` or `off`.
 pub(crate) fn on_off(word: &str) -> Result<bool, String> {
     match word {
         "on" => Ok(true),
@@ -12,7 +12,7 @@ pub(crate) fn on_off(word: &str) -> Result<bool, String> {
     }
 }
 
-/// A whole number of a range.
+/// Parses an integer within a range.
 pub(crate) fn number<T: FromStr + PartialOrd + std::fmt::Display>(
     word: &str,
     range: RangeInclusive<T>,
@@ -21,22 +21,21 @@ pub(crate) fn number<T: FromStr + PartialOrd + std::fmt::Display>(
     number.ok_or_else(|| expected(word, &format!("a number from {} to {}", range.start(), range.end())))
 }
 
-/// What a word should be.
+/// Error for a wrong word.
 pub(crate) fn expected(word: &str, what: &str) -> String {
     format!("'{word}' is not {what}")
 }
 
-/// A line that no console has.
 pub(crate) fn unknown(line: &str) -> String {
     format!("no such line: '{}'", line.trim())
 }
 
-/// A line of the help: what is typed, and what it does.
+/// Help line: input, and its effect.
 pub fn help_line(typed: &str, does: &str) -> String {
     format!("{typed:<32}  {does}")
 }
 
-/// The help: the lines of a family, and those that every console has.
+/// Help text: the lines of a family, then the common ones.
 pub(crate) fn help(lines: &[(&str, &str)]) -> String {
     let common = [
         ("robot", "show what the controller is in; `state` is the same"),
@@ -47,14 +46,14 @@ pub(crate) fn help(lines: &[(&str, &str)]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Names and what they are, in two columns.
+/// Two-column table.
 pub(crate) fn table(rows: &[(String, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.chars().count()).max().unwrap_or_default();
     let lines = rows.iter().map(|(name, what)| format!("{name:<width$}  {what}").trim_end().to_owned());
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// One line from what always holds and what holds now.
+/// Comma-separated list of `always` and of the texts in `now` whose condition holds.
 pub(crate) fn summary<'a>(always: &[&'a str], now: impl IntoIterator<Item = (bool, &'a str)>) -> String {
     let now = now.into_iter().filter_map(|(holds, text)| holds.then_some(text));
     always.iter().copied().chain(now).collect::<Vec<_>>().join(", ")

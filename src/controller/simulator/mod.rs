@@ -1,6 +1,6 @@
-//! What the simulators of all families share: start states, the console, events at their time, answers on their way.
+//! Common parts of the simulators: start states, console, timed events, delayed answers.
 //!
-//! A family adds what is its own: the keys of its start state, the lines of its console, and the controller itself.
+//! A family adds the keys of its start state, its console commands, and the controller itself.
 
 pub(crate) mod answers;
 pub mod console;

@@ -1,4 +1,4 @@
-//! Start states as TOML: reading entries, and errors that name the line.
+//! Start states in TOML, with errors that give the line.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -14,7 +14,7 @@ use super::timeline::Timeline;
 /// Entries by number or name.
 pub(crate) type Table<T> = BTreeMap<String, Spanned<T>>;
 
-/// A line for the console of the simulator, at a time from its start.
+/// A console line at a time after the start.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Event {
@@ -23,7 +23,7 @@ pub(crate) struct Event {
     line: String,
 }
 
-/// Reads entries. The error says what is wrong, and in which line.
+/// Parses entries. An error gives the problem and the line.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     toml::from_str(text).map_err(|error| {
         let start = error.span().map_or(0, |span| span.start);
@@ -31,29 +31,28 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     })
 }
 
-/// An entry that nobody wrote.
+/// An entry that is not in the text.
 pub(crate) fn default_entry<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
 
-/// The same for a text.
 pub(crate) fn default_text(text: &str) -> Spanned<String> {
     default_entry(text.to_owned())
 }
 
-/// The text that entries are from, for errors.
+/// The TOML text, for the line numbers of errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Source<'a> {
     pub(crate) text: &'a str,
 }
 
 impl Source<'_> {
-    /// What is wrong with an entry, with its line.
+    /// Error about an entry, with its line.
     pub(crate) fn error<T>(&self, entry: &Spanned<T>, what: impl Display) -> String {
         format!("line {}: {what}", line_number(self.text, entry.span().start))
     }
 
-    /// What `read` makes of an entry.
+    /// Converts an entry with `read`.
     pub(crate) fn read<'e, T, R>(
         &self,
         entry: &'e Spanned<T>,
@@ -62,7 +61,7 @@ impl Source<'_> {
         read(entry.get_ref()).map_err(|what| self.error(entry, what))
     }
 
-    /// Takes every entry of a list.
+    /// Calls `take` for each entry of a list.
     pub(crate) fn each<'e, T: 'e>(
         &self,
         entries: impl IntoIterator<Item = &'e Spanned<T>>,
@@ -71,7 +70,7 @@ impl Source<'_> {
         entries.into_iter().try_for_each(|entry| self.read(entry, &mut take))
     }
 
-    /// Takes every entry of a table with its key.
+    /// Calls `take` for each entry of a table.
     pub(crate) fn each_of<'e, T>(
         &self,
         entries: &'e Table<T>,
@@ -80,7 +79,7 @@ impl Source<'_> {
         entries.iter().try_for_each(|(key, entry)| self.read(entry, |value| take(key, value)))
     }
 
-    /// A share from 0 to 1.
+    /// Reads a share from 0 to 1.
     pub(crate) fn share(&self, name: &str, entry: &Spanned<f64>) -> Result<f64, String> {
         self.read(entry, |share| {
             let share = Some(*share).filter(|share| (0.0..=1.0).contains(share));
@@ -88,14 +87,13 @@ impl Source<'_> {
         })
     }
 
-    /// Date and time, in a form as `strptime` has it.
+    /// Reads a date and time in a `strptime` format.
     pub(crate) fn time(&self, entry: &Spanned<String>, form: &str, example: &str) -> Result<DateTime, String> {
         let wrong = |_| format!("a time looks like \"{example}\"");
         self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
     }
 
-    /// Events in the order of their times. `check` reads the lines in the order of the text, so that a mistake shows now
-    /// and not in the middle of a run.
+    /// Sorts events by time. Calls `check` in text order, so that a mistake is found at the start and not during a run.
     pub(crate) fn timeline<R>(
         &self,
         entries: &[Spanned<Event>],
@@ -106,13 +104,13 @@ impl Source<'_> {
     }
 }
 
-/// A key that is a number; `things` are what it counts.
+/// Parses a numeric key; `things` names what it counts.
 pub(crate) fn numbered(things: &str, key: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
     let number = key.parse().ok().filter(|number| range.contains(number));
     number.ok_or_else(|| format!("{things} are {} to {}", range.start(), range.end()))
 }
 
-/// The line, from 1, in which a byte stands.
+/// Line number, from 1, of a byte offset.
 fn line_number(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }

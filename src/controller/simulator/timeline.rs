@@ -1,28 +1,28 @@
-//! Console lines that are carried out at their time.
+//! Console lines with execution times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::Now;
 
-/// Lines that are still to come, in the order of their times.
+/// Pending lines, sorted by time.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Timeline(VecDeque<(Now, String)>);
 
 impl Timeline {
-    /// When the next line is due.
+    /// Time of the next line.
     pub(crate) fn due(&self) -> Option<Now> {
         self.0.front().map(|(at, _)| *at)
     }
 
-    /// The next line that is due at `now`.
+    /// Takes the next line that is due at `now`.
     pub(crate) fn take(&mut self, now: Now) -> Option<String> {
         self.due().filter(|at| *at <= now)?;
         self.0.pop_front().map(|(_, line)| line)
     }
 }
 
-/// From lines with their milliseconds from the start, in any order.
+/// From lines with their times in milliseconds after the start, in any order.
 impl FromIterator<(u64, String)> for Timeline {
     fn from_iter<I: IntoIterator<Item = (u64, String)>>(lines: I) -> Self {
         let mut lines: Vec<_> = lines.into_iter().map(|(ms, line)| (Duration::from_millis(ms), line)).collect();

@@ -1,5 +1,5 @@
-//! Explains any line of either side, field by field, from the table. Never fails: a damaged line is explained up to the
-//! damage.
+//! Decoder of a protocol line into described fields, from the tables. It never fails: a damaged line is decoded up to
+//! the damage.
 
 use std::ops::Range;
 
@@ -13,16 +13,16 @@ use super::request::{BlockError, Request};
 use super::status::{BITS, Status};
 use super::table::{Command, Instruction, Pallet, Parameter, Row};
 
-/// A line in words.
+/// A decoded line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Description {
-    /// What it is, in a line.
+    /// One-line summary.
     pub title: String,
-    /// Section of the manual, where the command is known: `TO 2-2`.
+    /// Section of the manual for a known command: `TO 2-2`.
     pub section: Option<String>,
     /// Command and values, in their order.
     pub fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// The problem of the line, if any.
     pub problem: Option<String>,
 }
 
@@ -54,7 +54,8 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Told by the form that fits, or fits further. The one block that both send alike, TYPE, is taken for a request.
+    /// Guesses the sender by the form that fits, or fits further. TYPE has the same form on both sides and counts as a
+    /// request.
     pub fn guess(line: &str) -> Self {
         let text = line.trim_end_matches(['\r', '\n']);
         if matches!(text.trim_end_matches(' '), "@OK" | "@NG") {
@@ -65,14 +66,14 @@ impl Sender {
             let ends = forms(row, sender).iter().map(|form| Notes::new(text).block(row, form, sender));
             ends.map(|end| end.map_or_else(|(at, _)| at, |()| usize::MAX)).max().unwrap_or_default()
         };
-        // Only the blanks behind it tell an answer to MERP from the request (ambiguity C5).
+        // An answer to MERP differs from the request only in its trailing blanks (ambiguity C5).
         let padded = row.command == Command::Merp && text.ends_with(' ');
         if padded || reach(Self::Controller) > reach(Self::Host) { Self::Controller } else { Self::Host }
     }
 }
 
-/// Explains a line, its line end or not. `request` is what an answer answers, where that is known: `@OK` and `@NG` do not
-/// say so.
+/// Decodes a line, with or without line end. `request` is the request of an answer, if known: `@OK` and `@NG` do not
+/// contain it.
 pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Description {
     let text = line.trim_end_matches(['\r', '\n']);
     let request = request.filter(|_| sender == Sender::Controller);
@@ -86,7 +87,7 @@ pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Descri
     if let Some(row) = row {
         notes = explained(text, row, sender);
     }
-    // What is no block at all is told as such; the rest with its place in the line.
+    // An invalid block is reported as a whole; other damage with its position.
     let damage = match Request::parse(text) {
         Err(BlockError::Layout(_) | BlockError::Values(_) | BlockError::Unknown { .. } | BlockError::Other { .. }) => {
             None
@@ -106,7 +107,7 @@ pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Descri
     Description { title, section: row.map(citation), fields: notes.fields, problem: damage.or(other).or(notes.problem) }
 }
 
-/// A line in one line, for traces.
+/// One-line summary of a line, for traces.
 pub fn summary(line: &str, sender: Sender, request: Option<&Request>) -> String {
     let Description { title, fields, problem, .. } = describe(line, sender, request);
     if let Some(problem) = problem {
@@ -120,7 +121,7 @@ fn citation(row: &'static Row) -> String {
     format!("TO {}", row.section)
 }
 
-/// `@OK` and `@NG`.
+/// Meaning of `@OK` and `@NG`.
 fn verdict(text: &str) -> Option<(&'static str, &'static str)> {
     match text.trim_end_matches(' ') {
         "@OK" => Some(("done", "accepted; of what takes time, begun")),
@@ -140,7 +141,7 @@ fn decided(text: &str, what: &str, about: &'static str, request: Option<&Request
     Description { title, section: request.map(|request| citation(request.row())), fields: notes.fields, problem }
 }
 
-/// The word of a block with its row.
+/// Command word of a block, with its row.
 fn command_of(text: &str) -> Option<(&str, &'static Row)> {
     let word = text.strip_prefix('@').unwrap_or(text).split(' ').next()?;
     Some((word, Row::named(word)?))
@@ -150,7 +151,7 @@ fn forms(row: &'static Row, sender: Sender) -> &'static [Layout] {
     if sender == Sender::Host { row.requests } else { row.answers }
 }
 
-/// The line by the form that fits it, or else by the one that fits furthest.
+/// Decodes a line by the form that fits, or else by the one that fits furthest.
 fn explained<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> {
     let mut best: Option<(usize, Notes<'t>)> = None;
     for form in forms(row, sender) {
@@ -176,23 +177,23 @@ fn explained<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> 
     )
 }
 
-/// Notes on a line, gathered front to back.
+/// Fields of a line, collected from left to right.
 struct Notes<'t> {
     text: &'t str,
     fields: Vec<FieldNote>,
     problem: Option<String>,
 }
 
-/// What a value is a part of.
+/// Context of a value.
 #[derive(Clone, Copy)]
 struct MessageContext {
     command: Command,
-    /// The page of STAS.
+    /// Page of STAS.
     page: Option<i32>,
     sender: Sender,
 }
 
-/// Where the explanation ends, in bytes, and why.
+/// Byte offset and reason of the end of decoding.
 type Damage = (usize, String);
 
 impl<'t> Notes<'t> {
@@ -200,7 +201,7 @@ impl<'t> Notes<'t> {
         Self { text, fields: Vec::new(), problem: None }
     }
 
-    /// Notes some bytes of the line.
+    /// Adds a part of the line.
     fn add(&mut self, bytes: Range<usize>, name: &'static str, meaning: String, about: &'static str) {
         let raw = self.text.get(bytes.clone()).unwrap_or_default().to_owned();
         let column = self.column(bytes.start);
@@ -217,10 +218,10 @@ impl<'t> Notes<'t> {
         start
     }
 
-    /// Notes command, values and what they contain, by one form.
+    /// Adds command, values and their content, by one form.
     fn block(&mut self, row: &'static Row, form: &Layout, sender: Sender) -> Result<(), Damage> {
         let start = self.command(row);
-        // HTSK is read as CTSK, which is as long.
+        // HTSK is parsed as CTSK, which has the same length.
         let text = format!("{}{}", row.word, self.text.get(start + row.word.len()..).unwrap_or_default());
         let mut found = Vec::new();
         let end = form.scan(&text, |field, value, bytes| found.push((field, value, bytes)));
@@ -243,7 +244,7 @@ impl<'t> Notes<'t> {
         end.map_err(|error| self.damage(start, &error))
     }
 
-    /// The parameter, instruction or palletizing record in a block.
+    /// Adds the parameter, instruction or palletizing record of a block.
     fn content(&mut self, of: MessageContext, record: Option<i32>, bytes: Range<usize>) -> Result<(), Damage> {
         let start = bytes.start;
         let body = self.text.get(bytes).unwrap_or_default();
@@ -274,7 +275,7 @@ impl<'t> Notes<'t> {
         end.map_err(|error| self.damage(start, &error))
     }
 
-    /// Notes a value. What the host sends must be in range; what a controller has may be anything.
+    /// Adds a value. A value from the host must be in range; one from the controller may be any.
     fn value(&mut self, of: MessageContext, field: &'static Field, value: &Value, bytes: Range<usize>) {
         let wrong = field.check(value).err().filter(|error| matches!(error, FieldError::Range { .. }));
         let mut meaning = meaning_of(of, field, value);
@@ -293,7 +294,7 @@ impl<'t> Notes<'t> {
     }
 }
 
-/// What a value says; status bits and error codes by name.
+/// Meaning of a value, with names of status bits and error codes.
 fn meaning_of(of: MessageContext, field: &Field, value: &Value) -> String {
     match (of.command, field.name, value) {
         (Command::Stas, "st1", Value::Byte(byte)) => page_words(of.page.and_then(|page| page.try_into().ok()), *byte),
@@ -303,7 +304,7 @@ fn meaning_of(of: MessageContext, field: &Field, value: &Value) -> String {
     }
 }
 
-/// A page of the status in words (TO 2-2, STAS).
+/// Description of a status page (TO 2-2, STAS).
 fn page_words(page: Option<u8>, byte: u8) -> String {
     match page {
         Some(1) if byte == errors::NONE => return "no error".to_owned(),
@@ -428,7 +429,7 @@ mod tests {
             ["command", "station", "screen", "sy01"]
         );
         assert!(cut.problem.is_some());
-        // What a controller has may be anything.
+        // A value from the controller may be out of range.
         let page = explain("@STAS SNO=7 ST1=00 ST2=00");
         assert_eq!((page.fields[1].meaning.as_str(), page.problem), ("7, out of range", None));
     }

@@ -1,37 +1,37 @@
-//! The 104 error codes (TO 4-1), as STAS SNO=1 and EHTR give them.
+//! The 104 error codes (TO 4-1) of STAS SNO=1 and EHTR.
 //!
-//! The manual has names only; causes and remedies are what such names mean on such machines.
+//! The manual has only names. Causes and remedies are the usual ones for such machines.
 
 use std::borrow::Cow;
 
-/// No error. It is not in the table; sample session 3-1 shows it (ambiguity R26).
+/// No error. It is not in the table of the manual; sample session 3-1 shows it (ambiguity R26).
 pub const NONE: u8 = 0x00;
 
-/// An error code in words.
+/// Description of an error code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
     /// The code.
     pub code: u8,
-    /// Whether it is in the manual's table.
+    /// Whether the table of the manual contains it.
     pub known: bool,
-    /// What it is called, with the axis it is about.
+    /// Name, with the axis.
     pub name: Cow<'static, str>,
-    /// 1 to 4, where it is about one axis.
+    /// Axis 1 to 4 of an axis error.
     pub axis: Option<u8>,
-    /// What may have happened.
+    /// Possible cause.
     pub cause: &'static str,
     /// What to do.
     pub remedy: &'static str,
 }
 
 impl Explanation {
-    /// `0x28: axis 1: beyond the plus soft limit while moving`.
+    /// One line: `0x28: axis 1: beyond the plus soft limit while moving`.
     pub fn in_a_line(&self) -> String {
         format!("{:02X}: {}", self.code, self.name)
     }
 }
 
-/// What a code means; an unknown one is explained as such.
+/// Describes a code, also an unknown one.
 pub fn explain(code: u8) -> Explanation {
     let (axis, row) = match code {
         0x20..=0x5F => {
@@ -71,7 +71,7 @@ pub fn explain(code: u8) -> Explanation {
     }
 }
 
-/// All codes of the table, ascending.
+/// All codes of the table, in ascending order.
 pub fn all() -> impl Iterator<Item = Explanation> {
     (1..=u8::MAX).map(explain).filter(|explanation| explanation.known)
 }
@@ -85,7 +85,7 @@ const PROGRAM: &str = "`toyo program get` and `toyo program check` show the step
 
 type Text = &'static str;
 
-/// Errors of one axis by the low digit; the high one is the axis plus 1.
+/// Axis errors by their low digit; the high digit is the axis plus 1.
 const AXIS: [(u8, Text, Text, Text); 14] = [
     (0x0, "communication error", "the controller lost contact with the driver of the axis", DRIVE),
     (0x1, "overspeed", "the axis ran faster than it may", "lower the speed or the gains; check the encoder"),
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn codes_name_their_axis() {
         assert_eq!(explain(0x38).in_a_line(), "38: axis 2: beyond the plus soft limit while moving");
-        // The manual prints "+" for C3 too (ambiguity R25).
+        // The manual also prints "+" for C3 (ambiguity R25).
         assert_eq!(explain(0xC3).in_a_line(), "C3: axis 2: target beyond the minus soft limit");
         assert_eq!(explain(0xC6).axis, Some(4));
         assert_eq!(explain(0x13).axis, None);

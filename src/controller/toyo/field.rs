@@ -1,140 +1,140 @@
-//! One value on the line: its form, to the character.
+//! Fields of a block, with their exact formats.
 //!
-//! Everything has a fixed width (TO 2-4 to 2-8 print it as templates). On a line without a checksum that is all there is
-//! against lost and doubled characters, so what comes must have it too; only its range is not checked. What people write
-//! may be shorter.
+//! Every field has a fixed width (templates in TO 2-4 to 2-8). Lines have no checksum: the width is the only
+//! protection against lost or doubled characters. So received values must have it, but may be out of range. User
+//! input may be shorter.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use thiserror::Error;
 
-/// What stands in one place of a block.
+/// A field of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// In snake case: `ax1`, `x`, `station`.
+    /// Name in snake case: `ax1`, `x`, `station`.
     pub name: &'static str,
-    /// How it is written.
+    /// Format.
     pub form: Form,
-    /// What it is.
+    /// Description.
     pub about: &'static str,
-    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty where it has none.
+    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty without one.
     pub unit: &'static str,
     /// Whether the controller may send asterisks instead (TO 2-8, error history).
     pub starred: bool,
 }
 
-/// How a value is written.
+/// Format of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// Decimal digits with leading zeros.
     Number(Number),
     /// Two hexadecimal digits.
     Hex,
-    /// One of some words, the longest that fits.
+    /// One of these words; the longest match counts.
     Word(&'static [Word]),
-    /// Eight of `0` and `1`, bit 8 first (ambiguity C9).
+    /// Eight digits `0` or `1`, bit 8 first (ambiguity C9).
     Bits,
-    /// Eight of `0`, `1` and `.`, bit 8 first; a dot leaves its bit alone.
+    /// Eight characters `0`, `1` or `.`, bit 8 first; a dot leaves its bit unchanged.
     Mask,
-    /// Anything without a blank.
+    /// Text without blanks.
     Token,
-    /// The rest of the block, outer blanks apart.
+    /// The rest of the block, without surrounding blanks.
     Text,
 }
 
-/// The form of a number. Values count the last decimal: 12.34 is 1234.
+/// Number format. Values count the last decimal: 12.34 is 1234.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Number {
     /// Whether a sign is always written.
     pub signed: bool,
-    /// Digits before the point.
+    /// Digits before the decimal point.
     pub whole: u8,
-    /// Digits after it; without any there is no point.
+    /// Digits after it; with 0 there is no point.
     pub decimals: u8,
-    /// Digits that may come beyond those, and are kept (ambiguity R8).
+    /// Additional decimals that are accepted and kept (ambiguity R8).
     pub spare: u8,
-    /// Least value that may be sent.
+    /// Minimum of a sent value.
     pub least: i32,
-    /// Greatest value that may be sent.
+    /// Maximum of a sent value.
     pub most: i32,
 }
 
-/// A word with its meaning.
+/// A word and its meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Word {
-    /// As on the line.
+    /// Text in the protocol.
     pub text: &'static str,
-    /// In words; the same as `text` where that says it.
+    /// Meaning; equal to `text` if that is clear.
     pub about: &'static str,
 }
 
-/// A value, without its form.
+/// A value without its format.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Value {
-    /// In units of the last decimal of its field.
+    /// In units of the last decimal.
     Number(i32),
     /// From two hexadecimal digits.
     Byte(u8),
-    /// As on the line.
+    /// Text in the protocol.
     Word(&'static str),
     /// Eight bits; bit 1 of the manual is the least significant.
     Bits(u8),
-    /// Which bits count, and what they are.
+    /// Relevant bits and their states.
     Mask(Mask),
     /// Text that has no form.
     Text(String),
-    /// Asterisks in place of a value.
+    /// Asterisks instead of a value.
     Stars,
 }
 
-/// Conditions or orders for eight bits; bit 1 of the manual is the least significant.
+/// Conditions or actions for eight bits; bit 1 of the manual is the least significant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Mask {
-    /// Bits that count.
+    /// Relevant bits.
     pub care: u8,
-    /// What they are; 0 where a bit does not count.
+    /// States of these bits; 0 for irrelevant ones.
     pub bits: u8,
 }
 
-/// Why something is no value of a field.
+/// Why a text or value does not fit a field.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FieldError {
-    /// Not in the field's form.
+    /// Wrong format.
     #[error("{name}: '{}' is not {form}", found.escape_debug())]
     Form {
         /// Name of the field.
         name: &'static str,
-        /// What stood there.
+        /// Found text.
         found: String,
-        /// What should.
+        /// Expected format.
         form: String,
     },
-    /// A number with more decimals than can be sent.
+    /// More decimals than the protocol has.
     #[error("{name}: {found} {} ({form})", decimals(*most))]
     Decimals {
         /// Name of the field.
         name: &'static str,
-        /// What stood there.
+        /// Found text.
         found: String,
-        /// Decimals that can be.
+        /// Maximum number of decimals.
         most: u8,
-        /// What may be.
+        /// Expected format.
         form: String,
     },
-    /// A number beyond what may be sent.
+    /// Number out of range.
     #[error("{name}: {found} is out of range ({form})")]
     Range {
         /// Name of the field.
         name: &'static str,
         /// The number.
         found: String,
-        /// What may be.
+        /// Expected range.
         form: String,
     },
 }
 
-/// What is wrong with a number of more decimals.
+/// Message about too many decimals.
 fn decimals(most: u8) -> String {
     match most {
         0 => "is not a whole number".to_owned(),
@@ -144,7 +144,7 @@ fn decimals(most: u8) -> String {
 }
 
 impl Number {
-    /// A whole number of so many digits.
+    /// An integer with this number of digits.
     pub const fn digits(whole: u8, least: i32, most: i32) -> Self {
         Self { signed: false, whole, decimals: 0, spare: 0, least, most }
     }
@@ -154,30 +154,30 @@ impl Number {
         Self { signed: false, whole, decimals, spare: 0, least, most }
     }
 
-    /// The same with a sign that is always written.
+    /// A number with decimals and a mandatory sign.
     pub const fn signed(whole: u8, decimals: u8, least: i32, most: i32) -> Self {
         Self { signed: true, whole, decimals, spare: 0, least, most }
     }
 
-    /// The same, with decimals that may come although they are not sent; values and range count them.
+    /// Adds decimals that may be received but are not sent; values and range count them.
     #[must_use]
     pub const fn with_spare(self, spare: u8) -> Self {
         Self { spare, ..self }
     }
 
-    /// How many of the units that values count make one.
+    /// Value units per 1.
     pub const fn scale(self) -> i32 {
         10_i32.pow(self.decimals as u32 + self.spare as u32)
     }
 
-    /// Characters on the line.
+    /// Width in the protocol.
     const fn width(self) -> usize {
         let sign = self.signed as usize;
         let fraction = if self.decimals == 0 { 0 } else { 1 + self.decimals as usize };
         sign + self.whole as usize + fraction
     }
 
-    /// Whether sign, digits and point are where they belong.
+    /// Whether sign, digits and point are in their places.
     fn has_shape(self, text: &str) -> bool {
         let fits = |whole: u8, decimals: u8| {
             let point = usize::from(self.signed) + usize::from(whole);
@@ -191,18 +191,18 @@ impl Number {
             || self.spare > 0 && fits(self.whole.saturating_sub(self.spare), self.decimals + self.spare)
     }
 
-    /// Units between two values that can be sent.
+    /// Value units between two values that can be sent.
     const fn step(self) -> i32 {
         10_i32.pow(self.spare as u32)
     }
 
-    /// A value as people write it: `-12.34`.
+    /// Formats a value without padding: `-12.34`.
     pub fn plain(self, value: i32) -> String {
         let sign = if value < 0 { "-" } else { "" };
         format!("{sign}{}", self.unsigned(value, 0))
     }
 
-    /// Full width, as on the line; what is too large comes out wider.
+    /// Formats a value in full width; a value that is too large is wider.
     fn emit(self, value: i32) -> String {
         let sign = match (self.signed, value < 0) {
             (_, true) => "-",
@@ -212,7 +212,7 @@ impl Number {
         format!("{sign}{}", self.unsigned(value, self.whole))
     }
 
-    /// Digits, with so many before the point; spare decimals that are needed take their places.
+    /// Digits, padded to `whole` before the point; spare decimals use their places if needed.
     fn unsigned(self, value: i32, whole: u8) -> String {
         let (scale, step) = (self.scale().unsigned_abs(), self.step().unsigned_abs());
         let digits = value.unsigned_abs();
@@ -226,7 +226,7 @@ impl Number {
         if decimals == 0 { format!("{integer:0whole$}") } else { format!("{integer:0whole$}.{fraction:0decimals$}") }
     }
 
-    /// Digits with or without sign and point. Decimals beyond the form must be zeros: nothing is rounded away.
+    /// Parses digits with optional sign and point. Decimals beyond the format must be zeros, so nothing is rounded.
     fn parse(self, text: &str) -> Option<i32> {
         let (sign, digits) = match text.as_bytes().first()? {
             b'-' => (-1, &text[1..]),
@@ -247,7 +247,7 @@ impl Number {
         i32::try_from(sign * units).ok()
     }
 
-    /// The range in words: `-8000.00 to 8000.00`.
+    /// Range as text: `-8000.00 to 8000.00`.
     fn range(self) -> String {
         if self.least == self.most {
             format!("only {}", self.plain(self.least))
@@ -263,12 +263,12 @@ impl Mask {
         Self { care: 0xFF, bits }
     }
 
-    /// Whether the bits of a port are as this says.
+    /// Whether the bits of a port meet the condition.
     pub const fn matches(self, port: u8) -> bool {
         port & self.care == self.bits
     }
 
-    /// A port after this has been done to it.
+    /// The bits of a port after the action.
     pub const fn applied(self, port: u8) -> u8 {
         port & !self.care | self.bits
     }
@@ -308,25 +308,25 @@ impl Field {
         Self { name, form, about, unit: "", starred: false }
     }
 
-    /// The same with the unit of its number.
+    /// Sets the unit.
     #[must_use]
     pub const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same, that may be asterisks.
+    /// Accepts asterisks.
     #[must_use]
     pub const fn starred(self) -> Self {
         Self { starred: true, ..self }
     }
 
-    /// The same in another place.
+    /// Sets the name.
     #[must_use]
     pub const fn named(self, name: &'static str) -> Self {
         Self { name, ..self }
     }
 
-    /// A value as it is sent.
+    /// Formats a value for sending; it must be in range.
     pub fn emit(&self, value: &Value) -> Result<String, FieldError> {
         match (self.form, value) {
             (Form::Number(number), Value::Number(units)) => {
@@ -350,7 +350,7 @@ impl Field {
         }
     }
 
-    /// A value in its form, whatever its range: what a controller sends, and what is shown of it.
+    /// Formats a value that may be out of range, such as a received one.
     pub fn written(&self, value: &Value) -> String {
         match (value, self.form) {
             (Value::Number(units), Form::Number(number)) => number.emit(*units),
@@ -365,7 +365,7 @@ impl Field {
         }
     }
 
-    /// Takes the value off the front of a text, in full width; returns it with what is left.
+    /// Parses a value in full width at the start of a text. Returns it and the rest.
     pub fn take<'t>(&self, text: &'t str) -> Result<(Value, &'t str), FieldError> {
         let misfit = || self.misfit(shown(text));
         let len = match self.form {
@@ -390,7 +390,7 @@ impl Field {
         }
     }
 
-    /// A value that somebody wrote, alone: in form, and in the range that may be sent.
+    /// Parses user input; it must be in format and range.
     pub fn read(&self, text: &str) -> Result<Value, FieldError> {
         let value = self.value(text).ok_or_else(|| self.too_fine(text).unwrap_or_else(|| self.misfit(text)))?;
         if let (Form::Number(number), Value::Number(units)) = (self.form, &value)
@@ -402,17 +402,17 @@ impl Field {
         Ok(value)
     }
 
-    /// Whether a value may be sent.
+    /// Whether a value can be sent.
     pub fn check(&self, value: &Value) -> Result<(), FieldError> {
         self.emit(value).map(|_| ())
     }
 
-    /// Whether a value is in the field's form; one that is not was kept as it came.
+    /// Whether a value is in the format of the field. One that is not was kept as received.
     pub fn is_listed(&self, value: &Value) -> bool {
         !matches!(value, Value::Text(_)) || matches!(self.form, Form::Token | Form::Text)
     }
 
-    /// What may stand here, in words: `a number 0000 to 9999`, `J or E`.
+    /// Description of valid values: `a number 0000 to 9999`, `J or E`.
     pub fn expected(&self) -> String {
         match self.form {
             Form::Number(number) if self.unit.is_empty() => format!("a number, {}", number.range()),
@@ -432,7 +432,7 @@ impl Field {
         }
     }
 
-    /// What a value means, as people read it: `12.5 mm`, `absolute`.
+    /// Readable value: `12.5 mm`, `absolute`.
     pub fn meaning<'v>(&self, value: &'v Value) -> Cow<'v, str> {
         match (value, self.form) {
             (Value::Number(units), Form::Number(number)) => {
@@ -467,7 +467,7 @@ impl Field {
         }
     }
 
-    /// The mistake of a number with too many decimals; `None` if the text is none.
+    /// Error for too many decimals; `None` if the text is not a number.
     fn too_fine(&self, text: &str) -> Option<FieldError> {
         let Form::Number(number) = self.form else { return None };
         let is_number = text.parse::<f64>().is_ok_and(f64::is_finite) && !text.contains(['e', 'E']);
@@ -488,7 +488,7 @@ impl Field {
     }
 }
 
-/// The front of a text, for an error.
+/// Start of a text, for an error.
 fn shown(text: &str) -> &str {
     let end = text.char_indices().nth(16).map_or(text.len(), |(at, _)| at);
     let front = &text[..end];
@@ -531,7 +531,7 @@ mod tests {
         for damaged in ["+010.00", "+0100.0", "0100.00 ", "+01000.0", "+01.0.00", "", "+"] {
             assert!(take(damaged).is_err(), "{damaged}");
         }
-        // A doubled digit shifts the rest out of its place, and what follows no longer fits.
+        // A doubled digit shifts the rest, which then does not fit.
         assert_eq!(take("+01100.00 Y"), Err(X.take("+01100.00 Y").unwrap_err()));
     }
 

@@ -1,4 +1,4 @@
-//! A block or a part of one: fixed words with fields between them.
+//! Layout of a block, or of a part of one: fixed words with fields between them.
 
 use std::ops::Range;
 
@@ -6,16 +6,16 @@ use thiserror::Error;
 
 use super::field::{Field, FieldError, Form, Mask, Value};
 
-/// Text with fields in it.
+/// A text with fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
-    /// As the manual prints it, with `{}` in the place of each field.
+    /// Template of the manual, with `{}` for each field.
     pub text: &'static str,
-    /// The fields, in their order.
+    /// Fields, in order.
     pub fields: &'static [Field],
 }
 
-/// Values in the places of a layout.
+/// Values of a layout.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
     layout: Layout,
@@ -26,52 +26,53 @@ pub struct Record {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what} at column {}", at + 1)]
 pub struct LayoutError {
-    /// Bytes before the place.
+    /// Byte offset.
     pub at: usize,
-    /// What is wrong there.
+    /// The problem.
     pub what: LayoutProblem,
 }
 
-/// What is wrong in one place of a text.
+/// Problem at one position of a text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LayoutProblem {
     /// Other words than expected.
     #[error("'{expected}' is expected")]
     Words {
-        /// What should stand there.
+        /// Expected words.
         expected: &'static str,
     },
-    /// No value of the field.
+    /// Not a valid value of the field.
     #[error(transparent)]
     Field(#[from] FieldError),
-    /// More than there should be.
+    /// Too much text.
     #[error("'{}' is too much", found.escape_debug())]
     Rest {
-        /// What is left.
+        /// The rest.
         found: String,
     },
-    /// What came from a controller and is kept as it came; it is never sent.
+    /// A value that was kept as received; it is never sent.
     #[error("'{}' is not in the manual, and is not written", found.escape_debug())]
     Unlisted {
-        /// As it came.
+        /// The received text.
         found: String,
     },
-    /// Not as many values as fields.
+    /// Wrong number of values.
     #[error("{found} values for {expected} fields")]
     Count {
-        /// Fields.
+        /// Number of fields.
         expected: usize,
-        /// Values.
+        /// Number of values.
         found: usize,
     },
 }
 
-/// What a controller holds and the manual does not list, such as the instruction of a newer version: kept as it came.
+/// Layout of received content that is not in the manual, such as an instruction of a newer version. It is kept as
+/// received.
 pub const UNLISTED: Layout =
     Layout::new("{}", &[Field::new("unlisted", Form::Text, "what the manual does not list, as it came")]);
 
 impl Layout {
-    /// Only words.
+    /// Words only.
     pub const fn words(text: &'static str) -> Self {
         Self { text, fields: &[] }
     }
@@ -81,7 +82,7 @@ impl Layout {
         Self { text, fields }
     }
 
-    /// The text with values in it, each in its form and range.
+    /// Formats values; each must be in format and range.
     pub fn emit(&self, values: &[Value]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
             return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
@@ -92,7 +93,7 @@ impl Layout {
         self.join(|index, field| Ok(field.emit(&values[index])?))
     }
 
-    /// The text with the values in it that are known, each in its form and range; `?` stands for the others.
+    /// Formats the known values, each in format and range, with `?` for the others.
     pub fn sketch(&self, values: &[Option<Value>]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
             return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
@@ -103,22 +104,22 @@ impl Layout {
         })
     }
 
-    /// The values in a text. Outer blanks, and more blanks than needed between items, do not matter (ambiguity A7).
+    /// Parses the values of a text. Surrounding and additional blanks do not matter (ambiguity A7).
     pub fn parse(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());
         self.scan(text, |_, value, _| values.push(value))?;
         Ok(Record { layout: *self, values })
     }
 
-    /// As [`Layout::parse`], but a value that is not in its form is kept as it came, as [`Value::Text`], which is never
-    /// sent. Words and the places of the values must be right.
+    /// [`Layout::parse`], but keeps a value that is not in its format as [`Value::Text`], which is never sent. Words
+    /// and positions must be right.
     pub fn parse_kept(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());
         self.walk(text, true, |_, value, _| values.push(value))?;
         Ok(Record { layout: *self, values })
     }
 
-    /// Hands over every value in a text with its field and the bytes it takes, up to the first that does not fit.
+    /// Calls `found` for each value with its field and bytes, up to the first that does not fit.
     pub fn scan(&self, text: &str, found: impl FnMut(&'static Field, Value, Range<usize>)) -> Result<(), LayoutError> {
         self.walk(text, false, found)
     }
@@ -156,7 +157,7 @@ impl Layout {
         }
     }
 
-    /// Values for the fields, which may be out of range: what a controller holds.
+    /// A record of these values, which may be out of range: content of a controller.
     pub fn record(&self, values: Vec<Value>) -> Result<Record, LayoutProblem> {
         if values.len() == self.fields.len() {
             Ok(Record { layout: *self, values })
@@ -165,7 +166,7 @@ impl Layout {
         }
     }
 
-    /// Words and fields joined, each field as `write` has it.
+    /// Joins words and fields; `write` formats a field.
     fn join(
         &self,
         mut write: impl FnMut(usize, &Field) -> Result<String, LayoutProblem>,
@@ -181,7 +182,7 @@ impl Layout {
     }
 }
 
-/// A value that is not in its form: all up to the words that follow it.
+/// A value outside its format: all text before the next words.
 fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)> {
     let end = match next {
         "" if is_last => text.len(),
@@ -193,7 +194,7 @@ fn kept<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)
     (!own.is_empty()).then(|| (Value::Text(own.to_owned()), rest))
 }
 
-/// What follows the expected words; a blank stands for one or more. On failure, the place where they differ.
+/// Skips the expected words; a blank stands for one or more. Returns the rest, or the position of the difference.
 fn pass<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
         let rest = text.strip_prefix(expected).ok_or(text)?;
@@ -208,7 +209,7 @@ impl Record {
         self.layout
     }
 
-    /// Its values, in the order of the fields.
+    /// Values in field order.
     pub fn values(&self) -> &[Value] {
         &self.values
     }
@@ -223,12 +224,12 @@ impl Record {
         self.pairs().find(|(field, _)| field.name == name).map(|(_, value)| value)
     }
 
-    /// A text that is kept as it came.
+    /// A text that is kept as received.
     pub fn unlisted(text: &str) -> Self {
         Self { layout: UNLISTED, values: vec![Value::Text(text.trim_matches(' ').to_owned())] }
     }
 
-    /// The same with another value in a field; without such a field, the same.
+    /// Replaces the value of a field, if it exists.
     #[must_use]
     pub fn with(mut self, name: &str, value: Value) -> Self {
         if let Some(index) = self.layout.fields.iter().position(|field| field.name == name) {
@@ -237,17 +238,17 @@ impl Record {
         self
     }
 
-    /// Whether all of it is in the manual's form.
+    /// Whether all values are in the format of the manual.
     pub fn is_listed(&self) -> bool {
         self.layout != UNLISTED && self.pairs().all(|(field, value)| field.is_listed(value))
     }
 
-    /// A number, in units of its last decimal; `None` if there is no such number.
+    /// A number in units of its last decimal.
     pub fn number(&self, name: &str) -> Option<i32> {
         if let Value::Number(number) = self.value(name)? { Some(*number) } else { None }
     }
 
-    /// A word as on the line.
+    /// Text of a word in the protocol.
     pub fn word(&self, name: &str) -> Option<&'static str> {
         if let Value::Word(word) = self.value(name)? { Some(word) } else { None }
     }
@@ -262,7 +263,7 @@ impl Record {
         if let Value::Bits(bits) = self.value(name)? { Some(*bits) } else { None }
     }
 
-    /// Conditions or orders for a port.
+    /// Conditions or actions for a port.
     pub fn mask(&self, name: &str) -> Option<Mask> {
         if let Value::Mask(mask) = self.value(name)? { Some(*mask) } else { None }
     }
@@ -272,12 +273,12 @@ impl Record {
         if let Value::Text(text) = self.value(name)? { Some(text) } else { None }
     }
 
-    /// As it is sent: every value in form and range.
+    /// Formats the record for sending: every value must be in range.
     pub fn emit(&self) -> Result<String, LayoutProblem> {
         self.layout.emit(&self.values)
     }
 
-    /// In form, whatever the ranges: what a controller answers.
+    /// Formats the record without a range check: answers of a controller.
     pub fn written(&self) -> String {
         let write = |index: usize, field: &Field| Ok(field.written(&self.values[index]));
         self.layout.join(write).unwrap_or_default()

@@ -1,6 +1,7 @@
-//! Toyo controllers over RS-232C host communication.
+//! Toyo controllers: host communication over RS-232C.
 //!
-//! Sections are those of the manual, as "TO 2-4"; where it errs, the reading chosen is told as an ambiguity.
+//! References such as "TO 2-4" are sections of the manual. "Ambiguity" refers to a note about an unclear or wrong
+//! place of it.
 
 pub mod bulk;
 pub mod describe;

@@ -1,20 +1,18 @@
-//! Addresses that a name of the inventory can stand for: `IN2.1`, `OUT1.3` on the controller itself, `CN05`, `TN1`, `PT012`.
+//! Addresses that inventory names can refer to: `IN2.1`, `OUT1.3` of the controller itself, `CN05`, `TN1`, `PT012`.
 
 use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
-/// Bits of ports of station 0 and of the inside, counters, timers and points.
+/// Bits of internal ports and of ports of station 0, counters, timers and points.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };
 
-/// The last port of a kind that may be there (DOUT takes 1 to 99), and the last counter.
+/// Last port of a kind (DOUT takes 1 to 99), and last counter.
 const LAST: u8 = 99;
 
-/// The last timer.
 const LAST_TIMER: u8 = 9;
-/// The last row of the coordinate table.
 const LAST_POINT: u16 = 999;
 
-/// An address as typed, and as it is written.
+/// Parses an address and normalizes it.
 fn address(text: &str) -> Option<(Kind, String)> {
     let at = text.find(|c: char| c.is_ascii_digit())?;
     let (letters, number) = text.split_at(at);
@@ -40,46 +38,46 @@ fn address(text: &str) -> Option<(Kind, String)> {
     }
 }
 
-/// `IN2.1`.
+/// Address of an input bit: `IN2.1`.
 pub fn input(port: u8, bit: u8) -> String {
     format!("IN{port}.{bit}")
 }
 
-/// `OUT1.3`.
+/// Address of an output bit: `OUT1.3`.
 pub fn output(port: u8, bit: u8) -> String {
     format!("OUT{port}.{bit}")
 }
 
-/// `CN05`.
+/// Address of a counter: `CN05`.
 pub fn counter(number: u8) -> String {
     format!("CN{number:02}")
 }
 
-/// `TN1`.
+/// Address of a timer: `TN1`.
 pub fn timer(number: u8) -> String {
     format!("TN{number}")
 }
 
-/// `PT012`.
+/// Address of a point: `PT012`.
 pub fn point(row: u16) -> String {
     format!("PT{row:03}")
 }
 
-/// What the fields of instructions are called that a name can stand in, with what their addresses begin with.
+/// Instruction fields that accept a name, with their kind and address prefix.
 const FIELDS: [(&str, Kind, &str); 3] =
     [("point", Kind::Point, "PT"), ("counter", Kind::Counter, "CN"), ("timer", Kind::Timer, "TN")];
 
-/// What a field of an instruction numbers, and what its addresses begin with; `None` where no name can stand in it.
+/// Kind and address prefix of an instruction field; `None` if it accepts no name.
 pub fn of_field(name: &str) -> Option<(Kind, &'static str)> {
     FIELDS.iter().find(|(field, ..)| *field == name).map(|(_, kind, prefix)| (*kind, *prefix))
 }
 
-/// The number of an address such as `PT012`.
+/// The number in an address such as `PT012`.
 pub fn number(address: &str) -> Option<i32> {
     address.trim_start_matches(|c: char| c.is_ascii_alphabetic()).parse().ok()
 }
 
-/// The address of a number in a field of an instruction.
+/// The address of a number in an instruction field.
 pub fn address_of(kind: Kind, number: i32) -> Option<String> {
     Some(match kind {
         Kind::Point => point(u16::try_from(number).ok()?),

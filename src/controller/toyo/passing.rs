@@ -1,11 +1,11 @@
-//! What may pass to a controller that is only to be read, whoever sends it.
+//! Filter for a read-only line: decides which characters may pass.
 
 use super::request::Request;
 use super::table::commands::Command;
 use crate::Risk;
 
-/// Whether all of these characters are whole blocks, each of which changes nothing or stops the robot (STOP, and JGST
-/// with no axis that moves; TO 2-7).
+/// Whether the characters are whole blocks that only read, or stop the robot (STOP, and JGST without a moving axis;
+/// TO 2-7).
 pub fn only_reads_or_stops(characters: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(characters) else { return false };
     let Some(blocks) = text.strip_suffix(['\r', '\n']) else { return false };

@@ -1,4 +1,4 @@
-//! Blocks of the host and of the controller, in words: `@STAS SNO=0`, `@OK`, `@STAS SNO=0 ST1=22 ST2=00`.
+//! Blocks of host and controller: `@STAS SNO=0`, `@OK`, `@STAS SNO=0 ST1=22 ST2=00`.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ use super::table::commands::{Command, Row};
 use super::table::{Instruction, Op, Pallet, Parameter};
 use crate::Risk;
 
-/// Most bytes of a block, `@` and line end included (TO 1-4; ambiguity A1).
+/// Maximum length of a block in bytes, including `@` and line end (TO 1-4; ambiguity A1).
 pub const MOST: usize = 128;
 
 /// A block of the host.
@@ -23,45 +23,45 @@ pub struct Request {
 pub enum Answer {
     /// `@OK`.
     Done,
-    /// `@NG`: it cannot, now or at all; there is no code.
+    /// `@NG`: the controller refuses, without a code.
     Refused,
-    /// What was asked for.
+    /// The requested data.
     Data(Record),
 }
 
-/// Why a text is no block of the protocol.
+/// Why a text is not a valid block.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BlockError {
-    /// Blocks begin with `@`.
+    /// A block begins with `@`.
     #[error("a block begins with @")]
     Start,
-    /// More than a block may be.
+    /// The block is too long.
     #[error("{len} characters; a block has {MOST} at most, its line end included")]
     Long {
         /// Characters, without line end.
         len: usize,
     },
-    /// Characters below 20H, or beyond ASCII.
+    /// A character below 20H, or beyond ASCII.
     #[error("character {} at column {} is not allowed", char.escape_default(), at + 1)]
     Character {
-        /// Characters before it.
+        /// Byte offset.
         at: usize,
-        /// It.
+        /// The character.
         char: char,
     },
-    /// No such command.
+    /// Unknown command.
     #[error("there is no command '{}'", word.escape_debug())]
     Command {
         /// The word after `@`.
         word: String,
     },
-    /// Of a command, but not in any of its forms.
+    /// A known command in none of its forms.
     #[error("{0}")]
     Layout(#[from] LayoutError),
-    /// Values that may not be sent.
+    /// Values that must not be sent.
     #[error("{0}")]
     Values(#[from] LayoutProblem),
-    /// No such parameter, instruction or record.
+    /// Unknown parameter, instruction or record.
     #[error("there is no {what} '{}'", name.escape_debug())]
     Unknown {
         /// `parameter`, `instruction` or `record`.
@@ -69,25 +69,25 @@ pub enum BlockError {
         /// Its name.
         name: String,
     },
-    /// An answer to something else.
+    /// An answer to another request.
     #[error("it answers something else: {field} is {found}, not {asked}")]
     Other {
-        /// Which field differs.
+        /// The field that differs.
         field: &'static str,
-        /// In the answer.
+        /// Value in the answer.
         found: String,
-        /// In the request.
+        /// Value in the request.
         asked: String,
     },
 }
 
 impl Request {
-    /// A request in the first form of a command. Values are in the order of its fields; all must be in range.
+    /// A request in the first form of a command, with values in field order and in range.
     pub fn new(command: Command, values: Vec<Value>) -> Result<Self, LayoutProblem> {
         Self::in_form(command, 0, values)
     }
 
-    /// A request in one of the forms of a command.
+    /// A request in a certain form of a command.
     pub fn in_form(command: Command, form: usize, values: Vec<Value>) -> Result<Self, LayoutProblem> {
         let row = command.row();
         let record = row.requests[form].record(values)?;
@@ -95,18 +95,18 @@ impl Request {
         Ok(Self { row, record })
     }
 
-    /// A request with values that are known to fit.
+    /// A request with constant values.
     ///
     /// # Panics
-    /// If they do not, which any test of the caller shows.
+    /// If the values do not fit; every test of a caller would show that.
     pub fn of<const N: usize>(command: Command, values: [Value; N]) -> Self {
         Self::new(command, values.into()).expect("the caller's values fit")
     }
 
-    /// A request of a command without fields.
+    /// A request without fields.
     ///
     /// # Panics
-    /// If it has some, which any test of the caller shows.
+    /// If the command has fields; every test of a caller would show that.
     pub fn bare(command: Command) -> Self {
         Self::of(command, [])
     }
@@ -117,7 +117,7 @@ impl Request {
         Self::new(Command::Rpar, vec![Value::Text(key)])
     }
 
-    /// Writes a parameter, or a row of a table: all fields of [`Parameter::layout`].
+    /// Writes a parameter, or a row of a table, with all fields of [`Parameter::layout`].
     pub fn write_parameter(parameter: &Parameter, values: &[Value]) -> Result<Self, LayoutProblem> {
         Self::new(Command::Wpar, vec![Value::Text(parameter.layout.emit(values)?)])
     }
@@ -143,17 +143,17 @@ impl Request {
         Self::new(Command::Wplt, vec![Value::Number(program), Value::Number(record.number.into()), body])
     }
 
-    /// A block as it stands on the line, without line end. Nothing is demanded of ranges.
+    /// Parses a block without line end. Values may be out of range.
     pub fn parse(block: &str) -> Result<Self, BlockError> {
         let text = unwrapped(block)?;
         let word = text.split(' ').next().unwrap_or_default();
         let row = Row::named(word).ok_or_else(|| BlockError::Command { word: word.to_owned() })?;
-        // HTSK is read as CTSK.
+        // HTSK is parsed as CTSK.
         let text = text.replacen(word, row.word, 1);
         Ok(Self { row, record: fitting(row.requests, &text)? })
     }
 
-    /// The row of its command.
+    /// Table row of the command.
     pub fn row(&self) -> &'static Row {
         self.row
     }
@@ -168,18 +168,18 @@ impl Request {
         &self.record
     }
 
-    /// As it stands on the line, without line end.
+    /// Text of the block, without line end.
     pub fn text(&self) -> String {
         format!("@{}", self.record.written())
     }
 
-    /// Whether every value is in its range.
+    /// Whether all values are in range.
     pub fn check(&self) -> Result<(), BlockError> {
         self.record.emit()?;
         self.content()?.map_or(Ok(()), |content| content.emit().map(|_| ()).map_err(BlockError::from))
     }
 
-    /// What it does to the world. A JOG that moves no axis stops it.
+    /// Risk of the request. A JOG that moves no axis is a stop.
     pub fn risk(&self) -> Risk {
         let moves = |value: &Value| !matches!(value, Value::Word("SP" | "RS"));
         if self.command() == Command::Jgst && !self.record.values().iter().any(moves) {
@@ -188,8 +188,8 @@ impl Request {
         self.row.risk
     }
 
-    /// The parameter, instruction or palletizing record in it, of those commands that have one. What a read is about
-    /// has its key only.
+    /// The parameter, instruction or palletizing record of the request, if the command has one. A read contains only
+    /// its key.
     pub fn content(&self) -> Result<Option<Record>, BlockError> {
         let text = |name| self.record.text(name).unwrap_or_default();
         Ok(match self.command() {
@@ -201,23 +201,22 @@ impl Request {
         })
     }
 
-    /// The parameter that WPAR or RPAR is about.
+    /// The parameter of WPAR or RPAR.
     pub fn parameter(&self) -> Option<&'static Parameter> {
         Parameter::from_text(self.record.text("body").or(self.record.text("key"))?)
     }
 
-    /// What a block of the controller says to it, all in the manual's form but what is in a step or a record.
+    /// Parses an answer strictly, except for the content of a step or record.
     pub fn answer(&self, block: &str) -> Result<Answer, BlockError> {
         self.answer_as(block, Reading::Strict)
     }
 
-    /// What a block of the controller says to it; what is stored may hold what the manual does not list.
+    /// Parses an answer. Stored content may be outside the manual.
     pub fn answer_kept(&self, block: &str) -> Result<Answer, BlockError> {
         self.answer_as(block, Reading::Kept)
     }
 
-    /// Whether a block answers it, all in the manual's form. On a line without a checksum that is what tells a damaged
-    /// answer.
+    /// Checks strictly whether a block is the answer. Without a checksum, only this detects a damaged answer.
     pub fn check_answer(&self, block: &str) -> Result<(), BlockError> {
         if let Answer::Data(record) = self.answer(block)? {
             self.content_of(&record, Reading::Strict)?;
@@ -246,13 +245,12 @@ impl Request {
         Ok(Answer::Data(record))
     }
 
-    /// Whether what it reads may be more than the manual lists: what is stored, and what the controller is.
+    /// Whether the read data may be outside the manual: stored content, and identification.
     fn may_hold_more(&self) -> bool {
         matches!(self.command(), Command::Rpar | Command::Rstx | Command::Rplt | Command::Resy | Command::Sysp)
     }
 
-    /// The parameter, instruction or palletizing record in an answer to this; what is not in the manual's form is kept as
-    /// it came.
+    /// The parameter, instruction or palletizing record of an answer. Content outside the manual is kept as received.
     pub fn answered(&self, answer: &Record) -> Result<Option<Record>, BlockError> {
         self.content_of(answer, Reading::Kept)
     }
@@ -280,8 +278,8 @@ impl Request {
         }
     }
 
-    /// Whether an answer is about what was asked: fields of the same name have the same value. RSTX 0000 is answered
-    /// with the number of the current step (ambiguity C4).
+    /// Checks that an answer belongs to the request: fields with the same name have the same value. The answer to RSTX
+    /// 0000 has the number of the current step (ambiguity C4).
     fn same(&self, answer: &Record, reading: Reading) -> Result<(), BlockError> {
         if self.command() == Command::Rpar {
             let (key, body) = (self.content()?, self.content_of(answer, reading)?);
@@ -314,7 +312,7 @@ impl Request {
 }
 
 impl Answer {
-    /// As it stands on the line, without line end.
+    /// Text of the block, without line end.
     pub fn text(&self) -> String {
         match self {
             Self::Done => "@OK".to_owned(),
@@ -324,12 +322,12 @@ impl Answer {
     }
 }
 
-/// How strictly an answer is read.
+/// Strictness of parsing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Reading {
-    /// All is in the manual's form.
+    /// Everything must be in the format of the manual.
     Strict,
-    /// What is not is kept as it came.
+    /// Other content is kept as received.
     Kept,
 }
 
@@ -340,7 +338,7 @@ fn parsed(layout: &Layout, text: &str, reading: Reading) -> Result<Record, Block
     })
 }
 
-/// An instruction as it stands in a step: `MOVP a PT=001 CN=00 S V=00 POST`.
+/// Parses the instruction of a step: `MOVP a PT=001 CN=00 S V=00 POST`.
 pub fn instruction(text: &str) -> Result<Record, BlockError> {
     instruction_as(text, Reading::Strict)
 }
@@ -350,7 +348,7 @@ fn instruction_as(text: &str, reading: Reading) -> Result<Record, BlockError> {
     let row = Instruction::named(word);
     let row = row.ok_or_else(|| BlockError::Unknown { what: "instruction", name: word.to_owned() })?;
     let record = parsed(&row.layout, text, reading)?;
-    // It always passes by; the manual's template says POST, its legend PASS (ambiguity R4).
+    // RSMV always passes its point. The template of the manual says POST, its legend PASS (ambiguity R4).
     Ok(if row.op == Op::Rsmv { record.with("arrival", Value::Word("PASS")) } else { record })
 }
 
@@ -361,7 +359,7 @@ fn parameter(text: &str) -> Result<&'static Parameter, BlockError> {
     })
 }
 
-/// Fields that both have must be the same.
+/// Common fields must be equal.
 fn agree(request: &Record, answer: &Record) -> Result<(), BlockError> {
     for (field, asked) in request.pairs() {
         match answer.value(field.name) {
@@ -375,7 +373,7 @@ fn agree(request: &Record, answer: &Record) -> Result<(), BlockError> {
     Ok(())
 }
 
-/// What stands between `@` and the line end.
+/// The text between `@` and line end.
 fn unwrapped(block: &str) -> Result<&str, BlockError> {
     let text = block.trim_end_matches(['\r', '\n']);
     if text.len() + 2 > MOST {
@@ -387,7 +385,7 @@ fn unwrapped(block: &str) -> Result<&str, BlockError> {
     Ok(text.strip_prefix('@').ok_or(BlockError::Start)?.trim_end_matches(' '))
 }
 
-/// The first form that fits; if none does, why the one does not that fits furthest.
+/// Parses by the first form that fits; otherwise returns the error of the form that fits furthest.
 fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
     let mut furthest: Option<LayoutError> = None;
     for form in forms {
@@ -398,7 +396,7 @@ fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
         }
     }
     let none = || LayoutError { at: 0, what: LayoutProblem::Rest { found: text.to_owned() } };
-    // What is told counts from the start of the block, where the `@` is.
+    // The reported position counts from the `@` of the block.
     Err(furthest.map_or_else(none, |error| LayoutError { at: error.at + 1, ..error }))
 }
 
@@ -461,7 +459,7 @@ mod tests {
         assert_eq!(kept("@RSTX 0007", "@RSTX 0007 FOO X=1"), "FOO X=1");
         assert_eq!(kept("@RSTX 0007", "@RSTX 0007 SPD V=99X"), "SPD V=99X");
         assert!(kept("@RPAR T2 V05", "@RPAR T2 V05=250").contains("=250"));
-        // That something else is answered is no matter of words.
+        // A content mismatch is not a format error.
         for (request, block) in
             [("@RPAR E17", "@RPAR E18 E=I"), ("@RPAR T2 V05", "@RPAR T2 V06=250"), ("@STAS SNO=0", "@STAS SNO=0 ST1=2")]
         {

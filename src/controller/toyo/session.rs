@@ -1,7 +1,7 @@
-//! The conversation over a line: one request outstanding, one answer to each (TO 1-3).
+//! Serial line session: one request at a time, one answer to each (TO 1-3).
 //!
-//! A line has no checksum and answers have no number, so what comes too late must not be taken for the answer to the
-//! next request. The session therefore remembers how many answers it is owed, and lets them pass before it sends again.
+//! A line has no checksum, and answers have no number. So a late answer could be mistaken for the answer to the next
+//! request. The session counts the pending answers and discards them before it sends again.
 
 mod framer;
 
@@ -12,107 +12,107 @@ use super::request::{BlockError, Request};
 use super::table::Command;
 use crate::{Now, Risk, Session, Step};
 
-/// How patient a session is.
+/// Time limits of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// From the last character sent to the answer; the manual says one second (TO 1-3, ambiguity A3).
+    /// From the last character sent to the answer; 1 s in the manual (TO 1-3, ambiguity A3).
     pub timeout: Duration,
-    /// Repetitions of what may be repeated.
+    /// Retries of a repeatable request.
     pub retries: u32,
-    /// How long one character is on the line.
+    /// Transmission time of one character.
     pub character: Duration,
 }
 
-/// What the line was like.
+/// Line statistics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
-    /// Requests sent, repetitions included.
+    /// Requests sent, including retries.
     pub sent: u32,
-    /// Blocks that came, whole or not.
+    /// Blocks received, complete or not.
     pub received: u32,
-    /// Characters that belong to no block.
+    /// Characters outside of blocks.
     pub noise: u32,
-    /// Blocks with characters missing, changed or too many.
+    /// Blocks with missing, changed or additional characters.
     pub garbled: u32,
-    /// Blocks that answer something else, or came too late.
+    /// Late blocks, and answers to other requests.
     pub foreign: u32,
-    /// Requests that came back as they were, and are no answer.
+    /// Requests that came back unchanged, and are not answers.
     pub echoes: u32,
-    /// Requests that were sent again after silence.
+    /// Retries after a timeout.
     pub repeats: u32,
 }
 
-/// How an exchange ends.
+/// Outcome of an exchange.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ended {
-    /// With this block, which answers the request.
+    /// The answer to the request.
     Answered(String),
-    /// Nothing that may be repeated was answered.
+    /// No answer.
     NoAnswer,
-    /// Only blocks came that are no answer: the last one, and why it is none.
+    /// Only invalid answers: the last one, and the reason.
     Unfitting {
-        /// As it came.
+        /// The received block.
         block: String,
-        /// What is wrong with it.
+        /// The reason.
         why: String,
     },
 }
 
-/// One end of a line, for one exchange after the other.
+/// Host side of a line, for consecutive exchanges.
 #[derive(Debug)]
 pub struct LineSession {
     policy: Policy,
     framer: Framer,
     counters: Counters,
     state: State,
-    /// Answers that may still come, and until when they are waited for.
+    /// Number of pending answers of earlier requests, and their deadline.
     owed: u32,
     owed_until: Now,
-    /// Whether the line sends back what is sent.
+    /// Whether the line echoes the sent characters.
     echoes: bool,
-    /// When the last line end of the controller is over, and the host may send (TO 1-3: half duplex).
+    /// Time at which the last line end of the controller is over, and the host may send (TO 1-3: half duplex).
     free: Now,
-    /// When something came last that nobody asked for.
+    /// Time of the last unexpected block.
     stray: Option<Now>,
-    /// The last order that was answered, which the other answer would contradict, and when it was answered.
+    /// The last answered order, which a second answer would contradict, and the time of its answer.
     decided: Option<(Decided, Now)>,
-    /// An order to which both answers came.
+    /// An order that received both answers.
     refuted: Option<Decided>,
 }
 
 #[derive(Debug)]
 enum State {
-    /// Nothing was asked yet, or the last exchange has ended like this.
+    /// Idle, or ended with this outcome.
     Ended(Option<Ended>),
-    /// Waits until the line owes nothing, then sends.
+    /// Waits until no answer is pending, then sends.
     Settling(Exchange),
-    /// Sent; the answer may take until then.
+    /// Sent; waits for the answer until this time.
     Waiting(Exchange, Now),
-    /// An order that is not read back has a yes: a no may follow until then.
+    /// An accepted order that is not read back: waits until this time for a contradicting `@NG`.
     Confirming(String, Now),
 }
 
-/// What is asked, and what came of it so far.
+/// A request and its state.
 #[derive(Debug)]
 struct Exchange {
     text: String,
-    /// Answers of a request outside of the table are not checked.
+    /// `None` for a free-text block, whose answer is not checked.
     request: Option<Request>,
     repetitions: u32,
     unfitting: Option<(String, String)>,
-    /// Whether an answer with what the manual does not list may be asked for once more, which tells it from a damaged one.
+    /// Whether an answer outside the manual may be requested once more, to distinguish it from a damaged one.
     may_confirm: bool,
-    /// The request itself, as it came back.
+    /// The echo of the request.
     copy: Option<String>,
-    /// Not before this moment: a line that was noisy gets quiet first.
+    /// Earliest time of sending: a noisy line must be quiet first.
     not_before: Now,
-    /// The order before this question, to which its other answer may still come.
+    /// The order before this read, which may still receive its other answer.
     follows: Option<Decided>,
-    /// Whether a no came, which is that other answer or the one to this question.
+    /// Whether an `@NG` arrived: the other answer to that order, or the answer to this read.
     is_refused: bool,
-    /// Whether a yes came, which answers no question.
+    /// Whether an `@OK` arrived, which cannot answer a read.
     is_contradicted: bool,
-    /// Until when an order waits for a line on which something comes that nobody asked for; set at the first look.
+    /// Limit of the wait for a quiet line before an order; set at the first poll.
     patience: Option<Now>,
 }
 
@@ -124,27 +124,27 @@ struct Decided {
 }
 
 impl Decided {
-    /// The answer that was taken.
+    /// Text of the answer.
     const fn block(&self) -> &'static str {
         if self.is_accepted { YES } else { NO }
     }
 }
 
-/// Silence after a garbled block, before the request is sent again; and after what nobody asked for, before an order.
+/// Required silence before a retry after a garbled block, and before an order after an unexpected block.
 const QUIET: Duration = Duration::from_millis(50);
-/// How long an order waits for that silence. On a line that is never quiet it then goes out.
+/// Maximum wait for that silence. An order is then sent even on a line that is never quiet.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// How long the answer to a question is waited for behind a no that may be one to the order before it.
+/// Wait for the answer to a read after an `@NG` that may belong to the order before it.
 const BEHIND_A_NO: Duration = Duration::from_millis(200);
-/// How long behind a yes a no may be one to the same order.
+/// Time after an `@OK` during which an `@NG` may belong to the same order.
 const LATE: Duration = Duration::from_millis(500);
-/// What runs may be over before the line is known to stay quiet: it is looked at instead.
+/// Program starts: a program may end within the wait for a quiet line, so the status is read instead.
 const RUNS: [Command; 4] = [Command::Spst, Command::Ppst, Command::Sesy, Command::Extp];
-/// Why a yes is none.
+/// Reason why an `@OK` is not valid.
 const BOTH_CAME: &str = "both @OK and @NG came: one of them answers another client of this line";
 
 impl LineSession {
-    /// A line in peace.
+    /// A line without pending answers.
     pub fn new(policy: Policy) -> Self {
         Self {
             policy,
@@ -161,12 +161,12 @@ impl LineSession {
         }
     }
 
-    /// Whether the other answer to the last order can still come: no question was answered since.
+    /// Whether the last order may still receive its other answer: no read was answered since.
     pub fn is_open(&self) -> bool {
         self.decided.is_some()
     }
 
-    /// The order to which both answers came, once; and why neither counts.
+    /// Takes the order that received both answers, and its outcome.
     pub fn take_refuted(&mut self) -> Option<(Request, Ended)> {
         self.refuted.take().map(|decided| {
             let unfitting = Ended::Unfitting { block: decided.block().to_owned(), why: BOTH_CAME.to_owned() };
@@ -174,13 +174,13 @@ impl LineSession {
         })
     }
 
-    /// Begins an exchange; what `is_repeatable` is sent again after silence. An exchange that had not ended is given
-    /// up: its answer is let pass.
+    /// Begins an exchange. An open exchange is abandoned, and its answer discarded. A repeatable request is sent again
+    /// after a timeout.
     pub fn begin(&mut self, request: &Request, is_repeatable: bool) {
         self.ask(request.text(), Some(request.clone()), is_repeatable);
     }
 
-    /// Begins an exchange with a block that is in no table, `@` included; any block answers it.
+    /// Begins an exchange with a free-text block, including `@`; any block is its answer.
     pub fn begin_raw(&mut self, block: &str) {
         self.ask(block.to_owned(), None, false);
     }
@@ -207,8 +207,8 @@ impl LineSession {
         });
     }
 
-    /// A block that cannot wait until the line has settled, such as a stop: the bytes to send at once, if anything is
-    /// owed, and nothing otherwise. Its answer is let pass, so that the next exchange is answered by its own.
+    /// Bytes of an urgent block, such as a stop, to send at once while an answer is pending; otherwise `None`. Its own
+    /// answer is discarded, so that the next exchange gets the right one.
     pub fn urgent(&mut self, now: Now, request: &Request) -> Option<Vec<u8>> {
         let waits = matches!(self.state, State::Waiting(..));
         if !waits && (self.owed == 0 || now >= self.owed_until) {
@@ -222,22 +222,22 @@ impl LineSession {
         Some(bytes)
     }
 
-    /// The same line, opened anew: nothing is owed any more.
+    /// Resets the session for a reopened line: no answer is pending.
     pub fn renew(&mut self) {
         *self = Self { counters: self.counters, ..Self::new(self.policy) };
     }
 
-    /// What the line was like so far.
+    /// Statistics so far.
     pub fn counters(&self) -> Counters {
         self.counters
     }
 
-    /// Whether the line sends back what is sent.
+    /// Whether the line echoes the sent characters.
     pub fn echoes(&self) -> bool {
         self.echoes
     }
 
-    /// The same line with another patience.
+    /// Changes the time limits.
     pub fn set_policy(&mut self, policy: Policy) {
         self.policy = policy;
     }
@@ -247,13 +247,13 @@ impl LineSession {
         Step::Done(ended)
     }
 
-    /// The time for an answer is over.
+    /// Handles the deadline of an answer.
     fn silence(&mut self, mut exchange: Exchange, deadline: Now) -> Step<Ended> {
         if exchange.is_refused {
             self.decided.take_if(|(_, at)| deadline >= *at + LATE);
             return self.end(Ended::Answered(NO.to_owned()));
         }
-        // Only the request itself came: an answer that looks the same, or the echo of a line without a controller.
+        // Only a copy of the request arrived: an equal answer, or the echo of a line without a controller.
         if let Some(block) = exchange.copy.take().filter(|copy| !self.echoes && exchange.accepts(copy).is_ok()) {
             self.counters.echoes -= 1;
             return self.end(Ended::Answered(block));
@@ -264,7 +264,7 @@ impl LineSession {
             exchange.repetitions -= 1;
             self.counters.repeats += 1;
             self.state = State::Settling(exchange);
-            // A repetition asks the same again: whichever answer comes is an answer to it.
+            // A retry is the same request, so any of the answers is valid.
             return self.send(deadline);
         }
         self.end(match exchange.unfitting {
@@ -289,13 +289,13 @@ impl LineSession {
         Step::Send(bytes)
     }
 
-    /// Until when the answer to a block may come that is sent now.
+    /// Deadline for the answer to a block that is sent now.
     fn deadline(&self, now: Now, bytes: &[u8]) -> Now {
         let length = u32::try_from(bytes.len()).unwrap_or(u32::MAX);
         now + self.policy.character.saturating_mul(length) + self.policy.timeout
     }
 
-    /// What a block means to an exchange that waits.
+    /// Handles a block while an exchange waits.
     fn take(&mut self, now: Now, mut exchange: Exchange, deadline: Now, framed: Framed) -> State {
         self.counters.received += 1;
         let block = match framed {
@@ -318,7 +318,7 @@ impl LineSession {
         match exchange.accepts(&block) {
             Ok(()) => {
                 self.echoes |= exchange.copy.is_some();
-                // If it was asked several times, the other answers may come as late as that.
+                // After retries, the other answers may arrive until this time.
                 self.owed_until = deadline;
                 if exchange.is_question() {
                     self.asked(now, &mut exchange, &block);
@@ -332,7 +332,7 @@ impl LineSession {
                 exchange.unfitting = Some((block, error.to_string()));
                 State::Waiting(exchange, deadline)
             }
-            // Damage does not come twice in the same way: this is what the controller holds.
+            // Damage does not repeat exactly: this is the content of the controller.
             Err(_) if exchange.is_confirmed(&block) => {
                 self.owed_until = deadline;
                 State::Ended(Some(Ended::Answered(block)))
@@ -346,8 +346,8 @@ impl LineSession {
         }
     }
 
-    /// A question has its answer. A controller answers one block after the other: nothing older comes any more, but what
-    /// a device server sends of another client, for a while.
+    /// Handles the answer to a read. The controller answers in order, so it sends no older answer now. A device server
+    /// may still send blocks of another client.
     fn asked(&mut self, now: Now, exchange: &mut Exchange, block: &str) {
         if exchange.is_contradicted || (exchange.is_refused && block != NO) {
             self.refuted = exchange.follows.take();
@@ -356,7 +356,7 @@ impl LineSession {
         self.decided.take_if(|(_, at)| now >= *at + LATE);
     }
 
-    /// An order has its answer. The other one may follow.
+    /// Handles the answer to an order. A contradicting one may follow.
     fn decide(&mut self, now: Now, order: Option<Request>, block: String) -> State {
         let is_accepted = block == YES;
         let waits = is_accepted && order.as_ref().is_some_and(is_waited_for);
@@ -366,7 +366,7 @@ impl LineSession {
         if waits { State::Confirming(block, now + QUIET) } else { State::Ended(Some(Ended::Answered(block))) }
     }
 
-    /// An order has both answers.
+    /// Handles contradicting answers to an order.
     fn contradicted(&mut self, now: Now, block: String) -> State {
         self.counters.foreign += 1;
         self.stray = Some(now);
@@ -374,15 +374,15 @@ impl LineSession {
         State::Ended(Some(Ended::Unfitting { block, why: BOTH_CAME.to_owned() }))
     }
 
-    /// A block came before a question was sent: it may be the other answer to the order before it.
+    /// Handles a block before a read is sent: it may be the other answer to the order before it.
     fn note_other(&mut self, state: &State, framed: &Framed) {
         let is_question = matches!(state, State::Settling(exchange) if exchange.is_question());
         let other = self.decided.take_if(|(decided, _)| is_question && contradicts(decided.block(), framed));
         self.refuted = other.map(|(decided, _)| decided).or(self.refuted.take());
     }
 
-    /// A garbled block was the answer. What may be repeated is asked again as soon as the line is quiet; the rest waits
-    /// for its time to run out.
+    /// Handles a garbled answer. A repeatable request is sent again as soon as the line is quiet; another one waits for
+    /// its deadline.
     fn again(&mut self, now: Now, mut exchange: Exchange, deadline: Now, unfitting: (String, String)) -> State {
         self.counters.garbled += 1;
         exchange.unfitting = Some(unfitting);
@@ -395,12 +395,12 @@ impl LineSession {
     }
 }
 
-/// The answers to an order.
+/// Answers to an order.
 const YES: &str = "@OK";
 const NO: &str = "@NG";
 
-/// Whether a no to an order is waited for before anything else is sent: of what moves by itself, but for what runs, and of
-/// memory that is cleared. A jog must not be kept from its stop.
+/// Whether an accepted order waits for a late `@NG`: motions without program starts, and memory clearing. A jog must
+/// not wait, because its stop must not be delayed.
 fn is_waited_for(order: &Request) -> bool {
     match order.command() {
         Command::Jgst => false,
@@ -409,14 +409,14 @@ fn is_waited_for(order: &Request) -> bool {
     }
 }
 
-/// Whether of two answers that came together one is a yes and the other a no: a device server may send each to all clients.
+/// Whether two answers contradict each other. A device server may send each answer to all clients.
 fn contradicts(first: &str, second: &Framed) -> bool {
     let Framed::Block(second) = second else { return false };
     matches!((first, second.as_str()), (YES, NO) | (NO, YES))
 }
 
 impl Exchange {
-    /// Whether it asks for data, which neither `@OK` nor the answer to another question can be taken for.
+    /// Whether it is a read. Neither `@OK` nor the answer to another read can be mistaken for its answer.
     fn is_question(&self) -> bool {
         self.request.as_ref().is_some_and(|request| !request.row().is_order())
     }
@@ -425,12 +425,12 @@ impl Exchange {
         self.request.as_ref().map_or(Ok(()), |request| request.check_answer(block))
     }
 
-    /// Whether a block answers it with something that the manual does not list.
+    /// Whether the block is an answer with content outside the manual.
     fn keeps(&self, block: &str) -> bool {
         self.request.as_ref().is_some_and(|request| request.answer_kept(block).is_ok())
     }
 
-    /// Whether the same came before.
+    /// Whether the same answer arrived before.
     fn is_confirmed(&self, block: &str) -> bool {
         self.unfitting.as_ref().is_some_and(|(before, _)| before == block) && self.keeps(block)
     }
@@ -449,7 +449,7 @@ impl Session for LineSession {
                 }
                 let quiet = self.stray.map_or(now, |stray| stray + QUIET);
                 let State::Settling(exchange) = &mut self.state else { return Step::Wait(Now::MAX) };
-                // Any block answers an order; what may be repeated, a stop among it, does not wait.
+                // Any block could answer an order. Repeatable requests, such as a stop, do not wait.
                 let quiet = if exchange.may_confirm {
                     now
                 } else {

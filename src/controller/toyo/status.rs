@@ -1,6 +1,6 @@
-//! The five pages of the status (TO 2-2, STAS).
+//! The five status pages (TO 2-2, STAS).
 
-/// What a controller says of itself. Pages are numbered as in `STAS SNO=`.
+/// Status of a controller. Pages are numbered as in `STAS SNO=`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Status {
     /// Page 0: error, execution, origin.
@@ -11,7 +11,7 @@ pub struct Status {
     pub mode: u8,
     /// Page 3: servo, slave, card.
     pub equipment: u8,
-    /// Page 4: inputs that matter to a program.
+    /// Page 4: inputs that affect a program.
     pub inputs: u8,
 }
 
@@ -22,15 +22,15 @@ pub struct Bit {
     pub page: u8,
     /// Bit, 0 to 7.
     pub bit: u8,
-    /// In snake case.
+    /// Name in snake case.
     pub name: &'static str,
-    /// In words.
+    /// Description.
     pub about: &'static str,
-    /// Whether 0 means that it is so.
+    /// Whether the bit is active low.
     pub is_low: bool,
 }
 
-/// What programs are run by: bits 1 and 0 of page 2.
+/// Program type: bits 1 and 0 of page 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ProgramKind {
     /// Sequential mode.
@@ -43,14 +43,14 @@ pub enum ProgramKind {
     Easy,
 }
 
-/// How programs are run: bits 3 and 2 of page 2.
+/// Run mode: bits 3 and 2 of page 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RunMode {
-    /// From step to step without a stop.
+    /// Continuous execution.
     Automatic,
-    /// A step at a time.
+    /// Single-step execution.
     Step,
-    /// Programs are edited.
+    /// Program editing.
     Program,
 }
 
@@ -65,7 +65,7 @@ macro_rules! bits {
             )*
         }
 
-        /// All single bits that have a meaning.
+        /// All single bits with a meaning.
         pub const BITS: &[Bit] = &[
             $(Bit { page: $page, bit: $bit, name: stringify!($name), about: $about, is_low: $low },)*
         ];
@@ -75,19 +75,19 @@ macro_rules! bits {
 bits! {
     /// An error is present; page 1 has its code.
     has_error 0 / 0 false "error";
-    /// A command or a program is being executed.
+    /// A command or program runs.
     executing 0 / 1 false "in execution";
     /// A program is paused.
     paused 0 / 2 false "paused";
-    /// Axes are on their way to the origin.
+    /// The axes return to the origin.
     homing 0 / 3 false "in return to origin";
-    /// The axes know where they are.
+    /// Return to origin is complete: the axis positions are valid.
     homed 0 / 4 false "return to origin complete";
-    /// The axes are where they should be.
+    /// Positioning is complete.
     in_position 0 / 5 false "positioning complete";
-    /// Parameter 2 was changed: nothing is executed until the power was off.
+    /// Parameter 2 was changed: nothing runs before a power cycle.
     needs_power_cycle 0 / 7 false "parameter 2 changed";
-    /// One movement at a time.
+    /// Single movement mode.
     single_movement 2 / 4 false "single movement mode";
     /// The teach pendant has control.
     pendant_on 2 / 6 false "teach pendant ON";
@@ -95,9 +95,9 @@ bits! {
     host_on 2 / 7 false "host ON";
     /// Servo power is on.
     servo_on 3 / 0 false "servo ON";
-    /// A slave station does not answer (active low).
+    /// A slave station is not ready (active low).
     slave_not_ready 3 / 4 true "slave not ready";
-    /// A memory card is there.
+    /// A memory card is inserted.
     card_inserted 3 / 5 false "card inserted";
     /// The card is being read.
     card_reading 3 / 6 false "reading card";
@@ -128,7 +128,7 @@ impl Status {
         }
     }
 
-    /// The same with another page; beyond the last, the same.
+    /// Replaces a page; no effect beyond the last.
     #[must_use]
     pub const fn with(mut self, page: u8, byte: u8) -> Self {
         match page {
@@ -142,7 +142,7 @@ impl Status {
         self
     }
 
-    /// What programs are run by (bit order: ambiguity R27).
+    /// Program type (bit order: ambiguity R27).
     pub const fn program_kind(self) -> ProgramKind {
         match self.mode & 0b11 {
             0b00 => ProgramKind::Sequential,
@@ -152,7 +152,7 @@ impl Status {
         }
     }
 
-    /// How programs are run; `None` for the value that the manual does not list.
+    /// Run mode; `None` for the value that is not in the manual.
     pub const fn run_mode(self) -> Option<RunMode> {
         match self.mode >> 2 & 0b11 {
             0b00 => Some(RunMode::Automatic),
@@ -164,12 +164,12 @@ impl Status {
 }
 
 impl ProgramKind {
-    /// Its two bits.
+    /// The two bits.
     pub const fn bits(self) -> u8 {
         self as u8
     }
 
-    /// In snake case.
+    /// Name in snake case.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Sequential => "sequential",
@@ -181,12 +181,12 @@ impl ProgramKind {
 }
 
 impl RunMode {
-    /// Its two bits, not yet in their place.
+    /// The two bits, not shifted.
     pub const fn bits(self) -> u8 {
         self as u8
     }
 
-    /// In snake case.
+    /// Name in snake case.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Automatic => "automatic",
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn the_example_of_the_manual() {
-        // TO 2-2: 22H is "in execution" and "positioning complete"; TO 3-1 step 11 shows 30H after a return to origin.
+        // TO 2-2: 22H is "in execution" and "positioning complete". TO 3-1 step 11: 30H after a return to origin.
         let status = Status::default().with(0, 0x22);
         assert!(status.executing() && status.in_position() && !status.homed());
         let status = Status::default().with(0, 0x30);

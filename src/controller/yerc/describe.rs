@@ -1,4 +1,5 @@
-//! Explains any frame, field by field, from the table. Never fails: a damaged frame is explained up to the damage.
+//! Decoder of a frame into described fields, from the table. It never fails: a damaged frame is decoded up to the
+//! damage.
 
 mod data;
 
@@ -12,16 +13,16 @@ use super::table::{Action, BATCH_BACKUP_PATH, Row, service};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::text::hex;
 
-/// A frame in words.
+/// A decoded frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Description {
-    /// What it is, in a line.
+    /// One-line summary.
     pub title: String,
-    /// Manual and section, where the command is known.
+    /// Manual and section of a known command.
     pub section: Option<String>,
-    /// Every byte of it, in order.
+    /// All bytes in order.
     pub fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// The problem of the frame, if any.
     pub problem: Option<String>,
 }
 
@@ -52,12 +53,13 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Told by the ACK flag and, for files, by which sub-header fits.
+    /// Guesses the sender by the ACK flag and, for files, by the sub-header.
     pub fn guess(frame: &[u8]) -> Self {
         if frame.get(ACK_AT).is_none_or(|&ack| ack == 0) {
             return Self::Client;
         }
-        // The client's frames of a transfer have command, instance and attribute 0 where answers have their service.
+        // In transfer frames of the client, the bytes of command, instance and attribute are 0; an answer has its
+        // service there.
         match frame.get(24..30) {
             Some([0, 0, 0, 0, 0, service]) if *service != 0 => Self::Client,
             _ => Self::Controller,
@@ -68,7 +70,7 @@ impl Sender {
 /// Offset of the ACK flag.
 const ACK_AT: usize = 10;
 
-/// Explains a frame. `request` is what an answer answers, where that is known: answers do not say so themselves.
+/// Decodes a frame. `request` is the request of an answer, if known: an answer does not contain it.
 pub fn describe(frame: &[u8], sender: Sender, request: Option<&Request>) -> Description {
     let mut notes = Notes::new(frame);
     notes.header();
@@ -78,7 +80,7 @@ pub fn describe(frame: &[u8], sender: Sender, request: Option<&Request>) -> Desc
     }
 }
 
-/// A frame in one line, for traces.
+/// One-line summary of a frame, for traces.
 pub fn summary(frame: &[u8], sender: Sender, request: Option<&Request>) -> String {
     match sender {
         Sender::Client => match RequestFrame::parse(frame) {
@@ -124,7 +126,6 @@ fn answer_summary(frame: &AnswerFrame<'_>, request: Option<&Request>) -> String 
     format!("#{} answer{name}: {}{block}, {} bytes", frame.id, status_words(frame.status), frame.data.len())
 }
 
-/// The request that a client's frame makes or continues.
 fn request_of(frame: &RequestFrame<'_>) -> Request {
     Request {
         command: frame.command,
@@ -164,7 +165,7 @@ fn block_words(block: u32) -> String {
     }
 }
 
-/// What an instance is, in parentheses; for both models where they differ.
+/// Name of an instance in parentheses; for both models if they differ.
 fn instance_words(request: &Request) -> String {
     let label = |model| {
         let instances = request.row()?.instances;
@@ -179,7 +180,7 @@ fn instance_words(request: &Request) -> String {
     }
 }
 
-/// Notes on a frame, gathered front to back.
+/// Fields of a frame, collected from front to back.
 struct Notes<'a> {
     frame: &'a [u8],
     at: usize,
@@ -192,7 +193,7 @@ impl<'a> Notes<'a> {
         Self { frame, at: 0, fields: Vec::new(), problem: None }
     }
 
-    /// Notes the next `size` bytes; nothing from the first time that they are not there.
+    /// Adds the next `size` bytes; adds nothing after the first missing bytes.
     fn take(&mut self, size: usize, name: impl Into<String>, meaning: impl FnOnce(&[u8]) -> String) -> bool {
         let name = name.into();
         if self.problem.is_some() {
@@ -208,7 +209,7 @@ impl<'a> Notes<'a> {
         true
     }
 
-    /// Notes what is left, if anything.
+    /// Adds the remaining bytes, if any.
     fn take_rest(&mut self, name: &str, meaning: impl FnOnce(&[u8]) -> String) {
         let size = self.frame.len().saturating_sub(self.at);
         if size > 0 {
@@ -220,7 +221,7 @@ impl<'a> Notes<'a> {
         self.frame.len().saturating_sub(self.at)
     }
 
-    /// The 24 bytes that both sides share.
+    /// The 24-byte header of both sides.
     fn header(&mut self) {
         self.take(4, "identifier", |bytes| format!("\"{}\"", bytes.escape_ascii()));
         self.take(2, "header size", |bytes| format!("{} bytes", little(bytes)));
@@ -286,13 +287,13 @@ impl<'a> Notes<'a> {
         self.finish(title, row)
     }
 
-    /// Command, instance, attribute and service without noting them.
+    /// Parses command, instance, attribute and service without adding them.
     fn sub_header(&self) -> Option<Request> {
         let bytes = self.frame.get(24..30)?;
         let word = |at: usize| u16::try_from(little(&bytes[at..at + 2])).unwrap_or_default();
         let division = self.frame.get(9);
         let data = self.frame.get(HEADER_LEN..).unwrap_or_default().to_vec();
-        // Whatever a file frame has in place of the command, its service is what counts.
+        // In a file frame only the service is relevant.
         let command = if division == Some(&2) { 0 } else { word(0) };
         Some(Request { command, instance: word(2), attribute: bytes[4], service: bytes[5], data })
     }
@@ -330,7 +331,7 @@ impl<'a> Notes<'a> {
                 self.take_rest("data", |_| "more than the command answers".to_owned());
             }
             (Some(_), _) => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
-            // The file server's answers say by their service what they carry.
+            // A file server answer identifies its content by the service.
             _ if is_file && answered == Some(service::LIST) => {
                 self.take_rest("names", |bytes| format!("\"{}\"", bytes.escape_ascii()));
             }
@@ -367,14 +368,14 @@ fn little(bytes: &[u8]) -> u64 {
     bytes.iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
 }
 
-/// What is known about the numbers that follow in an element.
+/// Context of the following numbers in an element.
 #[derive(Default)]
 struct Meaning {
     kind: Option<PositionKind>,
     speed_class: Option<u32>,
 }
 
-/// Whether a name asks for the batch backup.
+/// Whether a name is the path of the batch backup.
 fn is_backup(name: &[u8]) -> bool {
     name == BATCH_BACKUP_PATH
 }

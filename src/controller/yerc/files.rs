@@ -1,4 +1,4 @@
-//! File services: names, lists, and the frames of a transfer (FS and DX 3.4, 3.2.3 to 3.2.6).
+//! File services: names, lists, and transfer frames (FS and DX 3.4, 3.2.3 to 3.2.6).
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,10 +9,10 @@ use super::request::Request;
 use super::table::{BATCH_BACKUP_PATH, service};
 use super::wire::{Division, MAX_DATA, RequestFrame};
 
-/// Most bytes of the part of a job's file name before `.JBI`.
+/// Maximum length in bytes of a job name, without `.JBI`.
 pub const MAX_JOB_NAME: usize = 32;
 
-/// The kinds of files a controller holds.
+/// Types of files on a controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum FileType {
     /// Jobs.
@@ -30,10 +30,10 @@ pub enum FileType {
 }
 
 impl FileType {
-    /// Every type, in the order of the manual.
+    /// All types, in the order of the manual.
     pub const ALL: [Self; 6] = [Self::Jbi, Self::Dat, Self::Cnd, Self::Prm, Self::Sys, Self::Lst];
 
-    /// The extension without a point.
+    /// Extension without the point.
     pub const fn extension(self) -> &'static str {
         match self {
             Self::Jbi => "JBI",
@@ -45,12 +45,12 @@ impl FileType {
         }
     }
 
-    /// What a list request asks for, e.g. `*.JBI`.
+    /// Filter of a list request, e.g. `*.JBI`.
     pub fn filter(self) -> String {
         format!("*.{}", self.extension())
     }
 
-    /// The type of a file name, by its extension.
+    /// Type of a file name, by its extension.
     pub fn from_name(name: &[u8]) -> Option<Self> {
         let point = name.iter().rposition(|&byte| byte == b'.')?;
         Self::ALL.into_iter().find(|kind| name[point + 1..].eq_ignore_ascii_case(kind.extension().as_bytes()))
@@ -74,16 +74,16 @@ impl fmt::Display for FileType {
     }
 }
 
-/// A file name or filter that must not be sent.
+/// An invalid file name or filter.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FileNameError {
-    /// Nothing at all, or only an extension.
+    /// Empty, or only an extension.
     #[error("the file name is empty")]
     Empty,
     /// Longer than a frame.
     #[error("the file name has {len} bytes; at most {MAX_DATA} fit a frame")]
     TooLong {
-        /// Bytes given.
+        /// Length in bytes.
         len: usize,
     },
     /// Names are sent without a NUL; controllers refuse one (E49D).
@@ -92,25 +92,25 @@ pub enum FileNameError {
         /// The name, escaped.
         name: String,
     },
-    /// A folder, which controllers do not have.
+    /// A path: controllers have no folders.
     #[error("the file name '{name}' contains a path separator")]
     Separator {
         /// The name, escaped.
         name: String,
     },
-    /// A CR or LF would tear lists apart, other control characters cannot be typed on a pendant.
+    /// A control character: CR or LF would split lists, and others cannot be typed on a pendant.
     #[error("the file name '{name}' contains a control character")]
     Control {
         /// The name, escaped.
         name: String,
     },
-    /// No extension.
+    /// Without extension.
     #[error("the file name '{name}' needs an extension, as in TESTJOB.JBI")]
     Extension {
         /// The name, escaped.
         name: String,
     },
-    /// Sent to a controller, but not one of the six extensions.
+    /// Not one of the six extensions of files that can be sent.
     #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST to be sent")]
     Type {
         /// The name, escaped.
@@ -121,10 +121,10 @@ pub enum FileNameError {
     JobName {
         /// The name, escaped.
         name: String,
-        /// Bytes before the extension.
+        /// Length in bytes without extension.
         len: usize,
     },
-    /// Not one of the manual's filters.
+    /// A filter that is not in the manual.
     #[error("the filter '{filter}' is unknown; there are nothing, *.*, *.JBI, *.DAT, *.CND, *.PRM, *.SYS, *.LST")]
     Filter {
         /// The filter, escaped.
@@ -137,7 +137,7 @@ pub enum FileNameError {
 pub struct FileName(Vec<u8>);
 
 impl FileName {
-    /// Takes a name that follows the rules.
+    /// Validates a name.
     pub fn new(name: impl Into<Vec<u8>>) -> Result<Self, FileNameError> {
         let name = name.into();
         if name == BATCH_BACKUP_PATH {
@@ -147,32 +147,32 @@ impl FileName {
         Ok(Self(name))
     }
 
-    /// The bytes as sent.
+    /// Bytes as sent.
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// By its extension; `None` for one that the manuals do not list.
+    /// Type by extension; `None` if it is not in the manuals.
     pub fn file_type(&self) -> Option<FileType> {
         FileType::from_name(&self.0)
     }
 
-    /// Checks what is expected of a name beyond the usual before a file is sent under it.
+    /// Checks the additional rules for a file to be sent.
     pub fn check_load(&self) -> Result<(), FileNameError> {
         check_load_name(&self.0)
     }
 
-    /// Deletes it.
+    /// Request that deletes the file.
     pub fn delete(&self) -> Request {
         Request::file(service::DELETE, self.0.clone())
     }
 
-    /// Begins to send it to the controller.
+    /// Request that starts sending the file to the controller.
     pub fn load(&self) -> Request {
         Request::file(service::LOAD, self.0.clone())
     }
 
-    /// Begins to fetch it from the controller.
+    /// Request that starts fetching the file from the controller.
     pub fn save(&self) -> Request {
         Request::file(service::SAVE, self.0.clone())
     }
@@ -184,23 +184,23 @@ impl fmt::Debug for FileName {
     }
 }
 
-/// Asks for the names of one type.
+/// Request for the names of one type.
 pub fn list(kind: FileType) -> Request {
     Request::file(service::LIST, kind.filter())
 }
 
-/// Asks for the names that a filter of the manuals lets through; the empty one is that of the controller.
+/// Request for names by a filter of the manuals. The controller decides about the empty filter.
 pub fn list_by(filter: &str) -> Result<Request, FileNameError> {
     check_filter(filter.as_bytes())?;
     Ok(Request::file(service::LIST, filter))
 }
 
-/// Makes the controller write its batch backup, which takes about ten minutes; the same request fetches the file.
+/// Request for the batch backup, which takes about ten minutes; the same request fetches the file.
 pub fn batch_backup() -> Request {
     Request::file(service::SAVE, BATCH_BACKUP_PATH)
 }
 
-/// A block of a file on its way to the controller: ACK form with data.
+/// A file block to the controller: a frame in ACK form with data.
 ///
 /// # Panics
 /// If `data` is longer than 479 bytes.
@@ -208,7 +208,7 @@ pub fn data_frame(id: u8, block: u32, data: &[u8]) -> Vec<u8> {
     transfer_frame(id, service::LOAD, block, data)
 }
 
-/// Acknowledges a block from the controller; `block` as received, with its last-block bit.
+/// Acknowledges a block from the controller. `block` is the received number with its last-block bit.
 pub fn ack_frame(id: u8, service: u8, block: u32) -> Vec<u8> {
     transfer_frame(id, service, block, &[])
 }
@@ -228,18 +228,18 @@ fn transfer_frame(id: u8, service: u8, block: u32, data: &[u8]) -> Vec<u8> {
     .emit()
 }
 
-/// A list with a line that is no name.
+/// A list line that is too long for a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("line {line} of the list has {len} bytes; at most {MAX_DATA} fit a frame")]
 pub struct ListError {
-    /// Which line, from 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// Its bytes.
+    /// Length in bytes.
     pub len: usize,
 }
 
-/// Splits the joined data of a list into names. The manuals end them with CR LF; a lone CR or LF, padding NULs and blanks
-/// at the end of a line are no part of a name either: none of them is ever half of a wider character.
+/// Splits the data of a list into names. They end with CR LF in the manuals. A single CR or LF, NULs, and trailing
+/// blanks also separate names: none of these bytes is part of a multi-byte character.
 pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     let lines = data.split(|byte| matches!(byte, b'\r' | b'\n' | 0)).map(<[u8]>::trim_ascii_end);
     let mut names = Vec::new();
@@ -252,7 +252,7 @@ pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     Ok(names)
 }
 
-/// The rules for names in requests; the path of the batch backup passes.
+/// Checks the rules for names in requests; the batch backup path is allowed.
 pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if name == BATCH_BACKUP_PATH {
         return Ok(());
@@ -277,8 +277,7 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if stem + 1 >= name.len() { Err(FileNameError::Extension { name: shown() }) } else { Ok(()) }
 }
 
-/// The rules for the name of a file that is sent: beyond [`check_name`], an extension of the manuals, and a job name that
-/// a controller can hold.
+/// Checks the rules for a file to be sent: [`check_name`], an extension of the manuals, and the length of a job name.
 pub fn check_load_name(name: &[u8]) -> Result<(), FileNameError> {
     check_name(name)?;
     let stem = stem_len(name);
@@ -291,12 +290,12 @@ pub fn check_load_name(name: &[u8]) -> Result<(), FileNameError> {
     }
 }
 
-/// Bytes before the extension.
+/// Length in bytes without the extension.
 fn stem_len(name: &[u8]) -> usize {
     name.iter().rposition(|&byte| byte == b'.').unwrap_or(name.len())
 }
 
-/// The filters that the manuals list (3.4.4).
+/// Checks a filter against the manuals (3.4.4).
 pub fn check_filter(filter: &[u8]) -> Result<(), FileNameError> {
     let known = filter.is_empty()
         || filter == b"*.*"
@@ -304,7 +303,8 @@ pub fn check_filter(filter: &[u8]) -> Result<(), FileNameError> {
     if known { Ok(()) } else { Err(FileNameError::Filter { filter: filter.escape_ascii().to_string() }) }
 }
 
-/// `/`, or a backslash that is not the second byte of a full-width character: `ソ` is 83 5C in `Shift_JIS`.
+/// Whether a name contains `/`, or a backslash that is not the second byte of a full-width character: `ソ` is 83 5C in
+/// `Shift_JIS`.
 fn has_separator(name: &[u8]) -> bool {
     let mut bytes = name.iter();
     while let Some(&byte) = bytes.next() {

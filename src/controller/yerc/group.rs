@@ -20,7 +20,7 @@ impl Group {
     /// The first robot.
     pub const R1: Self = Self::Robot(1);
 
-    /// The instance that reads its pulses, torque and position error: 1, 11 or 21 for the first.
+    /// Instance of pulses, torque and position error: 1, 11 or 21 for the first group.
     pub const fn instance(self) -> u16 {
         match self {
             Self::Robot(number) => number as u16,
@@ -29,7 +29,7 @@ impl Group {
         }
     }
 
-    /// The instance that reads it in cartesian coordinates, which stations do not have: 101 or 111 for the first.
+    /// Instance of cartesian coordinates, which stations do not have: 101 or 111 for the first group.
     pub const fn cartesian_instance(self) -> Option<u16> {
         match self {
             Self::Robot(_) | Self::Base(_) => Some(100 + self.instance()),
@@ -37,7 +37,7 @@ impl Group {
         }
     }
 
-    /// Whether a controller of this model can have it.
+    /// Whether the group can exist on this model.
     pub const fn exists_on(self, model: Model) -> bool {
         let (robots, bases, stations) = Self::counts(model);
         match self {
@@ -47,7 +47,7 @@ impl Group {
         }
     }
 
-    /// Most robots, bases and stations.
+    /// Maximum number of robots, bases and stations.
     pub const fn counts(model: Model) -> (u8, u8, u8) {
         match model {
             Model::Fs100 => (2, 2, 3),

@@ -1,32 +1,33 @@
-//! The controllers that speak the protocol: what differs between them, and how one is told from its software.
+//! Controller models: differences, and identification by software version.
 //!
-//! | model | what its profile rests on |
+//! | model | source of its profile |
 //! |---|---|
 //! | FS100 | FS, its own manual |
 //! | DX200 | DX, its own manual |
 //! | DX100 | DX 3.3 (strings of 16 bytes before the DX200); `WriteSingleIO.srv` of ROS-Industrial's `motoman_msgs` (network inputs from 25010 on, as on the FS100); the rest as in both manuals, or as in DX: unproven |
 //! | YRC1000 | captured answers of one (0x70 to 0x75, 0x77, 0x88, 0x89), clients that run on some; ranges as in DX |
 //!
-//! What only a YRC1000 has (0x0411 to 0x0413) is in no source with its layout, and is not sent.
+//! The layouts of commands that only a YRC1000 has (0x0411 to 0x0413) are in no source, so these are not sent.
 
-/// The controller a robot hangs on: number ranges, string sizes and move layouts differ.
+/// Controller model. Number ranges, string sizes and move layouts depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Model {
     /// FS100: 2 robots, 2 bases, 3 stations, 6 tasks, 16-byte strings.
     Fs100,
-    /// DX100: groups and tasks as a DX200, 16-byte strings, network inputs where an FS100 has them.
+    /// DX100: groups and tasks of a DX200, 16-byte strings, network inputs of an FS100.
     Dx100,
     /// DX200: 8 robots, 8 bases, 24 stations, 16 tasks, 32-byte strings.
     Dx200,
-    /// YRC1000 and YRC1000micro: as a DX200, as far as is known.
+    /// YRC1000 and YRC1000micro: like a DX200, as far as known.
     Yrc1000,
 }
 
-/// How the version of the system software begins, by controller (0x89; FS and DX 3.3.26).
+/// Prefixes of the system software version by controller (0x89; FS and DX 3.3.26).
 ///
-/// FS100: examples of FS. DX100: versions that its users report (ros-industrial/motoman, issue 651: `DS3.93.00(us/de)-14`,
-/// `DS4.42.00A(…)-14`); DX repeats such an example, but no DX200 is known to have one. DX200, YRC1000, YRC1000micro:
-/// requirements of `MotoROS2`, by the maker (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`), and a captured `YAS2.02`.
+/// FS100: examples in FS. DX100: versions reported by users (ros-industrial/motoman, issue 651:
+/// `DS3.93.00(us/de)-14`, `DS4.42.00A(…)-14`). DX repeats such an example, but no DX200 with it is known. DX200,
+/// YRC1000, YRC1000micro: requirements of the maker's `MotoROS2` (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`),
+/// and a captured `YAS2.02`.
 const SOFTWARE: [(&str, Model); 5] = [
     ("FS", Model::Fs100),
     ("DS", Model::Dx100),
@@ -36,10 +37,10 @@ const SOFTWARE: [(&str, Model); 5] = [
 ];
 
 impl Model {
-    /// Every model, in the order help texts list them.
+    /// All models, in the order of help texts.
     pub const ALL: [Self; 4] = [Self::Fs100, Self::Dx100, Self::Dx200, Self::Yrc1000];
 
-    /// The name in target URLs, inventories and JSON.
+    /// Name in target URLs, inventories and JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fs100 => "fs100",
@@ -49,7 +50,7 @@ impl Model {
         }
     }
 
-    /// The model whose system software calls itself so, such as `YAS2.02.11A(JP/EN)-97`; `None` if it is that of none.
+    /// The model of a system software version such as `YAS2.02.11A(JP/EN)-97`; `None` if unknown.
     pub fn from_software(version: &[u8]) -> Option<Self> {
         let letters = version.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let (prefix, number) = version.split_at(letters);
@@ -58,7 +59,7 @@ impl Model {
         found.map(|(_, model)| *model)
     }
 
-    /// Whether S variables hold 32 bytes, which they do from the DX200 on (DX 3.3).
+    /// Whether S variables have 32 bytes, as from the DX200 on (DX 3.3).
     pub const fn has_long_strings(self) -> bool {
         match self {
             Self::Fs100 | Self::Dx100 => false,
@@ -66,7 +67,7 @@ impl Model {
         }
     }
 
-    /// What of its profile no source proves; completes "unproven: …". `None` where its manual is the source.
+    /// Unproven parts of the profile, to complete "unproven: …"; `None` if the manual of the model is the source.
     pub const fn unproven(self) -> Option<&'static str> {
         match self {
             Self::Fs100 | Self::Dx200 => None,

@@ -1,17 +1,16 @@
-//! Names that a controller keeps for signals, variables and registers: what is in `IONAME.DAT`, `EXIONAME.DAT`,
-//! `VARNAME.DAT` and `IOMNAME.DAT`.
+//! Names of signals, variables and registers on a controller: files `IONAME.DAT`, `EXIONAME.DAT`, `VARNAME.DAT` and
+//! `IOMNAME.DAT`.
 //!
-//! The manuals of the protocol do not describe these files. What is read here is proven by public material, and nothing
-//! beyond it:
+//! The protocol manuals do not describe these files. The parser is based only on public material:
 //!
 //! - The BSD-licensed editor extension `tshikina/YaskawaInformSupport` (`server/src/IoNameDatFile.ts`,
-//!   `VarNameDatFile.ts`, `IoMNameDatFile.ts` and its grammars): sections, which name belongs to which number, 16
-//!   characters a name.
-//! - Saved controllers that were published: `lukelalondePZ/Fiberdome-GP88-Spindle-Cell` (YRC1000), where the name at place
-//!   17 of the outputs is that of the job with `OT#(17)`, 19 to 21 likewise, and its ladder program passes #10030 on as
-//!   `OT#(17)`; `SinaiAranda/motoman_sda20d_sys`, whose variables are neither in order nor without gaps.
+//!   `VarNameDatFile.ts`, `IoMNameDatFile.ts` and its grammars): sections, numbers of the names, 16 characters per
+//!   name.
+//! - Published backups of controllers. `lukelalondePZ/Fiberdome-GP88-Spindle-Cell` (YRC1000): the name at position 17
+//!   of the outputs is that of the job with `OT#(17)`, 19 to 21 likewise, and its ladder program copies #10030 to
+//!   `OT#(17)`. `SinaiAranda/motoman_sda20d_sys`: its variables are unordered and have gaps.
 //!
-//! Other files with names (`.LST`, `.CND`) have no public description, and are not read.
+//! Other files with names (`.LST`, `.CND`) have no public description and are not parsed.
 
 use std::fmt::Write as _;
 
@@ -23,44 +22,44 @@ use crate::names::{Grammar, Kind, LONGEST, Name, Source};
 use crate::text::Encoding;
 use crate::typed::unsigned;
 
-/// The files that have names, in the order they are asked for.
+/// Files with names, in the order of reading.
 pub const FILES: [&str; 4] = ["IONAME.DAT", "EXIONAME.DAT", "VARNAME.DAT", "IOMNAME.DAT"];
 
 /// Signals, variables and registers: `#27010`, `B5`, `M5`.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["B", "I", "D", "R", "S", "P", "BP", "EX", "M"] };
 
-/// More names than these are in no controller: 8192 signals, and some thousand variables of each kind.
+/// Limit of names: a controller has 8192 signals, and some thousand variables of each kind.
 const MOST: usize = 1 << 16;
 
-/// A file that is none of those.
+/// A file in another format.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum WrongFile {
-    /// It begins otherwise.
+    /// Unknown first line.
     #[error("it does not begin as a file of names does")]
     Head,
-    /// None of its sections is known.
+    /// No known section.
     #[error("it has no section that is known")]
     Sections,
-    /// It has more names than a controller has addresses.
+    /// Too many names.
     #[error("it has more than {MOST} names")]
     Many,
 }
 
-/// What a file says.
+/// Names of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FileNames {
-    /// Its names, in the order of the file.
+    /// In file order.
     pub names: Vec<Name>,
-    /// How many lines were passed over, as they have another form.
+    /// Number of skipped lines in another format.
     pub passed_over: usize,
 }
 
-/// The name of a signal.
+/// Kind and address of a signal.
 pub fn signal(signal: Signal) -> (Kind, String) {
     (Kind::Signal, signal.to_string())
 }
 
-/// An address as typed, and as it is written.
+/// Parses an address and normalizes it.
 fn address(text: &str) -> Option<(Kind, String)> {
     if let Some(number) = register(text) {
         return Some((Kind::Register, register_address(number)));
@@ -71,24 +70,24 @@ fn address(text: &str) -> Option<(Kind, String)> {
     }
 }
 
-/// `M5` and `M005`.
+/// Parses `M5` and `M005`.
 pub fn register(text: &str) -> Option<u16> {
     let digits = text.strip_prefix(['M', 'm'])?;
     unsigned(digits)
 }
 
-/// `M5`.
+/// Address of a register: `M5`.
 pub fn register_address(number: u16) -> String {
     format!("M{number}")
 }
 
-/// Reads one of [`FILES`].
+/// Parses one of [`FILES`].
 ///
 /// # Errors
-/// It is not of their form.
+/// The file has another format.
 pub fn read(file: &str, bytes: &[u8], encoding: Encoding) -> Result<FileNames, WrongFile> {
     let mut reader = Reader { file, encoding, section: None, line: 0, found: FileNames::default(), is_known: false };
-    // Neither a line feed nor a comma is ever a part of a wider character.
+    // Line feeds and commas are never part of a multi-byte character.
     let mut lines = bytes.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii_end);
     if !lines.next().is_some_and(|head| head.starts_with(b"/")) {
         return Err(WrongFile::Head);
@@ -99,19 +98,19 @@ pub fn read(file: &str, bytes: &[u8], encoding: Encoding) -> Result<FileNames, W
     if reader.is_known { Ok(reader.found) } else { Err(WrongFile::Sections) }
 }
 
-/// What the lines of a section are.
+/// Format of the lines of a section.
 #[derive(Debug, Clone, Copy)]
 enum Section {
-    /// Four names a line, from the signals of this group on.
+    /// Four names per line, from the signals of this group on.
     Signals(u16),
-    /// A variable of this kind a line: `0012 1,0,NAME`.
+    /// One variable of this kind per line: `0012 1,0,NAME`.
     Variables(&'static str),
-    /// A name a line, from register 0 on.
+    /// One name per line, from register 0 on.
     Registers,
 }
 
-/// Sections, by the line that begins them. The groups are those of the protocol's signals (FS and DX 3.3.9): general
-/// inputs and outputs, and external ones.
+/// Sections by their first line. The groups are the signals of the protocol (FS and DX 3.3.9): general and external
+/// inputs and outputs.
 const SECTIONS: [(&[u8], Section); 13] = [
     (b"//IN", Section::Signals(1)),
     (b"//OUT", Section::Signals(1001)),
@@ -128,14 +127,14 @@ const SECTIONS: [(&[u8], Section); 13] = [
     (b"///EX", Section::Variables("EX")),
 ];
 
-/// Names of signals in a line.
+/// Signal names per line.
 const A_LINE: usize = 4;
 
 struct Reader<'a> {
     file: &'a str,
     encoding: Encoding,
     section: Option<Section>,
-    /// Of the section.
+    /// Line within the section.
     line: usize,
     found: FileNames,
     is_known: bool,
@@ -165,7 +164,7 @@ impl Reader<'_> {
 
     fn signals(&mut self, first_group: u16, at: usize, line: &[u8]) {
         let names: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
-        // Which names belong to which signal cannot be told in a line of another length.
+        // In a line of another length, the names cannot be assigned to signals.
         if names.len() != A_LINE {
             self.found.passed_over += usize::from(!line.is_empty());
             return;
@@ -184,7 +183,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `0012 1,0,NAME`: what the two numbers are is not known, and nothing depends on them.
+    /// Parses `0012 1,0,NAME`. The meaning of the two numbers is unknown and not needed.
     fn variable(&mut self, letters: &str, line: &[u8]) {
         if line.is_empty() {
             return;
@@ -220,11 +219,11 @@ impl Reader<'_> {
     }
 }
 
-/// A file as a controller writes it, for the simulator: lines end in CR LF.
+/// Formats a file as a controller does, for the simulator, with CR LF.
 pub(in crate::yerc) fn written(head: &str, sections: &[(&str, Vec<String>)]) -> String {
     let mut text = format!("{head}\n");
     for (section, lines) in sections {
-        // Nothing fails when text is written to a string.
+        // Writing to a string never fails.
         let _ = writeln!(text, "{section}");
         for line in lines {
             let _ = writeln!(text, "{line}");
@@ -237,8 +236,8 @@ pub(in crate::yerc) fn written(head: &str, sections: &[(&str, Vec<String>)]) -> 
 mod tests {
     use super::*;
 
-    /// Files made by hand in the form of the published ones, which may not be copied; the names and places are other ones
-    /// but for those that prove a place.
+    /// Hand-made files in the format of the published ones, which may not be copied. Names and positions differ, except
+    /// those that prove a position.
     fn read_text(file: &str, text: &str) -> Vec<String> {
         let found = read(file, &encode(text), Encoding::ShiftJis).unwrap();
         found.names.iter().map(|name| format!("{}={}", name.address, name.name)).collect()
@@ -250,7 +249,7 @@ mod tests {
 
     #[test]
     fn signals_have_four_names_a_line() {
-        // OT#(17) is #10030, OT#(19) #10032, OT#(21) #10034 (see the head of this file); IN#(1) is #00010.
+        // OT#(17) is #10030, OT#(19) #10032, OT#(21) #10034 (see the module comment); IN#(1) is #00010.
         let text = "/IONAME\n//IN\nGATE,VACUUM GOOD,,\n,,,\n//OUT\nRUN,,,\n,,,\n,,,\n,,,\nAIR,,LOCK,\nFILTER,,,LAST\n";
         let expected = [
             "#00010=GATE",
@@ -278,7 +277,7 @@ mod tests {
 
     #[test]
     fn registers_are_counted_by_lines() {
-        // The controllers write the head so.
+        // The controllers use this spelling of the head.
         assert_eq!(read_text("IOMNAME.DAT", "/IOMMAME\n//NAME\n\n\nSPEED\n\nCOUNT\n"), ["M2=SPEED", "M4=COUNT"]);
     }
 

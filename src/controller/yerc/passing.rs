@@ -1,12 +1,12 @@
-//! What may pass to a controller that is only to be read, whoever sends it.
+//! Filter for a read-only link: decides which datagrams may pass.
 
 use super::request::Request;
 use super::table::service;
 use super::wire::RequestFrame;
 use crate::Risk;
 
-/// Whether a datagram changes nothing, or stops the robot (HOLD on; FS and DX 3.3.20). Of a transfer, only what takes a
-/// file passes: a block of one that is sent does not.
+/// Whether a datagram only reads, or stops the robot (HOLD on; FS and DX 3.3.20). Of a transfer, only the frames of a
+/// download may pass.
 pub fn only_reads_or_stops(datagram: &[u8]) -> bool {
     let Ok(frame) = RequestFrame::parse(datagram) else { return false };
     if frame.ack {

@@ -1,7 +1,7 @@
-//! Typed questions and orders: each builds its request and reads its answer.
+//! Typed queries: each builds its request and decodes its answer.
 //!
-//! A query cannot be built with numbers that the controller's model does not have, except extended variables, whose
-//! count is a parameter of the controller.
+//! A query cannot be built with numbers that the model does not have. Extended variables are an exception, because
+//! their count is a parameter of the controller.
 
 mod control;
 mod read;
@@ -30,24 +30,24 @@ use super::request::{Request, RequestError};
 use super::table::service;
 use crate::Risk;
 
-/// One exchange with the robot server.
+/// A request to the robot server and its answer.
 pub trait Query {
-    /// What the controller answers.
+    /// Content of the answer.
     type Answer;
 
-    /// The request; it passes [`Request::check`] for the model the query was built for.
+    /// The request; it passes [`Request::check`] for the model of the query.
     fn request(&self) -> Request;
 
-    /// Reads the data of a successful answer.
+    /// Decodes the data of a successful answer.
     fn decode(&self, data: &[u8]) -> Result<Self::Answer, PayloadError>;
 
-    /// What it does to the world.
+    /// Risk of the request.
     fn risk(&self) -> Risk {
         self.request().risk()
     }
 }
 
-/// An exchange whose answer holds nothing but its status.
+/// A query whose answer contains only its status.
 pub trait WriteQuery {
     /// The request, as in [`Query::request`].
     fn write_request(&self) -> Request;
@@ -65,10 +65,10 @@ impl<W: WriteQuery> Query for W {
     }
 }
 
-/// A query that cannot be built.
+/// Why a query cannot be built.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum QueryError {
-    /// No such control group.
+    /// A control group that does not exist.
     #[error("{group} does not exist on a {model}; there are R1-R{robots}, B1-B{bases}, S1-S{stations}",
         robots = Group::counts(*.model).0, bases = Group::counts(*.model).1, stations = Group::counts(*.model).2)]
     Group {
@@ -77,78 +77,78 @@ pub enum QueryError {
         /// The controller.
         model: Model,
     },
-    /// A control group that this query does not take.
+    /// A control group that is not valid for this query.
     #[error("{group} cannot be used here: {reason}")]
     GroupKind {
         /// The group given.
         group: Group,
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
-    /// No such task.
+    /// A task that does not exist.
     #[error("task {task} does not exist on a {model}; there are 0 (master) to {last}")]
     Task {
         /// The task given.
         task: u8,
         /// The controller.
         model: Model,
-        /// The last task.
+        /// Last valid task.
         last: u8,
     },
-    /// A number outside its range.
+    /// A number out of range.
     #[error("{what} is {found}; allowed: {first} to {last}")]
     Range {
-        /// What is out of range.
+        /// Name of the number.
         what: &'static str,
-        /// The number given.
+        /// The number.
         found: u32,
-        /// Least.
+        /// Minimum.
         first: u32,
-        /// Greatest.
+        /// Maximum.
         last: u32,
     },
     /// A text that does not fit.
     #[error("{what}: {error}")]
     Text {
-        /// Which text.
+        /// Name of the text.
         what: &'static str,
-        /// Why.
+        /// The reason.
         error: TextError,
     },
-    /// A name without which nothing can be done.
+    /// A missing name.
     #[error("{what} is empty")]
     Empty {
-        /// Which text.
+        /// Name of the text.
         what: &'static str,
     },
-    /// A speed that does not go with the way of moving.
+    /// A speed class that does not fit the kind of move.
     #[error("a {motion} move takes its speed in {expected}")]
     SpeedClass {
         /// Link or straight.
         motion: &'static str,
-        /// The classes possible.
+        /// Valid classes.
         expected: &'static str,
     },
-    /// Coordinates that a move cannot be given in.
+    /// Coordinates that are not valid for a move.
     #[error("a cartesian move takes base, robot, user or tool coordinates")]
     Coordinate,
-    /// Bits that the manuals reserve.
+    /// Bits that are reserved in the manuals.
     #[error("{what} has reserved bits set: {bits:#x}")]
     Reserved {
-        /// Which word.
+        /// Name of the word.
         what: &'static str,
         /// The bits.
         bits: u32,
     },
-    /// Values of different kinds in one plural write.
+    /// Different kinds of values in one plural write.
     #[error("a plural write takes values of one kind, and at least one")]
     MixedKinds,
-    /// What the table does not allow.
+    /// A request that violates the table.
     #[error(transparent)]
     Request(#[from] RequestError),
 }
 
-/// A query whose request the table allows for this model.
+/// A query whose request is valid for the model.
 fn checked<Q: Query>(model: Model, query: Q) -> Result<Q, QueryError> {
     query.request().check(model)?;
     Ok(query)
@@ -159,7 +159,6 @@ fn reading(command: u16, instance: u16, attribute: u8, service: u8) -> Request {
     Request { command, instance, attribute, service, data: Vec::new() }
 }
 
-/// Reads every field of an instance.
 fn read_all(command: u16, instance: u16) -> Request {
     reading(command, instance, 0, service::GET_ALL)
 }
@@ -174,15 +173,15 @@ fn read_plural(command: u16, first: u16, count: u16) -> Request {
     Request { command, instance: first, attribute: 0, service: service::READ_PLURAL, data }
 }
 
-/// `elements` are `count` elements, one after the other.
+/// Writes `count` consecutive elements.
 fn write_plural(command: u16, first: u16, count: usize, elements: impl IntoIterator<Item = u8>) -> Request {
-    // A count that large is refused by the check that follows every construction.
+    // The check after every construction refuses such a large count.
     let mut data = u32::try_from(count).unwrap_or(u32::MAX).to_le_bytes().to_vec();
     data.extend(elements);
     Request { command, instance: first, attribute: 0, service: service::WRITE_PLURAL, data }
 }
 
-/// The elements of a plural answer, which must be as many as asked for.
+/// The elements of a plural answer, which must have the requested count.
 fn elements<'a>(
     what: &'static str,
     data: &'a [u8],
@@ -202,7 +201,7 @@ fn known_group(model: Model, group: Group) -> Result<Group, QueryError> {
     if group.exists_on(model) { Ok(group) } else { Err(QueryError::Group { group, model }) }
 }
 
-/// The last task, 0 being the master.
+/// The last task; 0 is the master.
 const fn last_task(model: Model) -> u8 {
     match model {
         Model::Fs100 => 5,

@@ -1,4 +1,4 @@
-//! A request, and what the table says about it.
+//! Requests, and their validation by the table.
 
 use thiserror::Error;
 
@@ -8,16 +8,16 @@ use super::table::{Action, Field, Kind, Plural, RiskRule, Row, Service, service,
 use super::wire::{Division, MAX_DATA, RequestFrame};
 use crate::Risk;
 
-/// One request, complete but for its id.
+/// A request without its id.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Request {
     /// Command number; 0 for files.
     pub command: u16,
-    /// Which of the things the command addresses.
+    /// Instance of the command.
     pub instance: u16,
-    /// Which field of it.
+    /// Attribute: a field of the instance.
     pub attribute: u8,
-    /// What to do with it.
+    /// Service.
     pub service: u8,
     /// At most 479 bytes.
     pub data: Vec<u8>,
@@ -26,19 +26,19 @@ pub struct Request {
 /// A request that the manuals do not allow.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RequestError {
-    /// No such command.
+    /// An unknown command.
     #[error("command {command:#06x} does not exist; there are 0x70 to 0x8c and 0x300 to 0x30c")]
     Command {
         /// The number given.
         command: u16,
     },
-    /// No such file service.
+    /// An unknown file service.
     #[error("file service {found:#04x} does not exist; there are 0x09, 0x15, 0x16 and 0x32")]
     FileService {
         /// The number given.
         found: u8,
     },
-    /// Not on this model.
+    /// A command that the model does not have.
     #[error("command {command:#06x} ({name}) does not exist on a {model}")]
     Model {
         /// The number given.
@@ -48,7 +48,7 @@ pub enum RequestError {
         /// The controller.
         model: Model,
     },
-    /// Not one of the command's services.
+    /// A service that the command does not have.
     #[error("service {found:#04x} is not one of command {command:#06x} ({name}); allowed: {allowed}")]
     Service {
         /// The command.
@@ -57,10 +57,10 @@ pub enum RequestError {
         name: &'static str,
         /// The service given.
         found: u8,
-        /// The services there are.
+        /// Valid services.
         allowed: String,
     },
-    /// Addresses nothing.
+    /// An instance that does not exist.
     #[error("instance {found} is outside {name} on a {model}; allowed: {allowed}")]
     Instance {
         /// The command's name.
@@ -69,22 +69,22 @@ pub enum RequestError {
         found: u16,
         /// The controller.
         model: Model,
-        /// The ranges there are.
+        /// Valid ranges.
         allowed: String,
     },
-    /// Addresses something that can only be read.
+    /// An instance that is read-only.
     #[error("instance {found} ({class}) can only be read on a {model}; writable: {allowed}")]
     ReadOnly {
         /// The instance given.
         found: u16,
-        /// What it is.
+        /// Description.
         class: &'static str,
         /// The controller.
         model: Model,
-        /// The writable ranges.
+        /// Writable ranges.
         allowed: String,
     },
-    /// Names no field.
+    /// An attribute that does not exist.
     #[error("attribute {found} is not allowed for {name} with service {service:#04x}; allowed: {allowed}")]
     Attribute {
         /// The command's name.
@@ -93,10 +93,10 @@ pub enum RequestError {
         found: u8,
         /// The service.
         service: u8,
-        /// The attributes there are.
+        /// Valid attributes.
         allowed: String,
     },
-    /// Too little or too much data.
+    /// Wrong data size.
     #[error("{name} with service {service:#04x} takes {allowed} data bytes, not {found}")]
     DataSize {
         /// The command's name.
@@ -105,10 +105,10 @@ pub enum RequestError {
         service: u8,
         /// Bytes given.
         found: usize,
-        /// Bytes taken.
+        /// Valid sizes.
         allowed: String,
     },
-    /// A word with a value that is not defined.
+    /// An undefined value of a word.
     #[error("{field} of {name} is {found}; allowed: {allowed}")]
     Value {
         /// The command's name.
@@ -117,17 +117,17 @@ pub enum RequestError {
         field: &'static str,
         /// The value given.
         found: u32,
-        /// The values there are.
+        /// Valid values.
         allowed: String,
     },
-    /// Too few or too many elements.
+    /// Wrong number of elements.
     #[error("{name}: count {found} is outside 1 to {max}")]
     Count {
         /// The command's name.
         name: &'static str,
         /// The count given.
         found: u32,
-        /// The largest count.
+        /// Maximum count.
         max: u16,
     },
     /// An odd count where only even ones are valid.
@@ -137,7 +137,7 @@ pub enum RequestError {
         name: &'static str,
         /// The count given.
         found: u32,
-        /// The largest count.
+        /// Maximum count.
         max: u16,
     },
     /// Elements beyond the range of the first one.
@@ -145,14 +145,14 @@ pub enum RequestError {
     Overrun {
         /// The command's name.
         name: &'static str,
-        /// The instance.
+        /// First instance.
         first: u16,
-        /// Elements wanted.
+        /// Requested elements.
         count: u32,
         /// Last instance of the range.
         last: u16,
     },
-    /// A file name or filter that cannot be sent.
+    /// An invalid file name or filter.
     #[error(transparent)]
     FileName(#[from] FileNameError),
 }
@@ -164,7 +164,7 @@ impl From<RequestFrame<'_>> for Request {
     }
 }
 
-/// The frame under id 0: sessions draw an id of their own.
+/// The frame with id 0: sessions assign their own ids.
 impl<'a> From<&'a Request> for RequestFrame<'a> {
     fn from(request: &'a Request) -> Self {
         Self {
@@ -187,20 +187,20 @@ impl Request {
         Self { command: 0, instance: 0, attribute: 0, service, data: data.into() }
     }
 
-    /// Which server it is for; command 0 is no robot command.
+    /// The server of the request; command 0 is not a robot command.
     pub const fn division(&self) -> Division {
         if self.command == 0 { Division::File } else { Division::Robot }
     }
 
-    /// The datagram.
+    /// Encodes the datagram.
     ///
     /// # Panics
-    /// If there are more than 479 data bytes; [`Request::check`] says so beforehand.
+    /// If the data has more than 479 bytes; [`Request::check`] detects that.
     pub fn frame(&self, id: u8) -> Vec<u8> {
         RequestFrame { id, ..self.into() }.emit()
     }
 
-    /// The row of the table.
+    /// Row of the table.
     pub fn row(&self) -> Option<&'static Row> {
         match self.division() {
             Division::Robot => Row::from_number(self.command),
@@ -208,7 +208,7 @@ impl Request {
         }
     }
 
-    /// What it does to the world; what the table does not know counts as motion.
+    /// Risk of the request; an unknown one counts as a motion.
     pub fn risk(&self) -> Risk {
         let Some(service) = self.row().and_then(|row| row.service(self.service)) else { return Risk::Motion };
         match service.risk {
@@ -220,7 +220,7 @@ impl Request {
         }
     }
 
-    /// Whether the manuals allow it for this controller.
+    /// Checks the request against the manuals for this model.
     pub fn check(&self, model: Model) -> Result<(), RequestError> {
         let row = self.row().ok_or(match self.division() {
             Division::Robot => RequestError::Command { command: self.command },
@@ -251,7 +251,7 @@ impl Request {
         }
     }
 
-    /// The last instance that a request starting here can reach.
+    /// The last instance that a request can reach from here.
     fn check_instance(&self, row: &Row, service: &Service, model: Model) -> Result<u16, RequestError> {
         let span = row.instances.find(model, self.instance).ok_or_else(|| RequestError::Instance {
             name: row.name,
@@ -324,7 +324,7 @@ impl Request {
     }
 }
 
-/// Words of which only some values are defined hold one of them; `data` is any number of elements.
+/// Checks words with defined values; `data` has any number of elements.
 fn check_values(row: &Row, fields: &[Field], data: &[u8]) -> Result<(), RequestError> {
     let size = total(fields);
     if size == 0 {

@@ -9,23 +9,23 @@ use super::Model;
 use super::table::{Row, Span};
 use crate::typed::unsigned;
 
-/// One signal by its logical number; the last digit is 0 to 7.
+/// A signal by its logical number; the last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     group: u16,
     bit: u8,
 }
 
-/// A number that is no signal.
+/// An invalid signal number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Not a number of up to five digits.
     #[error("'{found}' is not a valid signal number, e.g. 10010")]
     Malformed {
-        /// What was given.
+        /// The invalid text.
         found: String,
     },
-    /// The last digit counts eight signals.
+    /// A last digit above 7.
     #[error("signal {number} does not exist: the last digit goes from 0 to 7")]
     Digit {
         /// The number given.
@@ -41,12 +41,12 @@ impl Signal {
         Ok(Self { group: u16::try_from(number / 10).map_err(malformed)?, bit })
     }
 
-    /// The instance that reads its group of eight.
+    /// Instance of its group of eight.
     pub const fn group(self) -> u16 {
         self.group
     }
 
-    /// Its bit in the group's byte, 0 the lowest.
+    /// Bit in the byte of the group, 0 the lowest.
     pub const fn bit(self) -> u8 {
         self.bit
     }
@@ -56,12 +56,12 @@ impl Signal {
         u32::from(self.group) * 10 + u32::from(self.bit)
     }
 
-    /// Whether it is on in the group's byte.
+    /// Whether it is on in the byte of its group.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> self.bit & 1 == 1
     }
 
-    /// The class it belongs to, with its name and whether it can be written; `None` where the model has no such signal.
+    /// Its class, with name and write permission; `None` if the model does not have the signal.
     pub fn class(self, model: Model) -> Option<&'static Span> {
         io_class(model, self.group)
     }

@@ -1,18 +1,18 @@
-//! Alarm sub-codes: a 32-bit value whose meaning depends on the alarm type beside it (FS and DX 3.3.1, 3.3.2, 3.3.37).
+//! Alarm sub-codes: 32-bit values whose meaning depends on the alarm type (FS and DX 3.3.1, 3.3.2, 3.3.37).
 //!
-//! The manuals print the types and how the pendant shows each of them, but not how the bits are laid out. How far a
-//! rendering can be trusted is therefore part of it:
+//! The manuals specify the types and their display on the pendant, but not the layout of the bits. So each rendering
+//! has a trust level:
 //!
-//! | types | trust | because |
+//! | types | trust | reason |
 //! |---|---|---|
-//! | 0, 1, 2, 6, 9, 10 | [`Trust::Printed`] | numbers and bit patterns whose width and sign the manuals print |
-//! | 3, 4, 5 | [`Trust::Inferred`] | a set of named axes; that bit 0 is the first name is our inference |
-//! | 8, 11, 12 | [`Trust::Inferred`] | a set of groups; that the robots begin at bit 0 is inference, where stations and bases begin is unknown, so their bits are shown by number |
-//! | 20-25, 27 | [`Trust::Raw`] | several fields in one word, in an order that no source gives; a guess could send a technician to the wrong axis |
+//! | 0, 1, 2, 6, 9, 10 | [`Trust::Printed`] | numbers and bit patterns with width and sign in the manuals |
+//! | 3, 4, 5 | [`Trust::Inferred`] | a set of named axes; bit 0 as the first name is inferred |
+//! | 8, 11, 12 | [`Trust::Inferred`] | a set of groups; robots from bit 0 is inferred; the first bits of stations and bases are unknown, so these bits are numbered |
+//! | 20-25, 27 | [`Trust::Raw`] | several fields in one word in an unknown order; a guess could send a technician to the wrong axis |
 //! | others | [`Trust::Raw`] | not in the manuals (7, 13-19, 26) |
 //!
-//! A value that does not fit its type's form is shown raw. Controllers that have 0x30A and 0x30B send the pendant's own
-//! text for every type, which is better than anything here.
+//! A value that does not fit the format of its type is displayed raw. Controllers with 0x30A and 0x30B send the text
+//! of the pendant for every type, which is better.
 
 use std::fmt;
 
@@ -20,30 +20,30 @@ use super::Model;
 use super::group::Group;
 use super::table::ALARM_KINDS;
 
-/// How the sub-code of an alarm is to be read; numbers without a meaning are kept.
+/// Format of a sub-code; undefined numbers are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct AlarmKind(pub u32);
 
 impl AlarmKind {
-    /// What kind of sub-code it is, where the manuals say so.
+    /// Description of the format, if it is in the manuals.
     pub fn meaning(self) -> Option<&'static str> {
         ALARM_KINDS.iter().find(|(number, _)| *number == self.0).map(|(_, meaning)| *meaning)
     }
 }
 
-/// How far a rendering can be trusted.
+/// Trust level of a rendering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trust {
-    /// The manuals print all that the rendering needs.
+    /// Fully specified in the manuals.
     Printed,
-    /// The form is printed; the place of the bits is inferred.
+    /// The format is specified; the positions of the bits are inferred.
     Inferred,
     /// Not interpreted.
     Raw,
 }
 
 impl Trust {
-    /// The name in JSON.
+    /// Name in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Printed => "printed",
@@ -53,24 +53,24 @@ impl Trust {
     }
 }
 
-/// A sub-code in words. [`Display`](fmt::Display) adds the raw value wherever the text is not certain.
+/// A readable sub-code. [`Display`](fmt::Display) adds the raw value if the text is not certain.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SubCode {
-    /// The alarm type received.
+    /// Alarm type, as received.
     pub alarm_type: u32,
-    /// The sub-code received.
+    /// Sub-code, as received.
     pub data: u32,
-    /// What the type says the sub-code holds.
+    /// Description of the type.
     pub type_name: &'static str,
-    /// The form the pendant shows, such as `[1]` or `[SLU]`; the bytes in hexadecimal, lowest first, if
-    /// [`trust`](Self::trust) is raw; empty if there is no sub-code.
+    /// Text as on the pendant, such as `[1]` or `[SLU]`. If [`trust`](Self::trust) is raw: the bytes in hexadecimal,
+    /// lowest first. Empty without a sub-code.
     pub text: String,
-    /// How far to trust the text.
+    /// Trust level of the text.
     pub trust: Trust,
 }
 
-/// Renders the sub-code `data` of an alarm of type `kind`. The model bounds the number of robots. Never fails:
-/// unknown types and values that do not fit come through raw.
+/// Renders the sub-code `data` of an alarm of type `kind`. The model limits the number of robots. Never fails:
+/// unknown types and values that do not fit are rendered raw.
 pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
     let alarm_type = kind.0;
     let form = TYPES.iter().find(|(number, _)| *number == alarm_type).map_or(Form::Unknown, |(_, form)| *form);
@@ -79,31 +79,32 @@ pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
     SubCode { alarm_type, data, type_name, text, trust }
 }
 
-/// What is known of a type's form.
+/// Format of a type.
 #[derive(Debug, Clone, Copy)]
 enum Form {
-    /// There is no sub-code.
+    /// No sub-code.
     Empty,
-    /// A number of 16 bits without sign.
+    /// Unsigned 16-bit number.
     Unsigned16,
-    /// A number of 16 bits with sign.
+    /// Signed 16-bit number.
     Signed16,
-    /// This many bits, four to a group.
+    /// Bit pattern of this width, in groups of four.
     Bits(u32),
-    /// A set of axes, bit 0 first.
+    /// A set of axes, from bit 0.
     Axes(&'static [&'static str]),
     /// A set of control groups, robots first.
     Groups,
-    /// Fields in an unpublished order.
+    /// Fields in an unknown order.
     Unknown,
 }
 
-/// Names of a robot's axes in the order of their data (DX 3.3.5; an eighth is not named).
+/// Axis names of a robot, in data order (DX 3.3.5; the eighth has no name).
 const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E"];
 const SPACE_AXES: &[&str] = &["X", "Y", "Z"];
 const POSE_AXES: &[&str] = &["X", "Y", "Z", "Rx", "Ry", "Rz"];
 
-/// The form of each type of FS and DX 3.3.1, ascending; the table of commands has their names. FS prints type 27 as `[R1: 1]`; DX repeats the example of type 25 there.
+/// Formats of the types in FS and DX 3.3.1, in ascending order; the command table has their names. FS has the example
+/// `[R1: 1]` for type 27; DX repeats the example of type 25 there.
 const TYPES: [(u32, Form); 19] = [
     (0, Form::Empty),
     (1, Form::Unsigned16),
@@ -127,7 +128,7 @@ const TYPES: [(u32, Form); 19] = [
 ];
 
 impl Form {
-    /// The text of a value of this form; `None` if the value is none.
+    /// Text of a value; `None` if the value does not fit the format.
     fn render(self, data: u32, model: Model) -> Option<(String, Trust)> {
         match self {
             Self::Empty => (data == 0).then(|| (String::new(), Trust::Printed)),
@@ -175,12 +176,12 @@ fn is_set(data: u32, bit: u32) -> bool {
     data >> bit & 1 == 1
 }
 
-/// `[…]`, or nothing if the set is empty: then the pendant shows no sub-code.
+/// `[…]`, or empty for an empty set, as on the pendant.
 fn bracketed(set: &str) -> String {
     if set.is_empty() { String::new() } else { format!("[{set}]") }
 }
 
-/// Bits as the pendant shows them, highest first: `[0000_0001]`.
+/// Bits as on the pendant, highest first: `[0000_0001]`.
 fn pattern(data: u32, width: u32) -> String {
     let mut text = String::from("[");
     for bit in (0..width).rev() {
@@ -193,7 +194,7 @@ fn pattern(data: u32, width: u32) -> String {
     text
 }
 
-/// The bytes as they arrive, lowest first.
+/// Bytes in order of arrival, lowest first.
 fn bytes(data: u32) -> String {
     let [a, b, c, d] = data.to_le_bytes();
     format!("{a:02x} {b:02x} {c:02x} {d:02x}")

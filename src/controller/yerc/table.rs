@@ -1,8 +1,8 @@
-//! The table of commands: everything the manuals say about numbers, ranges, sizes and permissions (FS and DX table 3-1,
-//! sections 3.3 and 3.4).
+//! Table of commands: numbers, ranges, sizes and permissions of the manuals (FS and DX table 3-1, sections 3.3 and
+//! 3.4).
 //!
-//! Requests are checked, frames explained and simulated by these rows; there is no second list. Ranges and sizes that the
-//! manuals misprint are given corrected; the golden frames hold the evidence.
+//! It is the single source for validation, descriptions and the simulator. Misprinted ranges and sizes of the manuals
+//! are corrected; the golden frames are the evidence.
 
 mod bits;
 mod fields;
@@ -33,7 +33,7 @@ pub mod service {
     pub const SET_SINGLE: u8 = 0x10;
     /// Send a file to the controller.
     pub const LOAD: u8 = 0x15;
-    /// Fetch a file from the controller; with the path of the batch backup, make one.
+    /// Fetch a file from the controller; with the path of the batch backup, create one.
     pub const SAVE: u8 = 0x16;
     /// List files.
     pub const LIST: u8 = 0x32;
@@ -43,13 +43,13 @@ pub mod service {
     pub const WRITE_PLURAL: u8 = 0x34;
 }
 
-/// What makes a controller write its batch backup (FS and DX 3.4.5).
+/// Path that makes a controller write its batch backup (FS and DX 3.4.5).
 pub const BATCH_BACKUP_PATH: &[u8] = b"/SPDRV/CMOSBK.BIN";
 
-/// Which controllers have a command.
+/// Availability of a command by controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Availability {
-    /// Every one.
+    /// All controllers.
     Both,
     /// DX200, and FS100 from system software FS1.14.
     Fs114,
@@ -63,7 +63,7 @@ impl Availability {
         !matches!((self, model), (Self::Dx200, Model::Fs100 | Model::Dx100))
     }
 
-    /// What to tell somebody whose controller refuses the command.
+    /// Hint for a refusal of the command.
     pub const fn note(self) -> Option<&'static str> {
         match self {
             Self::Both => None,
@@ -73,81 +73,81 @@ impl Availability {
     }
 }
 
-/// Which attribute numbers a service takes.
+/// Valid attribute numbers of a service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Attribute {
     /// 0.
     Zero,
     /// 1.
     One,
-    /// 1 as printed; 0 is known to be taken as well.
+    /// 1 as printed; 0 is also known to be accepted.
     OneOrZero,
     /// The number of a field, from 1.
     Field,
 }
 
-/// How a service's risk follows from its request.
+/// Rule for the risk of a service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RiskRule {
-    /// The same whatever the data.
+    /// Independent of the data.
     Always(Risk),
-    /// Servo power on and off is motion, as an axis may sink; hold and hlock are writes (3.3.20).
+    /// Servo power on and off is a motion, because an axis may sink. HOLD and HLOCK are writes (3.3.20).
     Switches,
 }
 
-/// What a service moves.
+/// Direction of the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// The answer carries data.
+    /// Data in the answer.
     Read,
-    /// The request carries data.
+    /// Data in the request.
     Write,
 }
 
 /// A service of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Service {
-    /// The byte on the wire.
+    /// Protocol byte.
     pub number: u8,
-    /// In words.
+    /// Readable name.
     pub meaning: &'static str,
-    /// Which side the data travels.
+    /// Direction of the data.
     pub action: Action,
-    /// Attribute numbers it takes.
+    /// Valid attribute numbers.
     pub attribute: Attribute,
-    /// What it does to the world.
+    /// Risk.
     pub risk: RiskRule,
 }
 
-/// The limits of a plural command.
+/// Limits of a plural command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plural {
-    /// Most elements of one request.
+    /// Maximum number of elements per request.
     pub max: u16,
     /// Whether only even counts are valid.
     pub even: bool,
 }
 
-/// One command, or one file service.
+/// A robot command or a file service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Row {
     /// Command number; 0 for files.
     pub number: u16,
     /// Robot or file.
     pub division: Division,
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
     /// Section of the manuals.
     pub section: &'static str,
-    /// Which controllers have it.
+    /// Availability by controller.
     pub availability: Availability,
-    /// What can be done with it.
+    /// Services.
     pub services: &'static [Service],
-    /// What can be addressed.
+    /// Valid instances.
     pub instances: Instances,
-    /// The data by field; one element of it for plural commands. Attribute numbers count from 1.
+    /// Fields of the data; of one element for plural commands. Attribute numbers count from 1.
     pub fields: &'static [Field],
-    /// The 25-word layout that the FS100 manual prints for the cartesian move; only an FS100 is sent it.
+    /// The 25-word layout of the cartesian move in the FS100 manual; only for an FS100.
     pub alternative: Option<&'static [Field]>,
     /// Limits, for plural commands.
     pub plural: Option<Plural>,
@@ -159,7 +159,7 @@ impl Row {
         ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
     }
 
-    /// The row of a file service; `data` tells a save from a batch backup.
+    /// The row of a file service; `data` distinguishes save and batch backup.
     pub fn of_file(service: u8, data: &[u8]) -> Option<&'static Self> {
         let backup = service == service::SAVE && data == BATCH_BACKUP_PATH;
         ROWS.iter().find(|row| {
@@ -169,7 +169,7 @@ impl Row {
         })
     }
 
-    /// The manual and section, e.g. `DX 3.3.41`.
+    /// Manual and section, e.g. `DX 3.3.41`.
     pub fn citation(&self) -> String {
         match self.availability {
             Availability::Dx200 => format!("DX {}", self.section),
@@ -177,17 +177,17 @@ impl Row {
         }
     }
 
-    /// A service by its number.
+    /// The service with this number.
     pub fn service(&self, number: u8) -> Option<&'static Service> {
         self.services.iter().find(|service| service.number == number)
     }
 
-    /// Bytes of all fields; of one element for plural commands.
+    /// Size of all fields in bytes; of one element for plural commands.
     pub fn size(&self) -> usize {
         total(self.fields)
     }
 
-    /// The fields a single (not plural) read or write of `attribute` moves; empty for an unknown attribute.
+    /// The fields of a single (not plural) read or write of `attribute`; empty for an unknown attribute.
     pub fn fields_of(&self, service: &Service, attribute: u8) -> &'static [Field] {
         match service.attribute {
             Attribute::Field => match usize::from(attribute).checked_sub(1) {
@@ -198,14 +198,14 @@ impl Row {
         }
     }
 
-    /// Whether this is the batch backup, which shares its service with save.
+    /// Whether it is the batch backup, which has the same service as save.
     pub fn is_batch_backup(&self) -> bool {
         self.section == rows::BATCH_BACKUP_SECTION
     }
 }
 
 impl Service {
-    /// Whether an attribute number is one it takes, given how many fields there are.
+    /// Whether an attribute number is valid for this number of fields.
     pub fn takes(&self, attribute: u8, fields: usize) -> bool {
         match self.attribute {
             Attribute::Zero => attribute == 0,
@@ -215,7 +215,7 @@ impl Service {
         }
     }
 
-    /// The attribute numbers in words.
+    /// Readable list of valid attribute numbers.
     pub fn attributes(&self, fields: usize) -> String {
         match self.attribute {
             Attribute::Zero => "0".to_owned(),
@@ -225,13 +225,13 @@ impl Service {
         }
     }
 
-    /// Whether it moves several elements.
+    /// Whether it reads or writes several elements.
     pub const fn is_plural(&self) -> bool {
         matches!(self.number, service::READ_PLURAL | service::WRITE_PLURAL)
     }
 }
 
-/// Bytes of some fields.
+/// Size of some fields in bytes.
 pub fn total(fields: &[Field]) -> usize {
     fields.iter().map(Field::size).sum()
 }

@@ -1,22 +1,22 @@
-//! The frame: a 24-byte header, an 8-byte sub-header, at most 479 bytes of data (FS and DX section 3.1).
+//! Frame format: 24-byte header, 8-byte sub-header, at most 479 bytes of data (FS and DX section 3.1).
 //!
-//! Every frame of the client (request, file data, ACK) carries the request sub-header, every frame of the controller the
-//! answer sub-header. Parsing takes what real controllers send (reserved and padding bytes are not looked at); emitting
-//! writes what the manual prints.
+//! Frames of the client (request, file data, ACK) have the request sub-header, frames of the controller the answer
+//! sub-header. Parsing accepts what real controllers send (reserved and padding bytes are ignored); encoding follows
+//! the manual.
 
 use std::ops::Range;
 
 use thiserror::Error;
 
-/// Bytes before the data: header and sub-header.
+/// Offset of the data: size of header and sub-header.
 pub const HEADER_LEN: usize = 32;
-/// Most data bytes in a frame.
+/// Maximum data size of a frame.
 pub const MAX_DATA: usize = 479;
-/// Most bytes in a datagram.
+/// Maximum size of a datagram.
 pub const MAX_FRAME: usize = HEADER_LEN + MAX_DATA;
-/// Added to the block number of the last frame of an answer or transfer.
+/// Bit in the block number of the last frame of an answer or transfer.
 pub const LAST_BLOCK: u32 = 0x8000_0000;
-/// Added to the service of a request in its answer.
+/// Bit in the service of an answer.
 pub const ANSWER_BIT: u8 = 0x80;
 
 const IDENTIFIER: &[u8; 4] = b"YERC";
@@ -37,20 +37,20 @@ mod field {
     pub(super) const BLOCK: Range<usize> = 12..16;
     pub(super) const RESERVE_2: Range<usize> = 16..24;
 
-    // Sub-header of the client's frames.
+    // Sub-header of client frames.
     pub(super) const COMMAND: Range<usize> = 24..26;
     pub(super) const INSTANCE: Range<usize> = 26..28;
     pub(super) const ATTRIBUTE: usize = 28;
     pub(super) const SERVICE: usize = 29;
 
-    // Sub-header of the controller's frames.
+    // Sub-header of controller frames.
     pub(super) const ANSWER_SERVICE: usize = 24;
     pub(super) const STATUS: usize = 25;
     pub(super) const ADDED_SIZE: usize = 26;
     pub(super) const ADDED: Range<usize> = 28..32;
 }
 
-/// Which of the two servers a frame is for; each has its own UDP port.
+/// Server of a frame; each has its own UDP port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Division {
     /// Robot control, UDP 10040.
@@ -68,10 +68,10 @@ impl Division {
     }
 }
 
-/// A datagram that is no frame, with the field that says so.
+/// An invalid datagram, with the wrong field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WireError {
-    /// Shorter than header and sub-header.
+    /// Too short for header and sub-header.
     #[error("{len} bytes are too short for a frame of at least {HEADER_LEN}")]
     Truncated {
         /// Bytes received.
@@ -83,41 +83,41 @@ pub enum WireError {
         /// Bytes received.
         len: usize,
     },
-    /// Not the four letters YERC.
+    /// Identifier other than YERC.
     #[error("identifier at offset 0 is {found:02x?}, not \"YERC\"")]
     Identifier {
-        /// The bytes in its place.
+        /// The value found.
         found: [u8; 4],
     },
-    /// Not 0x20.
+    /// Header size other than 0x20.
     #[error("header size at offset 4 is {found:#06x}, not 0x0020")]
     HeaderSize {
-        /// The value in its place.
+        /// The value found.
         found: u16,
     },
-    /// The size field and the bytes that follow disagree.
+    /// Size field that does not match the data.
     #[error("data size at offset 6 is {stated}, but {present} bytes follow the header")]
     DataSize {
-        /// What the header says.
+        /// Size in the header.
         stated: usize,
-        /// What is there.
+        /// Actual size.
         present: usize,
     },
-    /// Neither robot (1) nor file (2).
+    /// Division other than robot (1) and file (2).
     #[error("processing division at offset 9 is {found}, neither 1 (robot) nor 2 (file)")]
     Division {
-        /// The value in its place.
+        /// The value found.
         found: u8,
     },
-    /// Neither 0 nor 1.
+    /// ACK flag other than 0 and 1.
     #[error("ACK at offset 10 is {found}, neither 0 nor 1")]
     Ack {
-        /// The value in its place.
+        /// The value found.
         found: u8,
     },
 }
 
-/// What both sub-headers share.
+/// Common part of both sub-headers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Header {
     division: Division,
@@ -162,7 +162,7 @@ impl Header {
         Ok((Self { division, ack, id: bytes[field::ID], block }, data))
     }
 
-    /// A whole frame with an empty sub-header.
+    /// Encodes a frame with an empty sub-header.
     fn emit(self, data: &[u8]) -> Vec<u8> {
         assert!(data.len() <= MAX_DATA, "a frame holds {MAX_DATA} data bytes, not {}", data.len());
         let mut frame = vec![0; HEADER_LEN + data.len()];
@@ -180,31 +180,31 @@ impl Header {
     }
 }
 
-/// A frame of the client: request, file data block or ACK.
+/// A client frame: request, file data block or ACK.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RequestFrame<'a> {
     /// Robot or file server.
     pub division: Division,
     /// `false` for a request, `true` for data blocks and ACKs of a transfer.
     pub ack: bool,
-    /// Copied into the answer.
+    /// Request id, copied into the answer.
     pub id: u8,
-    /// 0 for a request; the block's number within a transfer.
+    /// 0 for a request; the block number within a transfer.
     pub block: u32,
     /// Command number; 0 for files.
     pub command: u16,
-    /// Which of the things the command addresses.
+    /// Instance of the command.
     pub instance: u16,
-    /// Which field of it.
+    /// Attribute: a field of the instance.
     pub attribute: u8,
-    /// What to do with it.
+    /// Service.
     pub service: u8,
     /// At most [`MAX_DATA`] bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> RequestFrame<'a> {
-    /// Reads a datagram of a client.
+    /// Parses a client datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let (Header { division, ack, id, block }, data) = Header::parse(bytes)?;
         Ok(Self {
@@ -220,10 +220,10 @@ impl<'a> RequestFrame<'a> {
         })
     }
 
-    /// The datagram.
+    /// Encodes the datagram.
     ///
     /// # Panics
-    /// If `data` is longer than [`MAX_DATA`]; callers build it from payloads that fit by construction.
+    /// If `data` is longer than [`MAX_DATA`]; callers use payloads that fit by construction.
     pub fn emit(&self) -> Vec<u8> {
         let Self { division, ack, id, block, .. } = *self;
         let mut frame = Header { division, ack, id, block }.emit(self.data);
@@ -235,19 +235,19 @@ impl<'a> RequestFrame<'a> {
     }
 }
 
-/// The result code of an answer: status, and the added status where there is one.
+/// Result code of an answer: status, and an optional added status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Status {
-    /// 0x00 is success, 0x1F means "see the added status" (DX chapter 4).
+    /// 0x00 is success; 0x1F refers to the added status (DX chapter 4).
     pub code: u8,
-    /// Size of the added status in 16-bit words, 0 to 2 as printed.
+    /// Size of the added status in 16-bit words, 0 to 2.
     pub added_size: u8,
-    /// The added status; 0 when its size is 0.
+    /// Added status; 0 if its size is 0.
     pub added: u32,
 }
 
 impl Status {
-    /// Done, nothing to add.
+    /// Success without an added status.
     pub const OK: Self = Self { code: 0, added_size: 0, added: 0 };
 
     /// A refusal with a 16-bit added status, as controllers send it (status 0x1F, size 1).
@@ -255,34 +255,34 @@ impl Status {
         Self { code: 0x1F, added_size: 1, added: added as u32 }
     }
 
-    /// Whether the request was carried out. An added status can still say that there was nothing to do it with
-    /// (DX: E29C, E2A7 beside status 0).
+    /// Whether the request was carried out. An added status may still report that there was no object for it (DX: E29C,
+    /// E2A7 with status 0).
     pub const fn is_ok(self) -> bool {
         self.code == 0
     }
 }
 
-/// A frame of the controller: answer, file data block or ACK.
+/// A controller frame: answer, file data block or ACK.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnswerFrame<'a> {
     /// Robot or file server.
     pub division: Division,
-    /// `true` in every frame of a controller.
+    /// `true` in all controller frames.
     pub ack: bool,
-    /// Copied from the frame that is answered.
+    /// Request id, copied from the client frame.
     pub id: u8,
-    /// [`LAST_BLOCK`] in a single answer; the block's number within a transfer.
+    /// [`LAST_BLOCK`] in a single answer; the block number within a transfer.
     pub block: u32,
     /// Service of the request plus [`ANSWER_BIT`].
     pub service: u8,
-    /// The result.
+    /// Result code.
     pub status: Status,
     /// At most [`MAX_DATA`] bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> AnswerFrame<'a> {
-    /// Reads a datagram of a controller.
+    /// Parses a controller datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let (Header { division, ack, id, block }, data) = Header::parse(bytes)?;
         let added_size = bytes[field::ADDED_SIZE];
@@ -303,7 +303,7 @@ impl<'a> AnswerFrame<'a> {
         })
     }
 
-    /// The datagram.
+    /// Encodes the datagram.
     ///
     /// # Panics
     /// If `data` is longer than [`MAX_DATA`].
@@ -323,7 +323,7 @@ impl<'a> AnswerFrame<'a> {
     }
 }
 
-/// The bytes of a range whose length is `N` by the field table above.
+/// The bytes of a range, whose length must be `N`.
 fn array<const N: usize>(bytes: &[u8], range: Range<usize>) -> [u8; N] {
     let mut out = [0; N];
     out.copy_from_slice(&bytes[range]);

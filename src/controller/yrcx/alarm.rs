@@ -1,8 +1,8 @@
 //! Alarms: a group and a category, written `12.600` (chapter 2, section 1.2).
 //!
-//! The remote I/O manual names only a few alarms and sends the reader to the controller's manual for the rest. The names
-//! of the groups and of the fieldbus alarms are common knowledge of this maker's controllers; what a cause or a remedy is
-//! follows from the remote I/O manual or is worded as a hint.
+//! The remote I/O manual names only a few alarms and refers to the controller manual for the rest. The names of
+//! groups and fieldbus alarms are general knowledge about these controllers. Causes and remedies follow from the
+//! remote I/O manual, or are hints.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,36 +12,36 @@ use thiserror::Error;
 /// An alarm number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Alarm {
-    /// The group, in WO1 of an abnormal end.
+    /// Alarm group: WO1 of an abnormal end.
     pub group: u16,
-    /// The category within the group, in WO2.
+    /// Category within the group: WO2.
     pub category: u16,
 }
 
-/// What is known about an alarm.
+/// Description of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Known {
     /// Its number.
     pub alarm: Alarm,
-    /// What it says.
+    /// Message text.
     pub text: &'static str,
-    /// What usually causes it; empty where no source tells.
+    /// Usual causes; empty if no source has any.
     pub causes: &'static [&'static str],
-    /// What to do about it.
+    /// Remedies.
     pub remedies: &'static [&'static str],
 }
 
-/// A text that is no alarm number.
+/// An invalid alarm number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("'{found}' is not a valid alarm number, e.g. 12.600")]
 pub struct AlarmError {
-    /// What was given.
+    /// The invalid text.
     pub found: String,
 }
 
-/// The stop input ended a motion (4.2.6).
+/// A motion was ended by the stop input (4.2.6).
 pub const STOP_INPUT: Alarm = Alarm::new(12, 400);
-/// The words of the command are not valid (4.2.1).
+/// The words of the command are invalid (4.2.1).
 pub const INPUT_FORMAT: Alarm = Alarm::new(4, 202);
 
 impl Alarm {
@@ -50,23 +50,23 @@ impl Alarm {
         Self { group, category }
     }
 
-    /// What the group is about.
+    /// Description of the group.
     pub fn group_text(self) -> Option<&'static str> {
         GROUPS.iter().find(|(group, _)| *group == self.group).map(|(_, text)| *text)
     }
 
-    /// What is known about this very alarm.
+    /// Description of this alarm, if known.
     pub fn known(self) -> Option<&'static Known> {
         KNOWN.iter().find(|known| known.alarm == self)
     }
 
-    /// The alarm beside this one of a lost link: that it is lost for too long.
+    /// The related alarm of a link that is lost for too long.
     #[must_use]
     pub const fn too_long(self) -> Self {
         Self::new(self.group, self.category + 1)
     }
 
-    /// The alarm in words, as far as known.
+    /// Best known text.
     pub fn text(self) -> &'static str {
         self.known().map(|known| known.text).or_else(|| self.group_text()).unwrap_or("unknown alarm group")
     }
@@ -81,7 +81,7 @@ impl fmt::Display for Alarm {
 impl FromStr for Alarm {
     type Err = AlarmError;
 
-    /// Reads `12.600` or `12:600`; the manual writes both (4.7.17).
+    /// Parses `12.600` or `12:600`; the manual uses both (4.7.17).
     fn from_str(text: &str) -> Result<Self, AlarmError> {
         let number = |digits: &str| if digits.starts_with('+') { None } else { digits.parse().ok() };
         text.split_once(['.', ':'])
@@ -90,7 +90,7 @@ impl FromStr for Alarm {
     }
 }
 
-/// The groups.
+/// Names of the groups.
 const GROUPS: [(u16, &str); 17] = [
     (0, "operation message"),
     (1, "system event"),
@@ -117,7 +117,7 @@ const LINK_REMEDIES: &[&str] =
     &["hold the link open with one resident session", "open the link again, then reset the alarm"];
 const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
 
-/// The alarms that the sources name.
+/// Alarms that are named in the sources.
 pub const KNOWN: [Known; 19] = [
     Known {
         alarm: Alarm::new(2, 334),

@@ -1,4 +1,4 @@
-//! What a controller answers in WO0 to WO15.
+//! Answer of a controller in WO0 to WO15.
 
 use std::fmt;
 
@@ -9,23 +9,23 @@ use super::order::Order;
 use super::table::{Field, Pace};
 use super::value::{Value, Values};
 
-/// WO0 (chapter 2, 1.2).
+/// Status of a remote command in WO0 (chapter 2, 1.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// 0x0000: no command; one may come.
+    /// 0x0000: ready for a command.
     Ready,
-    /// 0x0100: a command runs. A short one may never show it.
+    /// 0x0100: a command runs. A short command may skip this status.
     Running,
-    /// 0x0200: carried out; for a program start, accepted.
+    /// 0x0200: carried out. For a program start: accepted.
     NormalEnd,
-    /// 0x4000: refused or broken off, with an alarm.
+    /// 0x4000: refused or aborted, with an alarm.
     AbnormalEnd,
-    /// Nothing that the manual has.
+    /// A value that is not in the manual.
     Other(u16),
 }
 
 impl Status {
-    /// Reads WO0.
+    /// Decodes WO0.
     pub const fn from_word(word: u16) -> Self {
         match word {
             0x0000 => Self::Ready,
@@ -36,7 +36,7 @@ impl Status {
         }
     }
 
-    /// WO0.
+    /// Value of WO0.
     pub const fn word(self) -> u16 {
         match self {
             Self::Ready => 0x0000,
@@ -47,7 +47,7 @@ impl Status {
         }
     }
 
-    /// Whether the command is over.
+    /// Whether the command has ended.
     pub const fn is_end(self) -> bool {
         matches!(self, Self::NormalEnd | Self::AbnormalEnd)
     }
@@ -65,24 +65,24 @@ impl fmt::Display for Status {
     }
 }
 
-/// The answer to an order. A refusal is an answer.
+/// Answer to an order; a refusal is an answer too.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
-    /// Not over yet; the values are those of continuous output, and none otherwise.
+    /// Still running. Only continuous output has values.
     Running(Values),
     /// Carried out.
     Done(Values),
-    /// Refused, or broken off.
+    /// Refused or aborted.
     Refused {
-        /// Why.
+        /// Reason.
         alarm: Alarm,
-        /// Where the robot is, after a jog that was stopped (4.2.6).
+        /// Final position after a jog that was stopped (4.2.6).
         positions: Values,
     },
 }
 
 impl Answer {
-    /// Reads the answer to `order`; `None` if WO0 says that there is none. Any words: unknown numbers are kept.
+    /// Decodes the answer to `order`; `None` if WO0 contains no answer. Accepts any words and keeps unknown numbers.
     pub fn parse(order: &Order, words: &Words) -> Option<Self> {
         let collect = || fields(order, words).map(|(field, value)| (field.key, value)).collect();
         let none = Values::default;
@@ -99,7 +99,7 @@ impl Answer {
         }
     }
 
-    /// Writes the words of the answer to `order`, as a controller does.
+    /// Encodes the answer to `order`, as a controller does.
     pub fn words(&self, order: &Order) -> Result<Words, WordError> {
         let encode = |values| codec::encode(Side::Answer, order.row().answer(), values, Some(order.values()));
         let (status, mut words) = match self {
@@ -118,12 +118,12 @@ impl Answer {
     }
 }
 
-/// Whether an abnormal end carries positions nonetheless.
+/// Whether an abnormal end contains positions.
 pub(super) fn is_stopped_jog(order: &Order, alarm: Alarm) -> bool {
     order.row().pace == Pace::Jog && alarm == STOP_INPUT
 }
 
-/// What the words of an answer to `order` hold, with the fields for their names and units; any words.
+/// The fields and values of an answer to `order`, for any words.
 pub fn fields<'a>(order: &'a Order, words: &'a Words) -> impl Iterator<Item = (&'static Field, Value)> + 'a {
     codec::read(order.row().answer(), words, Some(order.values()))
 }

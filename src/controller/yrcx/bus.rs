@@ -1,16 +1,16 @@
-//! The image as each fieldbus lays it out (chapter 1, section 1), for whoever programs the master.
+//! Memory map of the image on each fieldbus (chapter 1, section 1), for the programmer of the master.
 //!
-//! Data only. The bit table of compact DeviceNet lost its bits 14 and 15 in print; they are as in the full tables.
+//! The bit table of compact DeviceNet in the manual lacks bits 14 and 15; they are as in the full tables.
 
 use super::image::{COMMAND_WORDS, DEDICATED_WORD};
 use super::signal::{Side, Signal};
 
-/// A fieldbus, with the size of its image.
+/// A fieldbus and its image size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Bus {
-    /// DeviceNet with the I/O size "Normal".
+    /// DeviceNet with I/O size "Normal".
     DeviceNet,
-    /// DeviceNet with the I/O size "Compact": two words of bits, no remote commands.
+    /// DeviceNet with I/O size "Compact": two words of bits, no remote commands.
     DeviceNetCompact,
     /// EtherNet/IP.
     EtherNetIp,
@@ -21,11 +21,11 @@ pub enum Bus {
 }
 
 impl Bus {
-    /// Every one.
+    /// All fieldbuses.
     pub const ALL: [Self; 5] =
         [Self::DeviceNet, Self::DeviceNetCompact, Self::EtherNetIp, Self::Profibus, Self::Profinet];
 
-    /// The name at the command line.
+    /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::DeviceNet => "devicenet",
@@ -36,12 +36,12 @@ impl Bus {
         }
     }
 
-    /// Whether addresses count bytes; words otherwise.
+    /// Whether addresses count bytes instead of words.
     pub const fn counts_bytes(self) -> bool {
         matches!(self, Self::Profibus | Self::Profinet)
     }
 
-    /// Whether there are words for remote commands.
+    /// Whether the image contains remote commands.
     pub const fn has_commands(self) -> bool {
         !matches!(self, Self::DeviceNetCompact)
     }
@@ -58,12 +58,12 @@ impl std::str::FromStr for Bus {
     }
 }
 
-/// One row of the map.
+/// A row of the map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapRow {
-    /// SI and WI go to the controller, SO and WO come from it.
+    /// SI and WI are inputs of the controller, SO and WO its outputs.
     pub side: Side,
-    /// What the address begins with: `m` or `n` for words, `Im` or `Qn` for bytes.
+    /// Prefix of the address: `m` or `n` for words, `Im` or `Qn` for bytes.
     pub base: &'static str,
     /// Words or bytes after the start address.
     pub offset: usize,
@@ -71,16 +71,16 @@ pub struct MapRow {
     pub low: u8,
     /// The highest bit of the row.
     pub high: u8,
-    /// The signals, such as `SI(20) to SI(27)`; empty if reserved.
+    /// Signals, such as `SI(20) to SI(27)`; empty if reserved.
     pub signal: String,
-    /// In words.
+    /// Readable name.
     pub meaning: String,
     /// Whether the bits must not be used.
     pub reserved: bool,
 }
 
 impl MapRow {
-    /// The address: as in the manual, or counted from where the master's area starts.
+    /// Address as in the manual, or from a start address of the master.
     pub fn address(&self, start: Option<u32>) -> String {
         match (start, self.offset) {
             (Some(start), offset) => {
@@ -92,13 +92,13 @@ impl MapRow {
         }
     }
 
-    /// The bits: `3`, or `0 - 7`.
+    /// Bits: `3`, or `0 - 7`.
     pub fn bits(&self) -> String {
         if self.low == self.high { self.low.to_string() } else { format!("{} - {}", self.low, self.high) }
     }
 }
 
-/// The map of a bus: what comes from the controller first, as in the manual; ascending by address.
+/// The map of a fieldbus: first outputs of the controller, as in the manual; in ascending order.
 pub fn map(bus: Bus) -> Vec<MapRow> {
     [Side::Output, Side::Input].into_iter().flat_map(|side| half(bus, side)).collect()
 }
@@ -153,10 +153,10 @@ fn half(bus: Bus, side: Side) -> Vec<MapRow> {
     places
 }
 
-/// The last word of the general-purpose bits; a reserved one follows.
+/// Last word of general-purpose bits; a reserved word follows.
 const LAST_GENERAL: usize = 22;
 
-/// The names and the use of a word register.
+/// Name and use of a word register.
 fn register(side: Side, word: usize) -> (String, String) {
     let (name, way) = match side {
         Side::Input => ('I', "input"),

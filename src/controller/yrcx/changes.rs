@@ -1,33 +1,33 @@
-//! What is new in an image, for traces and captures: images pass all the time, and mostly say the same.
+//! Differences between consecutive images, for traces and captures: images are cyclic and rarely change.
 
 use super::describe::{answer_summary, command_summary};
 use super::image::{COMMAND_WORDS, Image, Words};
 use super::signal::{Side, Signal};
 use super::table::STATUS_RESET;
 
-/// Something that is new in an image.
+/// A difference.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Change {
-    /// The words of the command, or of its answer.
+    /// The words of a command or an answer.
     Words {
-        /// Whose.
+        /// Command or answer.
         side: Side,
-        /// As they are now.
+        /// New words.
         words: Words,
-        /// What they say, in a line.
+        /// One-line summary.
         summary: String,
     },
     /// A bit.
     Signal {
-        /// Which.
+        /// The signal.
         signal: Signal,
-        /// As it is now.
+        /// New state.
         on: bool,
     },
 }
 
 impl Change {
-    /// In a line, without the words behind the last that is used, or with all of them.
+    /// One-line text, with all words or only those up to the last used one.
     pub fn line(&self, all: bool) -> String {
         match self {
             Self::Words { side, words, summary } => {
@@ -45,8 +45,8 @@ impl Change {
     }
 }
 
-/// What an image of a side says that the one before it did not. Of the first image all that is not 0 is new, and the
-/// words of an answer in any case.
+/// Differences from the previous image of the same side. In the first image, all nonzero values and the words of an
+/// answer count.
 pub fn changes(side: Side, before: Option<&Image>, image: &Image) -> Vec<Change> {
     let mut changes = Vec::new();
     let words = image.command();

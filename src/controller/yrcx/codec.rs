@@ -1,4 +1,4 @@
-//! Values to words and back, by a layout of the table.
+//! Codec between values and words, by the layouts of the table.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -10,7 +10,7 @@ use super::image::Words;
 use super::table::{Field, Form, Presence, Show, When};
 use super::value::{Key, Value, Values};
 
-/// Which words.
+/// Command or answer words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// WI: from the master to the controller.
@@ -28,26 +28,26 @@ impl fmt::Display for Side {
     }
 }
 
-/// Why words cannot be made of values, or values of words.
+/// An encoding or decoding error.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{place}{problem}")]
 pub struct WordError {
-    /// The word and the field, where there is one.
+    /// Word and field of the error, if any.
     pub place: FieldLocation,
-    /// What is wrong there.
+    /// The problem.
     pub problem: String,
-    /// What a controller answers to this, where the manual tells (4.2.1).
+    /// Alarm of a controller for this error, if the manual specifies it (4.2.1).
     pub alarm: Option<Alarm>,
 }
 
-/// Where something is wrong.
+/// Place of an error.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldLocation {
     /// WI or WO.
     pub side: Side,
-    /// 0 to 15; `None` for a value that has no word.
+    /// Word 0 to 15; `None` for a value without a word.
     pub word: Option<usize>,
-    /// The field; `None` for words that belong to none.
+    /// The field; `None` for words without a field.
     pub key: Option<Key>,
 }
 
@@ -72,13 +72,13 @@ impl WordError {
     }
 }
 
-/// Fields in the order of a layout.
+/// Fields of a layout, in order.
 pub(super) trait Layout: Iterator<Item = &'static Field> + Clone {}
 
 impl<I: Iterator<Item = &'static Field> + Clone> Layout for I {}
 
-/// Makes words of `given`. `context` has the values of the command, for an answer that depends on them. Word 0 gets
-/// only what fields put there.
+/// Encodes values. `context` has the values of the command, for an answer that depends on them. Word 0 only gets
+/// values of its fields.
 pub(super) fn encode(
     side: Side,
     layout: impl Layout,
@@ -98,7 +98,7 @@ pub(super) fn encode(
         };
         field.accept(&value).and_then(|()| field.write(&mut words, &value)).map_err(|problem| {
             let error = WordError::of_field(side, field, problem);
-            // Both units of the position at once are the one mistake whose alarm the manual tells (4.2.1).
+            // Position output in both units at once: the manual specifies an alarm only for this error (4.2.1).
             WordError { alarm: (field.key == Key::Report).then_some(INPUT_FORMAT), ..error }
         })?;
         used.insert(field.key);
@@ -109,10 +109,10 @@ pub(super) fn encode(
     }
 }
 
-/// The given values, text read by the fields, and the flags that follow from them.
+/// Given values, with text parsed by the fields, and with the flags that they imply.
 fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Values>) -> Result<Values, WordError> {
     let mut state = Values::default();
-    // Twice: what a field reads may depend on one that comes later.
+    // Two passes: parsing a field may depend on a later one.
     for _ in 0..2 {
         for field in layout.clone() {
             let Some(value) = given.value(field.key) else { continue };
@@ -139,7 +139,7 @@ fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Val
     Ok(state)
 }
 
-/// Finds numbers among the values, then among those of the command; 0 otherwise.
+/// Looks up numbers in the values, then in those of the command; 0 if missing.
 fn look_in(values: &Values, context: Option<&Values>) -> impl Fn(Key) -> i32 {
     move |key| values.int(key).or_else(|| context?.int(key)).unwrap_or_default()
 }
@@ -148,12 +148,12 @@ fn holds(when: When, value: i32) -> bool {
     (when.least..=when.most).contains(&value)
 }
 
-/// Whether a field counts, by the values of others.
+/// Whether a field is in use, by the values of other fields.
 fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     field.when.is_none_or(|when| holds(when, look(when.key)))
 }
 
-/// Whether 0 is right for a field that is not given.
+/// Whether a missing field may be 0.
 fn may_be_missing(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     match field.need {
         Presence::Required => false,
@@ -170,7 +170,7 @@ fn misplaced(side: Side, mut layout: impl Layout, key: Key) -> WordError {
     WordError::at(side, None, Some(key), problem)
 }
 
-/// The fields that count in `words`, with what they hold; any words.
+/// The fields in use in `words`, with their values; accepts any words.
 pub(super) fn read<'a>(
     layout: impl Layout + 'a,
     words: &'a Words,
@@ -187,7 +187,7 @@ pub(super) fn read<'a>(
     layout.filter(move |field| counts(field, &look)).map(|field| (field, field.read(words)))
 }
 
-/// Bits of words 1 to 15 that belong to no field that counts, as word and bits.
+/// Unused bits in words 1 to 15, as word and mask.
 pub(super) fn strays(
     layout: impl Layout,
     words: &Words,
@@ -203,7 +203,7 @@ pub(super) fn strays(
     left.into_iter().enumerate().filter(|(_, bits)| *bits != 0)
 }
 
-/// Reads the words of a command, and takes only what might be sent.
+/// Decodes a command, and accepts only valid values.
 pub(super) fn decode_strictly(layout: impl Layout, words: &Words) -> Result<Values, WordError> {
     let side = Side::Command;
     let mut values = Values::default();

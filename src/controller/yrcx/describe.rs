@@ -1,4 +1,5 @@
-//! Explains any words, field by field, from the table. Never fails: what is wrong is said beside the fields.
+//! Decoder of command and answer words into described fields, from the table. It never fails: problems are listed
+//! separately.
 
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
@@ -11,16 +12,16 @@ use super::order::Order;
 use super::table::{Field, Form, ROWS, Row};
 use super::value::{Key, Value, Values};
 
-/// Words explained.
+/// Decoded words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Description {
-    /// What it is, in a line.
+    /// One-line summary.
     pub title: String,
-    /// Section of the manual, in chapter 2, where the command is known.
+    /// Section of the manual in chapter 2, for a known command.
     pub section: Option<&'static str>,
-    /// What stands in the words, in order; words that are 0 and not used are left out.
+    /// Fields in order, without unused words that are 0.
     pub fields: Vec<FieldNote>,
-    /// What is wrong with them.
+    /// Problems of the words.
     pub problems: Vec<String>,
 }
 
@@ -43,7 +44,7 @@ pub struct FieldNote {
 }
 
 impl FieldNote {
-    /// A part of a message that is no field of a command.
+    /// A part of a message that is not a field of a command.
     pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
         Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
     }
@@ -54,7 +55,7 @@ fn key_name<S: Serializer>(key: &Option<Key>, serializer: S) -> Result<S::Ok, S:
     key.map(Key::name).serialize(serializer)
 }
 
-/// Explains WI0 to WI15.
+/// Decodes WI0 to WI15.
 pub fn command(words: &Words) -> Description {
     let mut notes = Notes { side: Side::Command, words, fields: Vec::new(), problems: Vec::new() };
     let Some(row) = Row::from_word(words[0]) else {
@@ -77,7 +78,7 @@ pub fn command(words: &Words) -> Description {
     notes.description(format!("{} {}", row.code_text(), row.name), Some(row.section))
 }
 
-/// Explains WO0 to WO15, as the answer to the command `request` where that is known.
+/// Decodes WO0 to WO15; `request` is the command, if known.
 pub fn answer(words: &Words, request: Option<&Words>) -> Description {
     let mut notes = Notes { side: Side::Answer, words, fields: Vec::new(), problems: Vec::new() };
     let status = Status::from_word(words[0]);
@@ -109,7 +110,7 @@ pub fn answer(words: &Words, request: Option<&Words>) -> Description {
     notes.description(title, known.map(|(row, _)| row.section))
 }
 
-/// A command in one line, for traces.
+/// One-line summary of a command, for traces.
 pub fn command_summary(words: &Words) -> String {
     match Row::from_word(words[0]) {
         Some(row) => {
@@ -121,7 +122,7 @@ pub fn command_summary(words: &Words) -> String {
     }
 }
 
-/// An answer in one line, for traces.
+/// One-line summary of an answer, for traces.
 pub fn answer_summary(words: &Words) -> String {
     match Status::from_word(words[0]) {
         Status::AbnormalEnd => {
@@ -132,13 +133,13 @@ pub fn answer_summary(words: &Words) -> String {
     }
 }
 
-/// What the words of a command hold, whether or not they may be sent.
+/// Values of a command, also invalid ones.
 fn values_of(words: &Words) -> Option<Values> {
     let row = Row::from_word(words[0])?;
     Some(codec::read(row.request(), words, None).map(|(field, value)| (field.key, value)).collect())
 }
 
-/// Notes in the making.
+/// Fields that are collected for a description.
 struct Notes<'a> {
     side: Side,
     words: &'a Words,
@@ -162,7 +163,7 @@ impl Notes<'_> {
         self.rest(|word| strays.iter().find(|(at, _)| *at == word).map_or(u16::MAX, |(_, bits)| !bits));
     }
 
-    /// Notes what is set in words 1 to 15 beyond the bits that are accounted for.
+    /// Adds the words 1 to 15 with bits outside the fields.
     fn rest(&mut self, accounted: impl Fn(usize) -> u16) {
         let alarm_words =
             if self.side == Side::Answer && Status::from_word(self.words[0]) == Status::AbnormalEnd { 3 } else { 1 };
@@ -204,7 +205,7 @@ impl Notes<'_> {
     }
 }
 
-/// The bits of a mask, as the manual counts them; empty for a whole word.
+/// Bits of a mask in the notation of the manual; empty for a whole word.
 fn bits(mask: u16) -> String {
     match (mask.trailing_zeros(), mask.checked_ilog2().unwrap_or_default()) {
         (0, 15) => String::new(),
@@ -237,7 +238,7 @@ mod tests {
 
     #[test]
     fn a_command_is_explained_field_by_field() {
-        // The example of 4.2.1, linear interpolation.
+        // Example of 4.2.1, linear interpolation.
         let linear = command(&words(&[0x0003, 0x8026, 0, 0x00C8, 0x0064, 0, 0, 0, 0, 0, 0x0032]));
         assert_eq!(linear.title, "0xR003 move to a point in a line");
         assert_eq!(linear.section, Some("4.2.1"));

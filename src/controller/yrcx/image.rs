@@ -1,31 +1,31 @@
-//! What master and controller show each other (chapter 1, section 1): 16 command words, 7 words of bits, one reserved.
+//! Process image (chapter 1, section 1): 16 command words, 7 words of bits, one reserved word.
 
 use crate::Now;
 
-/// Words of a remote command or its answer: WI0 to WI15, WO0 to WO15.
+/// Number of words of a remote command or its answer: WI0 to WI15, WO0 to WO15.
 pub const COMMAND_WORDS: usize = 16;
 
-/// Words of the whole image, a reserved one at the end included.
+/// Number of words of the whole image, including the reserved one.
 pub const IMAGE_WORDS: usize = 24;
 
-/// The word that holds the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
+/// Word of the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
 pub const DEDICATED_WORD: usize = 16;
 
-/// The first byte of the signals.
+/// Byte offset of the signals.
 const SIGNALS_AT: usize = DEDICATED_WORD * 2;
 
 /// WI0 to WI15, or WO0 to WO15.
 pub type Words = [u16; COMMAND_WORDS];
 
-/// All that one side shows the other.
+/// Image of one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Image(pub [u16; IMAGE_WORDS]);
 
 impl Image {
-    /// Bytes on the wire.
+    /// Size in bytes.
     pub const BYTES: usize = IMAGE_WORDS * 2;
 
-    /// Reads an image of exactly [`Self::BYTES`] bytes, low byte first.
+    /// Decodes an image of exactly [`Self::BYTES`] bytes, low byte first.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; Self::BYTES] = bytes.try_into().ok()?;
         let mut words = [0; IMAGE_WORDS];
@@ -35,7 +35,7 @@ impl Image {
         Some(Self(words))
     }
 
-    /// The bytes of the wire, low byte first.
+    /// Encodes the image, low byte first.
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         for (pair, word) in bytes.chunks_exact_mut(2).zip(self.0) {
@@ -44,16 +44,16 @@ impl Image {
         bytes
     }
 
-    /// Bytes of the image where a fieldbus carries signals alone (DeviceNet, I/O size "Compact"): the words of the
-    /// dedicated signals and of the first sixteen general-purpose ones.
+    /// Size of an image with signals only (DeviceNet, I/O size "Compact"): the words of the dedicated signals and of
+    /// the first 16 general-purpose signals.
     pub const SIGNAL_BYTES: usize = 4;
 
-    /// Whether images of so many bytes hold the words of remote commands.
+    /// Whether an image of this size contains remote commands.
     pub const fn has_commands(bytes: usize) -> bool {
         bytes >= Self::BYTES
     }
 
-    /// Reads what a fieldbus carries: the whole image with whatever follows it, or signals alone, where all else is 0.
+    /// Decodes link data: an image, perhaps with more data after it, or signals only (all else 0).
     pub fn from_link(bytes: &[u8]) -> Option<Self> {
         if bytes.len() != Self::SIGNAL_BYTES {
             return Self::from_bytes(bytes.get(..Self::BYTES)?);
@@ -63,7 +63,7 @@ impl Image {
         Self::from_bytes(&whole)
     }
 
-    /// The same as a fieldbus carries it in so many bytes; what follows the image is 0.
+    /// Encodes the image as link data of this size; bytes after the image are 0.
     pub fn to_link(self, bytes: usize) -> Vec<u8> {
         let whole = self.to_bytes();
         if bytes == Self::SIGNAL_BYTES {
@@ -81,35 +81,35 @@ impl Image {
         words
     }
 
-    /// Replaces the words of the remote command; the bits stay as they are.
+    /// Replaces the words of the remote command, but no bits.
     pub fn set_command(&mut self, words: &Words) {
         self.0[..COMMAND_WORDS].copy_from_slice(words);
     }
 }
 
-/// The image that goes to the controller, and what of it has left already.
+/// Output image of the master, with the history of sending.
 ///
-/// The driver sends [`next`](Self::next) in its cycle and then says so with [`sent`](Self::sent). Sessions change `next`
-/// and look at what was sent: a command word must not overtake its data, and edges keep their distance.
+/// The driver sends [`next`](Self::next) cyclically and then calls [`sent`](Self::sent). Sessions change `next` and
+/// check what was sent: a command word must not overtake its data, and edges need a minimum interval.
 #[derive(Debug, Clone, Default)]
 pub struct Output {
-    /// What is to be shown from the next cycle on.
+    /// Image to send in the next cycle.
     pub next: Image,
     sent: Option<Image>,
-    /// When the bits of each word after the command last changed on the wire.
+    /// Time of the last change of each word after the command.
     edges: [Option<Now>; IMAGE_WORDS - COMMAND_WORDS],
 }
 
 impl Output {
-    /// An output that begins with `image`; nothing of it has left yet.
+    /// Starts with `image`, which is not sent yet.
     pub fn new(image: Image) -> Self {
         Self { next: image, ..Self::default() }
     }
 
-    /// Tells that `next` as it stands left at `now`.
+    /// Records that `next` was sent at `now`.
     pub fn sent(&mut self, now: Now) {
         for (at, edge) in (COMMAND_WORDS..).zip(&mut self.edges) {
-            // The first image may differ from all that the controller knew before.
+            // The first image may differ from anything the controller had before.
             if self.sent.is_none_or(|sent| sent.0[at] != self.next.0[at]) {
                 *edge = Some(now);
             }
@@ -117,7 +117,7 @@ impl Output {
         self.sent = Some(self.next);
     }
 
-    /// Tells that somebody else, who shows the same image, has changed the bits under the mask at `now`.
+    /// Records bits under the mask that another client of the same image changed at `now`.
     pub fn changed(&mut self, now: Now, mask: &Image, value: &Image) {
         for (at, mask) in mask.0.iter().enumerate() {
             let bits = |word: u16| (word & !mask) | (value.0[at] & mask);
@@ -134,17 +134,17 @@ impl Output {
         }
     }
 
-    /// Tells that the link is down: whatever comes next is seen afresh by the controller.
+    /// Records that the link is down: the controller sees the next image as a new one.
     pub fn unlinked(&mut self) {
         self.sent = None;
     }
 
-    /// The image that the controller was shown last; `None` before the first one, and while the link is down.
+    /// The last image sent; `None` before the first one and while the link is down.
     pub fn last_sent(&self) -> Option<&Image> {
         self.sent.as_ref()
     }
 
-    /// When a bit of this word of the image (16 to 23) last changed on the wire.
+    /// Time of the last change of a word (16 to 23).
     pub fn last_edge(&self, word: usize) -> Option<Now> {
         self.edges.get(word.checked_sub(COMMAND_WORDS)?).copied().flatten()
     }

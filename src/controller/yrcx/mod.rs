@@ -1,9 +1,9 @@
 //! OMRON / Yamaha YRCX: remote commands and bit I/O over a fieldbus.
 //!
-//! Controller and master exchange images of 24 words, each in its own direction: 16 words for one remote command at a
-//! time with its answer, 7 words of bits, one reserved word. Every fieldbus carries that image with its own addressing.
-//! Source: "YRCX Remote I/O User's Manual", cited by chapter and section (the sections 4.x are in chapter 2). Where the
-//! manual contradicts itself, the detail pages and the worked examples (`tests/data/yrcx-examples.json`) decide.
+//! Controller and master exchange images of 24 words in each direction: 16 words for one remote command or its
+//! answer, 7 words of bits, one reserved word. Each fieldbus carries the image with its own addressing. Source: "YRCX
+//! Remote I/O User's Manual", by chapter and section (sections 4.x are in chapter 2). If the manual contradicts
+//! itself, detail pages and worked examples (`tests/data/yrcx-examples.json`) have priority.
 
 pub mod alarm;
 pub mod answer;

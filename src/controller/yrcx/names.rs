@@ -1,4 +1,4 @@
-//! Addresses that a name of the inventory can stand for: `SO(20)`, `SIW(2)`, `SGI5`, `DO2.1`.
+//! Addresses that inventory names can refer to: `SO(20)`, `SIW(2)`, `SGI5`, `DO2.1`.
 
 use super::register::Register;
 use super::signal::{Side, Signal};
@@ -11,16 +11,16 @@ pub const GRAMMAR: Grammar = Grammar {
     prefixes: &["SI", "SO", "SIW", "SOW", "SID", "SOD", "SGI", "SGR", "DI", "DO", "MO", "LO", "TO"],
 };
 
-/// Kinds of ports; SI and SO stand as signals.
+/// Kinds of ports; SI and SO are handled as signals.
 const PORTS: [&str; 5] = ["DI", "DO", "MO", "LO", "TO"];
 
-/// An address as typed, and as it is written.
+/// Parses an address and normalizes it.
 fn address(text: &str) -> Option<(Kind, String)> {
     if let Some(register) = Register::parse(text) {
         return register.ok().map(|register| (Kind::Signal, register.to_string()));
     }
     for side in [Side::Input, Side::Output] {
-        // A signal without its letters could be that of either side.
+        // A bare number could belong to either side.
         let is_named = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case(side.name()));
         let is_dedicated = Signal::of_side(side).any(|row| row.name == text);
         if let (true, Ok(signal)) = (is_named || is_dedicated, Signal::parse(side, text)) {
@@ -37,7 +37,7 @@ fn variable(text: &str) -> Option<(Kind, String)> {
     Some((Kind::Variable, format!("{letters}{number}")))
 }
 
-/// `DO12`, `DO2.1`, `DO(21)`.
+/// Parses `DO12`, `DO2.1`, `DO(21)`.
 fn port(text: &str) -> Option<(Kind, String)> {
     let (letters, rest) = text.split_at_checked(2)?;
     let letters = PORTS.into_iter().find(|known| known.eq_ignore_ascii_case(letters))?;
@@ -46,7 +46,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
         None => rest.split_once('.').map_or((rest, None), |(port, bit)| (port, Some(bit))),
     };
     let digit = |text: &str| unsigned::<u8>(text).filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
-    // Of `DO(1)` the port is not written.
+    // `DO(1)` has no port number.
     let is_first = port.is_empty() && rest.starts_with('(');
     let port = digit(if is_first { "0" } else { port }).filter(|port| port % 10 < 8 && *port <= 27)?;
     let written = match bit {
@@ -56,7 +56,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
     Some((Kind::Port, written))
 }
 
-/// A bit of a port of SI or SO as the signal that it is: `SO2.1` is `SO(21)`.
+/// The signal of a port bit of SI or SO: `SO2.1` is `SO(21)`.
 pub fn signal_of_port(port: &str) -> Option<String> {
     let (place, bit) = port.split_once('.')?;
     let (letters, number) = place.split_at_checked(2)?;

@@ -1,4 +1,4 @@
-//! A remote command ready to be sent: WI0 to WI15 that the manual allows.
+//! Validated remote command: WI0 to WI15.
 
 use super::codec::{self, Side, WordError};
 use super::image::Words;
@@ -15,7 +15,7 @@ pub struct Order {
     words: Words,
 }
 
-/// A command in the making.
+/// Builder of an order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
     command: Command,
@@ -23,21 +23,21 @@ pub struct Draft {
 }
 
 impl Command {
-    /// Begins an order: `Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build()`.
+    /// Starts an order: `Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build()`.
     pub fn order(self) -> Draft {
         Draft { command: self, values: Values::default() }
     }
 }
 
 impl Draft {
-    /// Sets a field. Flags that tell whether a field is there follow by themselves. Text is read in the field's unit.
+    /// Sets a field, and the flags that depend on it. Text is parsed in the unit of the field.
     #[must_use]
     pub fn with(mut self, key: Key, value: impl Into<Value>) -> Self {
         self.values.set(key, value);
         self
     }
 
-    /// Sets a field if there is something to set.
+    /// Sets a field, unless the value is `None`.
     #[must_use]
     pub fn with_some(self, key: Key, value: Option<impl Into<Value>>) -> Self {
         match value {
@@ -46,7 +46,7 @@ impl Draft {
         }
     }
 
-    /// Checks all of it and makes the words.
+    /// Validates the fields and encodes the words.
     pub fn build(self) -> Result<Order, WordError> {
         let row = self.command.row();
         let mut words = codec::encode(Side::Command, row.request(), &self.values, None)?;
@@ -56,7 +56,7 @@ impl Draft {
 }
 
 impl Order {
-    /// Reads the words of a command. Refuses what the manual does not allow to be sent.
+    /// Decodes the words of a command. Refuses values that the manual does not allow.
     pub fn parse(words: &Words) -> Result<Self, WordError> {
         let unknown =
             || WordError::at(Side::Command, Some(0), None, format!("{:#06X} is not a remote command code", words[0]));
@@ -68,22 +68,22 @@ impl Order {
         Ok(Self { row, values, words: *words })
     }
 
-    /// Its row.
+    /// Row of the table.
     pub fn row(&self) -> &'static Row {
         self.row
     }
 
-    /// Which command it is.
+    /// Identifier of the command.
     pub fn command(&self) -> Command {
         self.row.command
     }
 
-    /// What it does to the world.
+    /// Risk of the command.
     pub fn risk(&self) -> Risk {
         self.row.risk
     }
 
-    /// What its fields hold, defaults included.
+    /// Values of the fields, including defaults.
     pub fn values(&self) -> &Values {
         &self.values
     }
@@ -93,14 +93,14 @@ impl Order {
         &self.words
     }
 
-    /// Whether the answer goes on until the status reset (4.7.4).
+    /// Whether the output continues until the status reset (4.7.4).
     pub fn is_continuous(&self) -> bool {
         self.values.int(Key::Continuous) == Some(1)
     }
 }
 
 impl Rule {
-    /// Checks what the fields of a command hold.
+    /// Validates the values of a command.
     fn check(self, row: &Row, values: &Values) -> Result<(), WordError> {
         let int = |key| values.int(key).unwrap_or_default();
         let wrong = |key, problem: String| {

@@ -1,9 +1,9 @@
-//! What may be shown to a controller that is only to be read, whoever shows it.
+//! Filter for a read-only link: decides which images may pass.
 
 use super::image::{COMMAND_WORDS, Image};
 use super::signal::input;
 
-/// Whether an image, shown after another one, gives no command and switches nothing but a stop: SI(00) or SI(06) off.
+/// Whether the change of the image contains no command and switches nothing except a stop: SI(00) or SI(06) off.
 pub fn only_stops(before: &[u8], after: &[u8]) -> bool {
     let image = |bytes: &[u8]| Image::from_link(bytes).unwrap_or_default();
     let (before, after) = (image(before), image(after));

@@ -1,35 +1,35 @@
-//! The procedures of the timing charts as data (chapter 1, section 3); a [`Sequence`](super::sequence::Sequence) carries
-//! them out.
+//! Signal procedures of the timing charts (chapter 1, section 3), as data for a
+//! [`Sequence`](super::sequence::Sequence).
 
 use super::signal::{Side, Signal, input, output};
 use crate::Risk;
 
-/// One step of a procedure.
+/// A step of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// An output must be so, or the procedure does not begin or go on.
+    /// Requires the state of an output to begin or continue.
     Require {
         /// The output.
         signal: Signal,
-        /// How it must be.
+        /// Required state.
         on: bool,
-        /// What to do if it is not.
+        /// Hint for another state.
         hint: &'static str,
     },
-    /// Switches an input; nothing to do if it is so already.
+    /// Switches an input; no effect if it has this state.
     Set {
         /// The input.
         signal: Signal,
-        /// Where to.
+        /// New state.
         on: bool,
     },
     /// Switches an input from off to on; first off, if it is on.
     Rise(Signal),
-    /// Waits until an output is so.
+    /// Waits for the state of an output.
     Await {
         /// The output.
         signal: Signal,
-        /// How it shall become.
+        /// Expected state.
         on: bool,
     },
 }
@@ -37,17 +37,17 @@ pub enum Step {
 /// A procedure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Procedure {
-    /// Its name, such as `power-on`.
+    /// Name, such as `power-on`.
     pub name: &'static str,
-    /// What it does, to complete "This will …".
+    /// Effect, to complete "This will …".
     pub intent: String,
-    /// What it does to the world.
+    /// Risk of the procedure.
     pub risk: Risk,
-    /// Section of the manual, in chapter 1; empty for what is no timing chart.
+    /// Section of the manual in chapter 1; empty without a timing chart.
     pub section: &'static str,
-    /// What to do, in order.
+    /// Steps in order.
     pub steps: Vec<Step>,
-    /// An output that must not come on while an output is awaited.
+    /// Output that aborts the procedure if it comes on during a wait.
     pub breaks_on: Option<Signal>,
 }
 
@@ -61,7 +61,7 @@ impl Procedure {
         self
     }
 
-    /// Servos on after power on.
+    /// Switches servos on after power on.
     pub fn power_on() -> Self {
         let steps = [
             set(input::EMERGENCY_STOP, true),
@@ -74,7 +74,7 @@ impl Procedure {
         Self::new("power-on", "switch the servos on", Risk::Motion, "3.1", &steps).breaking_on(output::ALARM)
     }
 
-    /// Into emergency stop.
+    /// Activates the emergency stop.
     pub fn emergency_stop() -> Self {
         let steps = [
             set(input::EMERGENCY_STOP, false),
@@ -85,7 +85,7 @@ impl Procedure {
         Self::new("emergency-stop", "put the controller into emergency stop", Risk::Write, "3.1", &steps)
     }
 
-    /// Out of emergency stop, with servos on.
+    /// Clears the emergency stop and switches servos on.
     pub fn recover() -> Self {
         let steps = [
             set(input::EMERGENCY_STOP, true),
@@ -100,20 +100,20 @@ impl Procedure {
         Self::new("recover", "end the emergency stop and switch the servos on", Risk::Motion, "3.1", &steps)
     }
 
-    /// Waits for AUTO mode. People select it, at the SAFETY connector and the programming box.
+    /// Waits for AUTO mode, which a person selects at the SAFETY connector and the programming box.
     pub fn auto_mode() -> Self {
         let steps = [wait(output::AUTO_MODE, true)];
         Self::new("auto-mode", "wait for AUTO mode", Risk::Read, "3.2", &steps)
     }
 
-    /// Back to the first line of the programs.
+    /// Resets the programs to the first line.
     pub fn program_reset() -> Self {
         let steps =
             [Step::Rise(input::PROGRAM_RESET), wait(output::PROGRAM_RESET, true), set(input::PROGRAM_RESET, false)];
         Self::new("program-reset", "reset the robot program", Risk::Write, "3.2", &steps)
     }
 
-    /// Runs the program; also after a stop. The stop input goes on first, where it is off (3.2, 3.3).
+    /// Starts the program, also after a stop. The stop input goes on first if it is off (3.2, 3.3).
     pub fn run() -> Self {
         let steps = [
             require(output::EMERGENCY_STOP, false, "release the emergency stop, then run the recovery"),
@@ -135,18 +135,18 @@ impl Procedure {
         Self::new("stop", "stop the robot program", Risk::Write, "3.3", &steps)
     }
 
-    /// Whether it switches nothing.
+    /// Whether it switches no inputs.
     pub fn only_awaits(&self) -> bool {
         !self.steps.iter().any(|step| matches!(step, Step::Set { .. } | Step::Rise(_)))
     }
 
-    /// Whether it takes off what lets the robot move.
+    /// Whether it switches an emergency-stop or stop input off.
     pub fn stops(&self) -> bool {
         let is_stop = |signal: &Signal| [input::STOP, input::EMERGENCY_STOP].contains(signal);
         self.steps.iter().any(|step| matches!(step, Step::Set { signal, on: false } if is_stop(signal)))
     }
 
-    /// Every timing chart.
+    /// All timing charts.
     pub fn charts() -> [Self; 7] {
         [
             Self::power_on(),

@@ -1,5 +1,5 @@
-//! General-purpose words: SIW(2) to SIW(15) and SOW(2) to SOW(15), and the double words of two of them (chapter 1,
-//! sections 1 and 2). They are the words of remote commands and their answers, which use them as long as they last.
+//! General-purpose words SIW(2) to SIW(15) and SOW(2) to SOW(15), and their double words (chapter 1, sections 1 and
+//! 2). Remote commands and answers use the same words while they run.
 
 use std::fmt;
 
@@ -11,12 +11,12 @@ use crate::typed::integer;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Register {
     side: Side,
-    /// The word, or the low one of the two.
+    /// The word, or the low word of two.
     word: usize,
     is_double: bool,
 }
 
-/// The first general-purpose word; those before are of remote commands alone.
+/// First general-purpose word; the words before it belong to remote commands.
 const FIRST: usize = 2;
 const PREFIXES: [(&str, Side, bool); 4] = [
     ("SIW", Side::Input, false),
@@ -26,10 +26,10 @@ const PREFIXES: [(&str, Side, bool); 4] = [
 ];
 
 impl Register {
-    /// One as typed: `SIW2`, `sow(15)`, `SID4`; `None` for what is not meant as one.
+    /// Parses `SIW2`, `sow(15)`, `SID4`; `None` for other text.
     ///
     /// # Errors
-    /// A word that there is not, or that is no general-purpose one.
+    /// A word that does not exist, or is not a general-purpose word.
     pub fn parse(text: &str) -> Option<Result<Self, String>> {
         let (prefix, rest) = text.split_at_checked(3)?;
         let (name, side, is_double) = PREFIXES.into_iter().find(|(name, ..)| name.eq_ignore_ascii_case(prefix))?;
@@ -50,18 +50,18 @@ impl Register {
         })
     }
 
-    /// Whose it is.
+    /// Direction.
     pub const fn side(self) -> Side {
         self.side
     }
 
-    /// What it holds.
+    /// Reads the value.
     pub fn read(self, words: &Words) -> u32 {
         let low = u32::from(words[self.word]);
         if self.is_double { low | u32::from(words[self.word + 1]) << 16 } else { low }
     }
 
-    /// Changes it; of a word the low half of `value` counts.
+    /// Writes the value; a single word takes its low half.
     pub fn write(self, words: &mut Words, value: u32) {
         let [low, high] = [value & 0xFFFF, value >> 16].map(|half| u16::try_from(half).unwrap_or_default());
         words[self.word] = low;
@@ -70,10 +70,10 @@ impl Register {
         }
     }
 
-    /// A value for it as typed: decimal, negative too, or hexadecimal as in `0x1F`.
+    /// Parses a value: decimal, also negative, or hexadecimal as in `0x1F`.
     ///
     /// # Errors
-    /// What is no number, or does not fit.
+    /// An invalid number, or one that does not fit.
     pub fn value(self, text: &str) -> Result<u32, String> {
         let bits = if self.is_double { 32 } else { 16 };
         let (least, most) = (-(1_i64 << (bits - 1)), (1_i64 << bits) - 1);
@@ -85,7 +85,7 @@ impl Register {
         Ok(u32::try_from(number.rem_euclid(most + 1)).unwrap_or_default())
     }
 
-    /// As people write it: `0x0005`, `0x00000005`.
+    /// Formats a value: `0x0005`, `0x00000005`.
     pub fn hex(self, value: u32) -> String {
         if self.is_double { format!("0x{value:08X}") } else { format!("0x{value:04X}") }
     }
@@ -97,7 +97,7 @@ impl fmt::Display for Register {
     }
 }
 
-/// The general-purpose words of what is shown, without the remote command; none while there is one.
+/// The general-purpose words of an output image; zeros while a remote command uses them.
 pub fn general(words: &Words) -> Words {
     let mut general = *words;
     match words[0] {

@@ -1,4 +1,5 @@
-//! Carries out procedures: edges of dedicated inputs keep their distance, and outputs confirm them (chapter 1, section 3).
+//! Execution of signal procedures: minimum interval between edges of dedicated inputs, confirmation by outputs
+//! (chapter 1, section 3).
 
 use std::fmt;
 use std::time::Duration;
@@ -9,37 +10,37 @@ use super::session::{ImageSession, Next, edge_due};
 use super::signal::Signal;
 use crate::Now;
 
-/// How a procedure ended.
+/// Outcome of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// Every step done, every output confirmed.
+    /// All steps done and confirmed.
     Done,
-    /// An output was not as required.
+    /// An output did not have the required state.
     NotPossible {
         /// The output.
         signal: Signal,
-        /// How it must be.
+        /// Required state.
         on: bool,
-        /// What to do.
+        /// Hint.
         hint: &'static str,
         /// Whether an input was switched before.
         begun: bool,
     },
-    /// An output did not become as awaited in time.
+    /// An output did not reach the expected state in time.
     TimedOut {
         /// The output.
         signal: Signal,
-        /// How it should have become.
+        /// Expected state.
         on: bool,
     },
-    /// An output came on that ends the procedure.
+    /// An output that aborts the procedure came on.
     Broken {
         /// The output.
         signal: Signal,
     },
-    /// No image came.
+    /// No image received.
     NoImage,
-    /// The link went down.
+    /// The link was lost.
     LinkLost {
         /// Whether an input may have been switched before.
         begun: bool,
@@ -64,12 +65,12 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Carries out a procedure.
+/// A running procedure.
 #[derive(Debug, Clone)]
 pub struct Sequence {
     procedure: Procedure,
     patience: Duration,
-    /// The longest that all of it may take, and since when.
+    /// Limit of the total duration, and start time.
     longest: Duration,
     began: Option<Now>,
     at: usize,
@@ -77,12 +78,12 @@ pub struct Sequence {
     input: Option<Image>,
     linked: bool,
     begun: bool,
-    /// Inputs that were raised and not yet dropped: a failure must not leave them on.
+    /// Input that was pulsed and is still on: a failure must switch it off.
     raised: Option<Signal>,
     outcome: Option<Outcome>,
 }
 
-/// What a step says.
+/// Result of a step.
 enum Advance {
     Next,
     Wait(Option<Now>),
@@ -90,7 +91,7 @@ enum Advance {
 }
 
 impl Sequence {
-    /// Will carry out `procedure`, and wait at most `patience` for each output.
+    /// A session for `procedure`, with a wait of at most `patience` for each output.
     pub fn new(procedure: Procedure, patience: Duration) -> Self {
         Self {
             procedure,
@@ -107,18 +108,18 @@ impl Sequence {
         }
     }
 
-    /// The same, in this time altogether.
+    /// Limits the total duration.
     #[must_use]
     pub fn within(self, longest: Duration) -> Self {
         Self { longest, ..self }
     }
 
-    /// The step it is at; `None` at the end.
+    /// The current step; `None` at the end.
     pub fn step(&self) -> Option<Step> {
         self.procedure.steps.get(self.at).copied()
     }
 
-    /// Switches an input if edges may follow each other by now; done once it was sent.
+    /// Switches an input after the minimum edge interval. Done when it was sent.
     fn switch(&mut self, now: Now, output: &mut Output, signal: Signal, on: bool) -> Advance {
         if signal.is_on(&output.next) != on {
             if let Some(due) = edge_due(now, output, signal) {
@@ -178,7 +179,7 @@ impl Sequence {
         }
     }
 
-    /// Ends it. An input that was raised for a moment does not stay on.
+    /// Ends the procedure, and switches a pulsed input off.
     fn end(&mut self, output: &mut Output, outcome: Outcome) {
         if let Some(signal) = self.raised.take() {
             signal.set(&mut output.next, false);

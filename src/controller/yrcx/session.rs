@@ -1,9 +1,9 @@
-//! Conversations by images, without link and without clock.
+//! Image sessions, without link and without clock.
 //!
-//! The driver sends the [`Output`] in its cycle and hands over every image that comes. After each of both, and when a
-//! wait is over, it polls until the session waits again. A session changes only what is its own: an [`Exchange`] the
-//! words of the remote command, a [`Sequence`](super::sequence::Sequence) the inputs it switches. So one command runs at
-//! a time, and the bits live beside it.
+//! The driver sends the [`Output`] cyclically and passes every received image. After each of both, and at a deadline,
+//! it polls until the session waits again. A session changes only its own part of the image: an [`Exchange`] the
+//! words of the remote command, a [`Sequence`](super::sequence::Sequence) its inputs. So one command runs at a time,
+//! in parallel with the bits.
 
 mod exchange;
 
@@ -16,52 +16,51 @@ use crate::Now;
 
 pub use exchange::{Ended, Exchange, NotSentReason, Outcome, Silence};
 
-/// What a session wants its driver to do.
+/// Next action of a driver for a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Next<T> {
-    /// Nothing before this moment, unless an image leaves or comes.
+    /// Wait until this time, or until an image is sent or received.
     Wait(Now),
-    /// The session has ended with this outcome; polling again yields the same.
+    /// The session has ended with this outcome. Further polls return the same.
     Done(T),
 }
 
-/// A conversation by images; what [`Session`](crate::Session) is for bytes.
+/// A protocol exchange by images; [`Session`](crate::Session) is the counterpart for bytes.
 pub trait ImageSession {
-    /// How it ends, good or bad.
+    /// Result of the session.
     type Outcome;
 
-    /// Changes what is to be sent, and says what to wait for.
+    /// Updates the output and returns the next wait.
     fn poll(&mut self, now: Now, output: &mut Output) -> Next<Self::Outcome>;
 
-    /// Takes an image of the controller. Hand over the last known one at the start: it may say already that the
-    /// controller is ready.
+    /// Takes an input image. Pass the last known one at the start: it may already contain the ready status.
     fn handle(&mut self, now: Now, input: &Image);
 
-    /// Tells that the link went down. Nothing comes any more; poll for the outcome.
+    /// Records the loss of the link. No more images follow; poll for the outcome.
     fn lost(&mut self, now: Now);
 }
 
-/// How long to wait for the controller.
+/// Time limits of an exchange.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// For the ready status, before the command.
+    /// Ready status before the command.
     pub ready: Duration,
-    /// For a sign that the command was taken, and for a status that makes sense again.
+    /// First reaction to the command, and return to a valid status.
     pub accept: Duration,
-    /// For the end of a quick command.
+    /// End of a quick command.
     pub quick: Duration,
-    /// For the end of a command that switches servos or motor power.
+    /// End of a command that switches servos or motor power.
     pub power: Duration,
-    /// For the end of a motion; `None` waits as long as it takes.
+    /// End of a motion; `None` without a limit.
     pub motion: Option<Duration>,
-    /// For the ready status, after the command.
+    /// Ready status after the command.
     pub release: Duration,
-    /// For the end of a command that was interrupted.
+    /// End of an interrupted command.
     pub stop: Duration,
 }
 
 impl Policy {
-    /// The longest that a command may run.
+    /// Time limit of a command.
     pub const fn longest(&self, pace: Pace) -> Option<Duration> {
         match pace {
             Pace::Quick => Some(self.quick),
@@ -85,11 +84,11 @@ impl Default for Policy {
     }
 }
 
-/// Between two edges of dedicated inputs: the manual wants 100 ms or more at the controller (chapter 1, section 3); the
-/// rest covers a late packet and the controller's scan of 5 ms.
+/// Minimum interval between two edges of dedicated inputs. The manual requires 100 ms or more at the controller
+/// (chapter 1, section 3). The rest covers a late packet and the scan time of 5 ms.
 pub const EDGE_INTERVAL: Duration = Duration::from_millis(120);
 
-/// When an edge of `signal` may follow the last one in its word, unless it may now.
+/// Earliest time of an edge of `signal` after the last one in its word; `None` if it may follow now.
 pub(super) fn edge_due(now: Now, output: &Output, signal: Signal) -> Option<Now> {
     let due = output.last_edge(signal.word())?.saturating_add(EDGE_INTERVAL);
     (due > now).then_some(due)

@@ -1,7 +1,7 @@
-//! The bits beside the remote command: dedicated and general-purpose signals (chapter 1, sections 1 and 2).
+//! Dedicated and general-purpose signals: the bits after the remote command (chapter 1, sections 1 and 2).
 //!
-//! Inputs and outputs are the controller's: SI is what the master sets, SO what it reads. Numbers are octal, as printed:
-//! SI(00) to SI(07), SI(10) to SI(17), … SI(150) to SI(157).
+//! Directions are those of the controller: the master sets SI and reads SO. Numbers are octal, as printed: SI(00) to
+//! SI(07), SI(10) to SI(17), … SI(150) to SI(157).
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use super::image::{DEDICATED_WORD, Image};
 use crate::Risk;
 use crate::nearest::nearest;
 
-/// Whose input or output.
+/// Direction of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
     /// SI: set by the master.
@@ -21,7 +21,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// `SI` or `SO`.
+    /// Prefix `SI` or `SO`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Input => "SI",
@@ -30,44 +30,44 @@ impl Side {
     }
 }
 
-/// One signal that may be used; never a reserved bit.
+/// A usable signal; never a reserved bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     side: Side,
     index: u8,
 }
 
-/// What makes a dedicated signal act.
+/// Activation of a dedicated signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trigger {
-    /// Acts while off; stays on in normal operation.
+    /// Active while off; on in normal operation.
     WhileOff,
-    /// Acts while on.
+    /// Active while on.
     WhileOn,
-    /// Acts when it goes from off to on.
+    /// Active at the edge from off to on.
     Rise,
-    /// An output: on while it says so.
+    /// An output: on while the state holds.
     State,
 }
 
 /// A signal with a fixed meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dedicated {
-    /// Which bit.
+    /// The bit.
     pub signal: Signal,
-    /// Its name at the command line.
+    /// Name on the command line.
     pub name: &'static str,
-    /// In words, as in the tables.
+    /// Name in the tables.
     pub text: &'static str,
-    /// When it acts.
+    /// Activation.
     pub trigger: Trigger,
-    /// What it does, or says.
+    /// Effect or meaning.
     pub effect: &'static str,
-    /// What switching it on does to the world; for an output, looking at it.
+    /// Risk of switching it on; for an output, of reading it.
     pub risk: Risk,
 }
 
-/// A text or a number that is no signal.
+/// An invalid signal.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Neither a name nor a number.
@@ -75,24 +75,24 @@ pub enum SignalError {
         "'{found}' is not a valid signal; use a name such as {example}, or a number from 20 to 157 with digits 0 to 7"
     )]
     Unknown {
-        /// What was given.
+        /// The invalid text.
         found: String,
-        /// A name that exists, the nearest one if one is near.
+        /// A valid name, similar if possible.
         example: &'static str,
     },
-    /// A bit that must not be used.
+    /// A reserved bit.
     #[error("{side}({number:02}) is reserved", side = .side.name())]
     Reserved {
-        /// SI or SO.
+        /// Direction.
         side: Side,
-        /// As printed.
+        /// Octal number as printed.
         number: u16,
     },
 }
 
-/// The first general-purpose signal, SI(20) or SO(20).
+/// First general-purpose signal: SI(20) or SO(20).
 const FIRST_GENERAL: u8 = 0o20;
-/// The last one, SI(157) or SO(157).
+/// Last general-purpose signal: SI(157) or SO(157).
 const LAST: u8 = 0o157;
 
 /// Dedicated inputs, set by the master.
@@ -147,7 +147,7 @@ pub mod output {
     pub const WARNING: Signal = Signal::at(Side::Output, 0o15);
 }
 
-/// Every dedicated signal, inputs first.
+/// All dedicated signals, inputs first.
 pub const DEDICATED: [Dedicated; 20] = [
     given(
         input::EMERGENCY_STOP,
@@ -274,7 +274,7 @@ const fn says(signal: Signal, name: &'static str, text: &'static str, effect: &'
     Dedicated { signal, name, text, trigger: Trigger::State, effect, risk: Risk::Read }
 }
 
-/// The image of a master that asks for nothing: emergency stop and stop inputs on, so that neither acts, all else off.
+/// Resting image of a master: emergency stop and stop inputs on (inactive), everything else off.
 pub fn resting() -> Image {
     let mut image = Image::default();
     input::EMERGENCY_STOP.set(&mut image, true);
@@ -287,7 +287,7 @@ impl Signal {
         Self { side, index }
     }
 
-    /// The signal of a number as printed: 157 is SI(157).
+    /// The signal with this printed number: 157 is SI(157).
     pub fn new(side: Side, number: u16) -> Result<Self, SignalError> {
         let digits = [number / 100, number / 10 % 10, number % 10];
         let index = u8::try_from(digits[0] * 64 + digits[1] * 8 + digits[2]).ok();
@@ -301,7 +301,7 @@ impl Signal {
         }
     }
 
-    /// The signal of a name such as `servo-on`, or of a number as in `20`, `SI20` or `SI(20)`.
+    /// Parses a name such as `servo-on`, or a number as in `20`, `SI20` or `SI(20)`.
     pub fn parse(side: Side, text: &str) -> Result<Self, SignalError> {
         if let Some(dedicated) = Self::of_side(side).find(|dedicated| dedicated.name == text) {
             return Ok(dedicated.signal);
@@ -315,56 +315,55 @@ impl Signal {
         Self::new(side, number.ok_or_else(|| Self::unknown(side, text))?)
     }
 
-    /// Every signal of a side, dedicated and general-purpose, ascending.
+    /// All signals of a side, in ascending order.
     pub fn all(side: Side) -> impl Iterator<Item = Self> {
         (0..=LAST)
             .map(move |index| Self { side, index })
             .filter(|signal| signal.is_general() || signal.dedicated().is_some())
     }
 
-    /// SI or SO.
+    /// Direction.
     pub const fn side(self) -> Side {
         self.side
     }
 
-    /// Its number as printed, in octal digits.
+    /// Number as printed, in octal digits.
     pub const fn number(self) -> u16 {
         let index = self.index as u16;
         index / 64 * 100 + index / 8 % 8 * 10 + index % 8
     }
 
-    /// Its word in the image, 16 to 22.
+    /// Word in the image, 16 to 22.
     pub const fn word(self) -> usize {
         DEDICATED_WORD + self.index as usize / 16
     }
 
-    /// Its bit in the word.
+    /// Bit in the word.
     pub const fn bit(self) -> u8 {
         self.index % 16
     }
 
-    /// Whether programs of the robot use it as they like.
+    /// Whether it is a general-purpose signal, free for robot programs.
     pub const fn is_general(self) -> bool {
         self.index >= FIRST_GENERAL
     }
 
-    /// Its fixed meaning, if it has one.
+    /// Fixed meaning, if any.
     pub fn dedicated(self) -> Option<&'static Dedicated> {
         DEDICATED.iter().find(|dedicated| dedicated.signal == self)
     }
 
-    /// `servo-on (SI(01))`; a general-purpose signal has but its number.
+    /// Name and address: `servo-on (SI(01))`; a general-purpose signal has only its address.
     pub fn named(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| format!("{} ({self})", dedicated.name))
     }
 
-    /// Its name, or `SI(20)`.
+    /// Name, or `SI(20)`.
     pub fn name(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| dedicated.name.to_owned())
     }
 
-    /// What switching it does to the world. Off is never more than a write; general-purpose inputs mean what programs
-    /// make of them.
+    /// Risk of switching it. Off is at most a write. The meaning of general-purpose inputs depends on programs.
     pub fn risk(self, on: bool) -> Risk {
         match self.dedicated() {
             Some(dedicated) if on => dedicated.risk,
@@ -384,7 +383,7 @@ impl Signal {
         *word = if on { *word | mask } else { *word & !mask };
     }
 
-    /// The dedicated signals of a side.
+    /// Dedicated signals of a side.
     pub fn of_side(side: Side) -> impl Iterator<Item = &'static Dedicated> {
         DEDICATED.iter().filter(move |dedicated| dedicated.signal.side == side)
     }

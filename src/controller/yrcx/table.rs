@@ -1,7 +1,7 @@
-//! The table of remote commands: every code with its words, ranges, answer and danger (chapter 2, sections 3 and 4).
+//! Table of remote commands: codes, words, ranges, answers and risks (chapter 2, sections 3 and 4).
 //!
-//! Commands are built, answers read, words explained and the controller simulated by these rows; there is no second
-//! list. Where the manual's tables and detail pages disagree about a code, the detail pages and examples are followed.
+//! It is the single source for encoding, decoding, descriptions and the simulator. If tables and detail pages of the
+//! manual contradict each other, detail pages and examples have priority.
 
 mod field;
 mod layouts;
@@ -14,63 +14,63 @@ pub use rows::{Command, ROWS};
 use super::value::Key;
 use crate::Risk;
 
-/// The status reset in WI0; also "no command".
+/// Status reset in WI0; also "no command".
 pub const STATUS_RESET: u16 = 0x0000;
 
-/// How long a command may take.
+/// Duration class of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pace {
-    /// Ends at once; for a program start, as soon as it is accepted (chapter 2, 1.2).
+    /// Ends at once. A program start ends when it is accepted (chapter 2, 1.2).
     Quick,
     /// Ends when servos or motor power have switched.
     Power,
-    /// Ends when the motion ends, whenever that is.
+    /// Ends with the motion, without a limit.
     Motion,
-    /// Goes on until the stop input goes off (4.2.6).
+    /// Runs until the stop input goes off (4.2.6).
     Jog,
 }
 
-/// What fields must fulfil together.
+/// Constraint on several fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Rule {
-    /// X times Y times Z places is at most 32767 (4.3.3).
+    /// The product of X, Y and Z positions is at most 32767 (4.3.3).
     PalletSize,
-    /// One axis for a parameter of an axis, none for one of the robot (4.4.2).
+    /// One axis for an axis parameter, none for a robot parameter (4.4.2).
     ParameterAxis,
-    /// The value is within the parameter's range (4.4.2).
+    /// The value is within the range of the parameter (4.4.2).
     ParameterValue,
 }
 
-/// One remote command.
+/// A remote command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
-    /// Which one.
+    /// Identifier.
     pub command: Command,
     /// Bits 11 to 0 of WI0.
     pub code: u16,
-    /// Its name for programs, such as `move-ptp`.
+    /// Name for programs, such as `move-ptp`.
     pub id: &'static str,
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
     /// Section of the manual, in chapter 2.
     pub section: &'static str,
-    /// What it does to the world.
+    /// Risk of the command.
     pub risk: Risk,
-    /// How long it may take.
+    /// Duration class.
     pub pace: Pace,
-    /// Words WI.
+    /// Fields of WI.
     pub request: &'static [&'static [Field]],
-    /// Words WO at a normal end.
+    /// Fields of WO after a normal end.
     pub answer: &'static [&'static [Field]],
-    /// What fields must fulfil together.
+    /// Constraints on several fields.
     pub rules: &'static [Rule],
 }
 
-/// The fields of a layout, in the order of its parts.
+/// Fields of a layout, in the order of its parts.
 pub type Fields = std::iter::Flatten<std::iter::Copied<std::slice::Iter<'static, &'static [Field]>>>;
 
 impl Row {
-    /// The row of the code in WI0, whatever the robot.
+    /// The row of the code in WI0, for any robot.
     pub fn from_word(wi0: u16) -> Option<&'static Self> {
         let row = ROWS.iter().find(|row| row.code == wi0 & 0x0FFF)?;
         (wi0 & 0xF000 == 0 || row.has_robot()).then_some(row)
@@ -81,34 +81,33 @@ impl Row {
         ROWS.iter().find(|row| row.id == id)
     }
 
-    /// The category, 1 to 7; 0 for the status reset.
+    /// Category 1 to 7; 0 for the status reset.
     pub const fn category(&self) -> u16 {
         if self.code == STATUS_RESET { 0 } else { (self.code >> 8) + 1 }
     }
 
-    /// The fields of the command.
+    /// Fields of the command.
     pub fn request(&self) -> Fields {
         self.request.iter().copied().flatten()
     }
 
-    /// The fields of the answer.
+    /// Fields of the answer.
     pub fn answer(&self) -> Fields {
         self.answer.iter().copied().flatten()
     }
 
-    /// Whether bits 15 to 12 of WI0 name a robot.
+    /// Whether bits 15 to 12 of WI0 contain a robot.
     pub fn has_robot(&self) -> bool {
         self.request().any(|field| field.key == Key::Robot)
     }
 
-    /// Whether it is taken while the programming box has control: references only (chapter 2, 3). The reference of
-    /// program execution (4.6.4) is missing in that list and so is not.
+    /// Whether it is accepted while the programming box has control: references only (chapter 2, 3). The reference of
+    /// program execution (4.6.4) is missing in that list, so it is not accepted.
     pub const fn enabled_under_programming_box(&self) -> bool {
         matches!(self.risk, Risk::Read) && !matches!(self.command, Command::ProgramShow)
     }
 
-    /// Whether it goes on to its old target when it is given again after a stop, unless a setting says otherwise (4.2.2,
-    /// 4.2.4).
+    /// Whether a repetition after a stop continues to the old target, unless a setting says otherwise (4.2.2, 4.2.4).
     pub const fn keeps_target(&self) -> bool {
         matches!(
             self.command,
@@ -122,7 +121,7 @@ impl Row {
         )
     }
 
-    /// The code as the manual writes it, such as `0xR001`.
+    /// Code in the notation of the manual, such as `0xR001`.
     pub fn code_text(&self) -> String {
         if self.has_robot() { format!("0xR{:03X}", self.code) } else { format!("0x{:04X}", self.code) }
     }

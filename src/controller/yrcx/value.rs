@@ -1,21 +1,21 @@
-//! What the words of commands and answers hold, by name.
+//! Named values of commands and answers.
 
 use std::fmt;
 
 /// Declares the keys with their names.
 macro_rules! keys {
     ($($key:ident $name:literal,)*) => {
-        /// The name of a field. A command has a field at most once at a time, so that the name finds it.
+        /// Name of a field, unique within a command.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Key {
             $(#[doc = concat!("`", $name, "`")] $key,)*
         }
 
         impl Key {
-            /// Every key.
+            /// All keys.
             pub const ALL: &[Self] = &[$(Self::$key,)*];
 
-            /// The name in JSON and in error texts.
+            /// Name in JSON and error texts.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$key => $name,)*
@@ -137,10 +137,10 @@ keys! {
 }
 
 impl Key {
-    /// The axes that share a layout of four, in order.
+    /// The four axes, in order.
     pub const AXES: [Self; 4] = [Self::Axis1, Self::Axis2, Self::Axis3, Self::Axis4];
 
-    /// The key of a name.
+    /// The key with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|key| key.name() == name)
     }
@@ -152,15 +152,15 @@ impl fmt::Display for Key {
     }
 }
 
-/// What a field holds.
+/// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A whole number: as it travels, so in steps of 0.001 mm or 0.01 % where the field says so; the number of a choice;
-    /// a set of axes as bits, bit 0 for axis 1.
+    /// An integer in raw units, for example 0.001 mm or 0.01 %; the number of a choice; or a set of axes as bits, bit 0
+    /// for axis 1.
     Int(i32),
-    /// A single-precision number; only a real static variable.
+    /// A single-precision number of a real static variable.
     Real(f32),
-    /// A comment or a program name. Where another field is given text, it is read as [`Field::parse`] reads it.
+    /// A comment or a program name. Other fields parse text with [`Field::parse`].
     ///
     /// [`Field::parse`]: super::table::Field::parse
     Text(String),
@@ -202,9 +202,8 @@ impl From<String> for Value {
     }
 }
 
-/// Values by their keys, in the order of the words. Numbers are as they travel: pulses, percent and mm/s whole, mm and
-/// degrees in thousandths, percent of the maximum in hundredths; [`Field::show`](super::table::Field::show) writes them for
-/// people.
+/// Values by key, in word order. Numbers are raw: pulses, percent and mm/s as integers, mm and degrees in
+/// thousandths, percent of the maximum in hundredths. [`Field::show`](super::table::Field::show) formats them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Values(Vec<(Key, Value)>);
 
@@ -214,7 +213,7 @@ impl Values {
         self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| value)
     }
 
-    /// The whole number of a key.
+    /// Integer of a key.
     pub fn int(&self, key: Key) -> Option<i32> {
         match self.value(key)? {
             Value::Int(number) => Some(*number),
@@ -230,13 +229,13 @@ impl Values {
         }
     }
 
-    /// The numbers of four axes, if all are there: a position, or a state of each axis.
+    /// Numbers of all four axes: a position, or a state per axis.
     pub fn axes(&self) -> Option<[i32; 4]> {
         let [first, second, third, fourth] = Key::AXES.map(|key| self.int(key));
         Some([first?, second?, third?, fourth?])
     }
 
-    /// Sets a value; the last one counts.
+    /// Sets a value, and replaces an earlier one.
     pub fn set(&mut self, key: Key, value: impl Into<Value>) {
         let value = value.into();
         match self.0.iter_mut().find(|(known, _)| *known == key) {
@@ -245,7 +244,7 @@ impl Values {
         }
     }
 
-    /// All of them.
+    /// All items, in order.
     pub fn iter(&self) -> impl Iterator<Item = (Key, &Value)> {
         self.0.iter().map(|(key, value)| (*key, value))
     }

@@ -1,4 +1,4 @@
-//! A filter as the library runs it, where it does what jq does.
+//! Compiler and interpreter for filters, adapted where the `jaq` library differs from jq.
 
 use std::cell::RefCell;
 
@@ -11,7 +11,7 @@ use jaq_core::{Compiler, Ctx, Cv, Exn, Native, ValXs, Vars, data};
 use jaq_json::{Num, Val};
 use serde_json::{Map, Number, Value};
 
-/// What jq has and the library has not.
+/// Functions of jq that the library does not have.
 const DEFS: &str = r#"
 def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
   | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
@@ -23,36 +23,36 @@ def halt_error: halt_error(5);
 def __at($key): if isobject and ($key | isstring | not) then error("cannot index object with \($key | type)")
   else .[$key] end;
 "#;
-/// The filter, as a definition; and what its paths call their input, and what looks up a key that may be no text.
+/// Names of the filter definition, of its input in paths, and of the function for keys that may not be text.
 const FILTER: &str = "__filter";
 const INPUT: &str = "$__input";
 const AT: &str = "__at";
-/// How deep values may nest: whoever reads them again has to be able to.
+/// Limit of nesting of outputs, because JSON parsers have limits.
 const DEEPEST: usize = 120;
-/// How much of an error is told: some hold the whole input.
+/// Length limit of error texts, because some contain the whole input.
 const LONGEST: usize = 400;
 
 thread_local! {
-    /// What `halt_error` has to say.
+    /// Input of `halt_error`.
     static TOLD: RefCell<Option<Val>> = const { RefCell::new(None) };
 }
 
-/// Keeps the input of `halt_error`, and makes nothing.
+/// Stores the input of `halt_error`; has no output.
 fn tell(cv: Cv<'_, data::JustLut<Val>>) -> ValXs<'_, Val> {
     TOLD.set(Some(cv.1));
     Box::new(std::iter::empty())
 }
 
-/// Why a filter ends before its end.
+/// Reason for an early end of a filter.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// It has failed.
+    /// An error.
     Failed(String),
-    /// It has ended itself, with this exit code.
+    /// `halt` or `halt_error`.
     Halted {
-        /// 5 unless it says another.
+        /// Exit code; default 5.
         exit: u8,
-        /// What it has to say.
+        /// Text to print.
         text: String,
     },
 }
@@ -67,7 +67,7 @@ impl From<String> for Stop {
 pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
 
 impl Program {
-    /// Compiles a filter, or says what is wrong with it.
+    /// Compiles a filter. The error is a text.
     pub fn new(text: &str) -> Result<Self, String> {
         let ours = parse(DEFS, |parser| parser.defs()).ok_or("the definitions do not parse")?;
         let body = parse(text, |parser| parser.term()).ok_or("it does not parse")?;
@@ -86,7 +86,7 @@ impl Program {
         Ok(Self(program))
     }
 
-    /// Hands over every value that the filter makes of `input`, until `take` has enough or something is wrong.
+    /// Passes every output to `take` until it returns `false`, or until an error.
     pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), Stop> {
         TOLD.set(None);
         let context = Ctx::<data::JustLut<Val>>::new(&self.0.lut, Vars::new([]));
@@ -96,7 +96,7 @@ impl Program {
                 Err(error) => {
                     return match error.get_err() {
                         Ok(error) => Err(Stop::Failed(shortened(&said(error)))),
-                        // Nothing else leaves a filter than `halt`.
+                        // Only `halt` produces this.
                         Err(halt) => halted(halt),
                     };
                 }
@@ -109,7 +109,7 @@ impl Program {
     }
 }
 
-/// How a filter ended that ended itself: `halt` is the end, `halt_error` says something and has an exit code.
+/// Result of `halt` and `halt_error`.
 fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
     let code = halt.get_halt().unwrap_or(5);
     let text = match TOLD.take() {
@@ -118,16 +118,16 @@ fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
         Some(Val::TStr(text)) => String::from_utf8_lossy(&text).into_owned(),
         Some(other) => format!("{}\n", json(&other, 0).map_err(Stop::Failed)?),
     };
-    // As the system takes it: the lowest eight bits.
+    // The operating system uses the lowest eight bits.
     Err(Stop::Halted { exit: code.to_le_bytes()[0], text })
 }
 
-/// A definition that lives no longer than others beside it.
+/// Shortens the lifetime of a definition.
 fn as_short_as<'s>(def: Def<&'static str>) -> Def<&'s str> {
     def
 }
 
-/// An error in the words of jq; one that the filter itself raises may be any value.
+/// Text of an error, in the words of jq. An error raised by the filter can be any value.
 fn said(error: jaq_core::Error<Val>) -> String {
     match error.into_val() {
         Val::TStr(text) => in_words_of_jq(&String::from_utf8_lossy(&text)),
@@ -135,7 +135,7 @@ fn said(error: jaq_core::Error<Val>) -> String {
     }
 }
 
-/// The commonest errors of the library as jq puts them.
+/// Converts the most common error texts of the library to those of jq.
 fn in_words_of_jq(text: &str) -> String {
     let kind = |value: &str| match value.as_bytes().first() {
         Some(b'{') => "object",
@@ -162,7 +162,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// A value as JSON, numbers that JSON has not as jq writes them.
+/// Converts a value to JSON. Numbers that JSON does not support are written as in jq.
 fn json(value: &Val, depth: usize) -> Result<Value, String> {
     if depth > DEEPEST {
         return Err(format!("it makes a value that nests deeper than {DEEPEST} levels"));
@@ -196,7 +196,7 @@ fn number(number: &Num) -> Value {
     Number::from_f64(float.clamp(f64::MIN, f64::MAX)).map_or(Value::Null, Value::Number)
 }
 
-/// A number as it was written, as exactly as JSON numbers are kept here.
+/// A number with the exactness of JSON numbers here.
 fn long(text: &str) -> Value {
     let whole = text.parse::<u64>().map(Number::from).or_else(|_| text.parse::<i64>().map(Number::from));
     match whole {
@@ -205,8 +205,8 @@ fn long(text: &str) -> Value {
     }
 }
 
-/// The same filter, in which a key that is no text is an error at an object, as in jq. The library has objects with keys
-/// of any kind, and finds nothing there.
+/// Rewrites a filter so that a key that is not text is an error on an object, as in jq. The library supports such keys
+/// and finds nothing.
 fn as_in_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
     let one = |term: Box<Term<&'s str>>| Box::new(as_in_jq(*term));
     let all = |terms: Vec<Term<&'s str>>| terms.into_iter().map(as_in_jq).collect();
@@ -260,8 +260,8 @@ fn pattern_in_jq(pattern: Pattern<&str>) -> Pattern<&str> {
     }
 }
 
-/// `FROM[KEY]…` with a key that may be no text: `. as $__input | FROM | __at($__input | KEY) | …`, because keys are
-/// computed from what the whole path is given.
+/// Rewrites `FROM[KEY]…` with a key that may not be text: `. as $__input | FROM | __at($__input | KEY) | …`. The keys
+/// are evaluated on the input of the whole path.
 fn path<'s>(from: Term<&'s str>, parts: Vec<(Part<Term<&'s str>>, Opt)>) -> Term<&'s str> {
     let is_text = |(part, _): &(Part<Term<_>>, _)| !matches!(part, Part::Index(key) if !matches!(key, Term::Str(..)));
     if parts.iter().all(is_text) {
@@ -376,7 +376,7 @@ mod tests {
         assert_eq!(made("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
     }
 
-    /// What jq makes of the same filter, where it is installed: values, and how it ends.
+    /// Compares with jq, if it is installed: outputs and exit code.
     #[test]
     fn filters_do_what_jq_does() {
         use std::io::Write as _;
@@ -445,7 +445,7 @@ mod tests {
             let said = String::from_utf8(theirs.stderr).unwrap();
             let (exit, text) = match stop {
                 None => (0, String::new()),
-                // Later versions of jq have other words for some of them.
+                // Newer versions of jq have other texts.
                 Some(Stop::Failed(_)) => (5, said.clone()),
                 Some(Stop::Halted { exit, text }) => (i32::from(exit), text),
             };

@@ -1,6 +1,6 @@
-//! A process of its own for filters: a filter that calls itself for ever, or fills all memory, ends there and harms
-//! nothing else. It is this program again, which reads requests on stdin, a line each, and answers in lines. It ends with
-//! whoever started it, whatever it is doing.
+//! Worker process for filters. An endless filter, or one that uses all memory, harms only this process. It is another
+//! instance of this program, which reads requests and writes answers line by line. It ends together with its parent,
+//! even during a filter.
 
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -16,60 +16,59 @@ use super::program::{Program, Stop};
 use crate::failure::{Kind, end};
 use crate::files::this_program;
 
-/// The only argument of such a process.
+/// The only argument of a worker.
 const WORD: &str = "--filter-worker";
-/// Memory that it may have, where the system can see to it.
+/// Memory limit, on systems that support it.
 #[cfg(unix)]
 const MEMORY: u64 = 1 << 30;
-/// Room for filters that call themselves.
+/// Stack size for recursive filters.
 const STACK: usize = 64 << 20;
-/// Longest value in bytes.
+/// Size limit of a value in bytes.
 const LONGEST: u64 = 256 << 20;
-/// Filters that are kept compiled.
+/// Number of compiled filters kept.
 const KEPT: usize = 64;
 
-/// What a filter is for.
+/// A request.
 #[derive(Debug, Serialize)]
 struct Asked<'a> {
     filter: &'a str,
-    /// What it is run on; nothing if it is only compiled.
+    /// Input of the filter; `None` to only compile it.
     input: Option<[&'a Value; 1]>,
 }
 
-/// The same, as the process reads it.
+/// A request, as read by the worker.
 #[derive(Deserialize)]
 struct Heard {
     filter: String,
     input: Option<[jaq_json::Val; 1]>,
 }
 
-/// An answer.
 #[derive(Debug, Serialize, Deserialize)]
 enum Answer {
-    /// A value that the filter makes.
+    /// An output of the filter.
     Value(Value),
-    /// The last answer: there are no more.
+    /// Last answer: no more outputs.
     Done,
-    /// The last answer: the filter does not compile.
+    /// Last answer: the filter does not compile.
     Mistake(String),
-    /// The last answer: it has failed.
+    /// Last answer: the filter failed.
     Failed(String),
-    /// The last answer: it has ended itself.
+    /// Last answer: the filter halted.
     Halted(u8, String),
 }
 
-/// Why there is no answer, or not all.
+/// Reason for a missing or incomplete result.
 #[derive(Debug)]
 pub enum FilterError {
     /// The filter does not compile.
     Mistake(String),
-    /// It has failed.
+    /// The filter failed.
     Failed(String),
-    /// It has ended itself, with this exit code, and has this to say.
+    /// The filter halted with an exit code and a text.
     Halted {
-        /// 5 unless it says another.
+        /// Exit code; default 5.
         exit: u8,
-        /// A text as it is; anything else as JSON, in a line.
+        /// Text to print; other values as one line of JSON.
         text: String,
     },
 }
@@ -83,7 +82,6 @@ impl From<Stop> for FilterError {
     }
 }
 
-/// The process of this one.
 struct Worker {
     child: Child,
     requests: ChildStdin,
@@ -92,8 +90,8 @@ struct Worker {
 
 static WORKER: Mutex<Option<Worker>> = Mutex::new(None);
 
-/// Compiles a filter, and hands over every value that it makes of the input, if there is one, as it comes. `take` says
-/// whether more is wanted.
+/// Compiles a filter, and passes its outputs for the input, if there is one, to `take`. `take` returns whether to
+/// continue.
 pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let asked = Asked { filter, input: input.map(|input| [input]) };
     let failed = |error: &io::Error| FilterError::Failed(format!("it cannot be run: {}", crate::failure::plain(error)));
@@ -107,7 +105,7 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
         match living.answer() {
             Ok(Some(Answer::Value(value))) => {
                 if !take(value) {
-                    // What it goes on to say is nobody's: this one ends.
+                    // This worker ends, because its remaining outputs are not needed.
                     return Ok(());
                 }
             }
@@ -132,7 +130,7 @@ impl Worker {
     fn start() -> io::Result<Self> {
         let mut command = Command::new(this_program()?);
         command.arg(WORD).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        // The keys of the terminal are not for it.
+        // Its own process group, so that Ctrl-C does not reach it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
@@ -142,7 +140,7 @@ impl Worker {
         Ok(Self { child, requests, answers })
     }
 
-    /// The same, unless it has ended.
+    /// The worker, if it is still alive.
     fn living(mut self) -> Option<Self> {
         matches!(self.child.try_wait(), Ok(None)).then_some(self)
     }
@@ -151,13 +149,13 @@ impl Worker {
         let mut line = serde_json::to_vec(asked)?;
         line.push(b'\n');
         match self.requests.write_all(&line).and_then(|()| self.requests.flush()) {
-            // It ended on the way; its answer says so.
+            // The worker has ended; the next read reports that.
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             written => written,
         }
     }
 
-    /// The next answer; nothing if the process has ended.
+    /// Next answer; `None` if the worker has ended.
     fn answer(&mut self) -> io::Result<Option<Answer>> {
         let mut line = Vec::new();
         (&mut self.answers).take(LONGEST).read_until(b'\n', &mut line)?;
@@ -173,13 +171,13 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // It has ended, or nobody wants what it computes.
+        // It has ended, or its outputs are not needed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Whether a command line means this process, the program's name included.
+/// Whether the command line is that of a worker.
 pub fn is_meant(args: &[OsString]) -> bool {
     matches!(args, [_, word] if word == WORD)
 }
@@ -192,7 +190,7 @@ pub fn serve() -> Result<(), Kind> {
     let failed = |_| Kind::Local;
     computing.map_err(failed)?;
 
-    // Read here, so that the end is noticed while a filter runs.
+    // Read on this thread, so that the end of stdin is noticed while a filter runs.
     for line in BufReader::new(io::stdin()).split(b'\n') {
         if asked.send(line.map_err(failed)?).is_err() {
             break;
@@ -201,14 +199,13 @@ pub fn serve() -> Result<(), Kind> {
     end(Kind::PipeClosed)
 }
 
-/// Takes from this process what it must not have.
 #[cfg(unix)]
 fn limit() {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
     for (resource, most) in [(Resource::As, MEMORY), (Resource::Core, 0)] {
         let most = getrlimit(resource).maximum.map_or(most, |maximum| maximum.min(most));
-        // Where the system knows no such limit, there is none.
+        // On systems without such a limit, there is none.
         let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
     }
 }

@@ -1,50 +1,51 @@
-//! The address of a controller without the many ways to write it: what sessions, read-only robots and backups go by.
+//! Normalized address of a controller, independent of the form of its URL. It is used for sessions, read-only robots
+//! and backups.
 
 use std::net::{IpAddr, Ipv4Addr, ToSocketAddrs as _};
 use std::path::Path;
 
 use super::{Place, Target};
 
-/// Where a controller is, however its URL is written.
+/// Address of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Address {
-    /// On the network. The transport is part of it: two servers may share a number.
+    /// On the network. The transport is part of it, because two servers can have the same port number.
     Network {
-        /// `udp`, `tcp`, or that of a fieldbus.
+        /// Scheme: `udp`, `tcp`, or that of a fieldbus.
         scheme: &'static str,
-        /// Name or address, in its plainest form.
+        /// Normalized host.
         host: Host,
         /// Port.
         port: u16,
     },
-    /// A device of this machine.
+    /// A device of this computer.
     Device(String),
-    /// One of several controllers on a line.
+    /// A station on a shared line.
     Station {
-        /// The adapter that leads to the line.
+        /// Adapter of the line.
         line: Box<Self>,
-        /// Its number there.
+        /// Station number.
         number: u8,
     },
-    /// A device on a network where each has names of several kinds.
+    /// A device on a network with several kinds of names.
     Named {
-        /// The network: the fieldbus, and the interface that leads to it.
+        /// Fieldbus and interface.
         network: String,
-        /// What the name is: two names of one kind are two devices, of two kinds only the network can tell.
+        /// Kind of the name. Two names of one kind are two devices. For two kinds, only the network can decide.
         kind: &'static str,
         /// The name.
         name: String,
     },
-    /// A simulator of this process; two with the same parameters are not the same.
+    /// A simulator of this process; two with the same options are different.
     Simulated,
 }
 
 /// A host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Host {
-    /// An address.
+    /// An IP address.
     Address(IpAddr),
-    /// A name that only a resolver knows.
+    /// A host name.
     Name(String),
 }
 
@@ -53,13 +54,13 @@ impl Host {
         let name = text.trim_end_matches('.').to_ascii_lowercase();
         match name.parse::<IpAddr>() {
             Ok(address) => Self::Address(address.to_canonical()),
-            // What it is everywhere (RFC 6761).
+            // Loopback on every system (RFC 6761).
             Err(_) if name == "localhost" => Self::Address(Ipv4Addr::LOCALHOST.into()),
             Err(_) => Self::Name(name),
         }
     }
 
-    /// Whether both lead to one machine. Names are looked up only where that can tell.
+    /// Whether both are the same host. Names are resolved only if necessary.
     fn meets(&self, other: &Self, port: u16) -> bool {
         if let (Self::Address(one), Self::Address(other)) = (self, other) {
             return one == other;
@@ -82,7 +83,7 @@ impl Host {
 }
 
 impl Address {
-    /// Where the target is.
+    /// Address of a target.
     pub fn of(target: &Target) -> Self {
         match &target.place {
             Place::Udp(udp) => Self::network("udp", &udp.host, udp.port),
@@ -98,20 +99,20 @@ impl Address {
         Self::Network { scheme, host: Host::new(host), port }
     }
 
-    /// A device of this machine.
+    /// A device of this computer.
     pub(super) fn device(path: &str) -> Self {
-        // Links such as those of /dev/serial/by-id lead to the device; a port that is not there has its own name.
+        // Links such as those in /dev/serial/by-id are resolved. A missing port keeps its name.
         let real = std::fs::canonicalize(Path::new(path));
         let path = real.map_or_else(|_| path.to_owned(), |path| path.display().to_string());
         Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
     }
 
-    /// A station on a line that this leads to.
+    /// A station on the line of this address.
     pub(super) fn station(self, number: u8) -> Self {
         Self::Station { line: Box::new(self), number }
     }
 
-    /// Whether both are one controller.
+    /// Whether both are the same controller.
     pub fn meets(&self, other: &Self) -> bool {
         match (self, other) {
             (
@@ -127,7 +128,7 @@ impl Address {
         }
     }
 
-    /// Whether both may be one controller although they do not meet: only their network can tell.
+    /// Whether both can be the same controller although they do not meet; only their network can decide.
     pub fn may_meet(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Named { network, kind, .. }, Self::Named { network: other_network, kind: other_kind, .. }) => {
@@ -137,7 +138,7 @@ impl Address {
         }
     }
 
-    /// In words that are the same for every spelling: `udp 192.168.1.31 10040`. `None` for a simulator.
+    /// Normalized text, the same for every form of the URL: `udp 192.168.1.31 10040`. `None` for a simulator.
     pub fn key(&self) -> Option<String> {
         match self {
             Self::Network { scheme, host: Host::Address(address), port } => Some(format!("{scheme} {address} {port}")),

@@ -1,4 +1,4 @@
-//! Addresses without a scheme, where the family tells what is meant.
+//! Addresses without a scheme, which the family determines.
 
 use std::fmt;
 use std::net::{IpAddr, SocketAddr};
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use super::{Family, Target};
 use crate::failure::Failure;
 
-/// What can be given as a target: a URL, or an address of the network or a serial port, whose scheme the family tells.
+/// A given target: a URL, or a network address or serial port whose scheme depends on the family.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Given {
     /// A URL.
@@ -17,10 +17,10 @@ pub enum Given {
 }
 
 impl Given {
-    /// The target for a family.
+    /// Target for a family.
     ///
     /// # Errors
-    /// The family is not known, or not reached so.
+    /// The family is unknown, or does not use this kind of address.
     pub fn of(&self, family: Option<Family>) -> Result<Target, Failure> {
         let bare = match self {
             Self::Url(target) => return Ok(target.clone()),
@@ -65,7 +65,7 @@ impl Given {
         url.parse()
     }
 
-    /// Whether it is an address without a scheme.
+    /// Whether the text is an address without a scheme.
     pub fn is_bare(text: &str) -> bool {
         is_serial(text) || text.parse::<IpAddr>().is_ok() || text.parse::<SocketAddr>().is_ok()
     }

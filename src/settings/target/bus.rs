@@ -1,5 +1,5 @@
-//! URLs of the fieldbuses that a yrcx may be on. Each fieldbus has a file here and a line for each of its schemes in
-//! [`BUSES`]; `command/yrcx/buses.rs` has what is done over it.
+//! Fieldbus URLs for yrcx. Each fieldbus has a file here and a line per scheme in [`BUSES`]. `command/yrcx/buses.rs`
+//! has its commands.
 
 use std::any::Any;
 use std::fmt;
@@ -10,10 +10,10 @@ use std::time::Duration;
 use super::profinet;
 use super::{Address, Query, devicenet, eip, profibus};
 
-/// The one that hints name first.
+/// Scheme that hints name first.
 pub const USUAL: Scheme = eip::SCHEME;
 
-/// All of them.
+/// All schemes.
 pub static BUSES: &[Scheme] = &[
     eip::SCHEME,
     devicenet::SLCAN,
@@ -23,55 +23,55 @@ pub static BUSES: &[Scheme] = &[
     profinet::SCHEME,
 ];
 
-/// What `bus=` of a `sim:` URL may be, with the fieldbus that it names.
+/// Values of `bus=` in a `sim:` URL, with their fieldbus.
 pub fn simulators() -> impl Iterator<Item = (&'static str, &'static str)> {
     BUSES.iter().flat_map(|scheme| scheme.simulators.iter().map(|name| (*name, scheme.bus)))
 }
 
-/// A kind of URL that leads to a yrcx over a fieldbus.
+/// A URL scheme for yrcx over a fieldbus.
 #[derive(Debug, Clone, Copy)]
 pub struct Scheme {
-    /// What stands before the colon.
+    /// Name before the colon.
     pub name: &'static str,
-    /// The fieldbus: the word of its commands (`armctl yrcx eip`), and the name of its folders.
+    /// Name of the fieldbus: its command word (`armctl yrcx eip`) and its folders.
     pub bus: &'static str,
-    /// What `bus=` of a `sim:` URL may be to have a controller on it simulated.
+    /// Values of `bus=` in a `sim:` URL for this fieldbus.
     pub simulators: &'static [&'static str],
-    /// The shortest URL there is, for hints: `eip://HOST`.
+    /// Shortest URL for hints: `eip://HOST`.
     pub shortest: &'static str,
-    /// What URLs look like, with the options that matter most.
+    /// Form of the URL with the most important options.
     pub form: &'static str,
-    /// What comes after it, for completion.
+    /// Description for completion.
     pub about: &'static str,
-    /// Reads what stands between the scheme and the question mark, and takes the options that it knows.
+    /// Parses the part between the scheme and the question mark, and takes its options from the query.
     pub(super) parse: fn(&str, &mut Query) -> Result<Place, String>,
 }
 
-/// Where a URL of a fieldbus leads, and what else it says.
+/// Parsed part of a fieldbus URL.
 pub struct Place {
-    /// Which controller it is.
+    /// Address of the controller.
     pub address: Address,
-    /// A short name of it, for messages: a host, a port, a station.
+    /// Short name for messages: host, port or station.
     pub short_name: String,
-    /// Whether a connection is to command the controller; else it only sees.
+    /// Whether a connection controls the robot; if not, it only reads.
     pub is_owner: bool,
-    /// All that the URL says, for whoever knows the bus.
+    /// All options, in the type of the fieldbus.
     pub options: Arc<dyn Any + Send + Sync>,
 }
 
 /// A controller on a fieldbus.
 #[derive(Clone)]
 pub struct Bus {
-    /// The kind of URL.
+    /// URL scheme.
     pub scheme: &'static Scheme,
-    /// Whether a connection is to command the controller; else it only sees.
+    /// Whether a connection controls the robot; if not, it only reads.
     pub is_owner: bool,
-    /// Whoever only looks now and then wants no images in shorter intervals than this.
+    /// Minimum interval of images for a caller that reads rarely.
     pub calm: Duration,
     address: Address,
     short_name: String,
     options: Arc<dyn Any + Send + Sync>,
-    /// What was parsed.
+    /// Text of the URL.
     text: String,
 }
 
@@ -82,17 +82,17 @@ impl Bus {
         Ok(Self { scheme, is_owner, calm: Duration::ZERO, address, short_name, options, text })
     }
 
-    /// Which controller it is.
+    /// Address of the controller.
     pub fn address(&self) -> &Address {
         &self.address
     }
 
-    /// A short name of it, for messages.
+    /// Short name for messages.
     pub fn short_name(&self) -> &str {
         &self.short_name
     }
 
-    /// What the URL says, in the type of its scheme.
+    /// Options in the type of the fieldbus.
     pub fn options<T: Any>(&self) -> Option<&T> {
         self.options.downcast_ref()
     }

@@ -1,4 +1,4 @@
-//! `slcan:` and `can:` URLs: a slave of DeviceNet behind a CAN adapter.
+//! `slcan:` and `can:` URLs: a DeviceNet slave behind a CAN adapter.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use crate::transport::devicenet::network;
 use crate::transport::devicenet::settings::{CYCLES, Images, RATES};
 use crate::transport::devicenet::wire::Mac;
 
-/// The fieldbus of both schemes.
+/// Fieldbus of both schemes.
 pub const BUS: &str = "devicenet";
 
-/// An adapter that speaks SLCAN.
+/// An SLCAN adapter.
 pub const SLCAN: Scheme = Scheme {
     name: "slcan",
     bus: BUS,
@@ -26,7 +26,7 @@ pub const SLCAN: Scheme = Scheme {
     parse: |place, query| node(slcan(place, query)?, query),
 };
 
-/// An interface of Linux.
+/// A Linux CAN interface.
 pub const CAN: Scheme = Scheme {
     name: "can",
     bus: BUS,
@@ -45,24 +45,24 @@ pub const CAN: Scheme = Scheme {
     },
 };
 
-/// A controller as a slave of DeviceNet.
+/// A controller as a DeviceNet slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceNet {
-    /// The adapter.
+    /// Adapter.
     pub place: network::Place,
-    /// The controller's MAC ID.
+    /// MAC ID of the controller.
     pub mac: Mac,
-    /// The MAC ID of this master.
+    /// MAC ID of this master.
     pub master: Mac,
-    /// The bit rate of the bus. An interface of Linux has it from its administrator.
+    /// Bit rate of the bus. For a Linux interface, the administrator sets it.
     pub bitrate: Bitrate,
-    /// From one poll to the next.
+    /// Interval of polls.
     pub cycle: Duration,
-    /// The expected packet rate, after four of which in silence the controller stops.
+    /// Expected packet rate. After four times this without a poll, the controller stops.
     pub rate: Duration,
 }
 
-/// Speed of a real serial line to an adapter; USB adapters do not look at it.
+/// Baud rate of a real serial line to an adapter; USB adapters ignore it.
 const BAUD: u32 = 115_200;
 
 fn slcan(place: &str, query: &mut Query) -> Result<network::Place, String> {
@@ -77,7 +77,7 @@ fn slcan(place: &str, query: &mut Query) -> Result<network::Place, String> {
     Ok(network::Place::Tcp { host, port: port("port", own_port)? })
 }
 
-/// What both schemes have in common.
+/// Parses the options that both schemes have.
 fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
     let mac = query.take("mac").ok_or("mac is missing: the controller's MAC ID, as in mac=5")?;
     let mac: Mac = mac.parse().map_err(|error| format!("mac: {error}"))?;

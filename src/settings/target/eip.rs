@@ -1,5 +1,5 @@
-//! `eip://` URLs: a class 1 connection of EtherNet/IP. No document of the maker tells its numbers, so that they are
-//! settings; the usual ones are those of an older controller of the same maker.
+//! `eip://` URLs: a class 1 connection of EtherNet/IP. The manufacturer has not published its numbers, so they are
+//! options. The defaults are those of an older controller of the same manufacturer.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -28,54 +28,54 @@ pub const SCHEME: Scheme = Scheme {
     },
 };
 
-/// A controller as an adapter of EtherNet/IP.
+/// A controller as an EtherNet/IP adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Eip {
-    /// Name or IPv4 address.
+    /// Host name or IPv4 address.
     pub host: String,
     /// TCP port.
     pub port: u16,
-    /// What is wanted of the controller.
+    /// Connection type.
     pub role: EipRole,
-    /// The assembly that the controller sends.
+    /// Produced assembly of the controller.
     pub input: u32,
-    /// The assembly that it takes; for those who only listen, the one for heartbeats.
+    /// Consumed assembly of the controller; for connections that only listen, the heartbeat instance.
     pub output: u32,
-    /// The configuration assembly, for controllers that want one named.
+    /// Configuration assembly, for controllers that need one.
     pub configuration: Option<u32>,
-    /// Bytes of the assembly that it sends; the image stands at its beginning.
+    /// Size of the produced assembly in bytes. The image is at its start.
     pub input_size: u16,
-    /// Bytes of the assembly that it takes, likewise.
+    /// Size of the consumed assembly in bytes. The image is at its start.
     pub output_size: u16,
-    /// The interval between packets, both ways.
+    /// Packet interval in both directions.
     pub rpi: Duration,
-    /// Intervals without a packet after which the connection is lost.
+    /// Timeout multiplier: intervals without a packet before the connection is lost.
     pub multiplier: u32,
-    /// Whether it sends to a group.
+    /// Whether the controller sends to a multicast group.
     pub multicast: bool,
-    /// Which device it must be.
+    /// Electronic key.
     pub key: Option<EipKey>,
 }
 
-/// What is wanted of a controller.
+/// Connection type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EipRole {
-    /// To command it, as the only one.
+    /// Control, as the only originator.
     Owner,
-    /// To see what it shows.
+    /// Read the image.
     InputOnly,
-    /// To see what it shows another master.
+    /// Read the image that another originator has requested.
     ListenOnly,
 }
 
-/// A device: its vendor, its kind, the product and the revision; 0 stands for any.
+/// Electronic key: vendor, device type, product and revision; 0 means any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct EipKey {
-    /// Number of the vendor.
+    /// Vendor id.
     pub vendor: u16,
-    /// Number of the kind of device.
+    /// Device type.
     pub device_type: u16,
-    /// Number of the product.
+    /// Product code.
     pub product: u16,
     /// Major revision.
     pub major: u8,
@@ -83,15 +83,14 @@ pub struct EipKey {
     pub minor: u8,
 }
 
-/// TCP port of EtherNet/IP.
+/// Default TCP port.
 const PORT: u16 = 44818;
-/// Bytes of an image (chapter 1, section 1: 24 words), and the most that a datagram has room for.
+/// Valid sizes: at least an image (chapter 1, section 1: 24 words), at most a datagram.
 const SIZES: RangeInclusive<u16> = 48..=65_000;
-/// Intervals that a connection can have.
 const RPIS: RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
 const RPI: Duration = Duration::from_millis(20);
 
-/// Reads what stands after `eip:`.
+/// Parses the part after `eip:`.
 fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
     let (host, own_port) = host_and_port(authority("eip", place)?)?;
     if host.contains(':') {
@@ -152,7 +151,7 @@ fn rpi(query: &mut Query) -> Result<Duration, String> {
     }
 }
 
-/// `VENDOR:TYPE:PRODUCT[:MAJOR.MINOR]`.
+/// Parses `VENDOR:TYPE:PRODUCT[:MAJOR.MINOR]`.
 fn key(text: &str) -> Result<EipKey, String> {
     let wrong = || format!("key is VENDOR:TYPE:PRODUCT[:MAJOR.MINOR] as in 636:43:5:1.1, not '{text}'");
     let (key, revision) = match text.split(':').collect::<Vec<_>>()[..] {
@@ -165,7 +164,7 @@ fn key(text: &str) -> Result<EipKey, String> {
         None => (0, 0),
         Some(revision) => {
             let (major, minor) = revision.split_once('.').ok_or_else(wrong)?;
-            // The highest bit of the major revision asks for a compatible one, which is something else.
+            // The highest bit of the major revision is the compatibility flag.
             let major = major.parse().ok().filter(|major| *major < 0x80).ok_or_else(wrong)?;
             (major, minor.parse().map_err(|_| wrong())?)
         }

@@ -1,5 +1,5 @@
-//! `profibus://` URLs: one slave of PROFIBUS DP at the end of an adapter. The maker tells neither ident number nor
-//! configuration of its unit: what a URL does not say, the slave is asked for.
+//! `profibus://` URLs: a PROFIBUS DP slave behind an adapter. The manufacturer has not published ident number and
+//! configuration of its unit. What the URL omits is read from the slave.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -9,11 +9,10 @@ use super::bus::{Place, Scheme};
 use super::{Address, Query, choice};
 use crate::settings::duration;
 
-/// The address that this program has unless told otherwise: the usual one of a master that is alone.
+/// Default address of this program: the usual one of a single master.
 const MASTER: u8 = 2;
-/// The highest address of a station.
 const MAX_STATION: u8 = 125;
-/// Speeds of the bus that adapters have.
+/// Bit rates that adapters support.
 const RATES: [(&str, u32); 7] = [
     ("500k", 500_000),
     ("9.6k", 9_600),
@@ -23,7 +22,7 @@ const RATES: [(&str, u32); 7] = [
     ("187.5k", 187_500),
     ("1.5M", 1_500_000),
 ];
-/// Speeds of the bus that are too fast for adapters.
+/// Bit rates of the bus that are too fast for adapters.
 const TOO_FAST: [&str; 3] = ["3M", "6M", "12M"];
 
 /// The scheme.
@@ -37,7 +36,7 @@ pub const SCHEME: Scheme = Scheme {
     parse: |place, query| {
         let profibus = parse(place, query)?;
         let address = match Address::device(&profibus.port) {
-            // Several stations share a line.
+            // Several stations can share a line.
             Address::Device(port) => Address::Device(format!("{port} station {}", profibus.station)),
             other => other,
         };
@@ -50,42 +49,42 @@ pub const SCHEME: Scheme = Scheme {
     },
 };
 
-/// A controller as a slave of PROFIBUS DP.
+/// A controller as a PROFIBUS DP slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Profibus {
     /// The adapter: `/dev/ttyUSB0`, `COM3`.
     pub port: String,
-    /// Address of the slave.
+    /// Station address of the slave.
     pub station: u8,
     /// Address of this program.
     pub master: u8,
-    /// Bits a second.
+    /// Bits per second.
     pub baud: u32,
-    /// Whether it is to command; else it only hears what another master exchanges.
+    /// Whether the connection controls the robot; if not, it only listens to another master.
     pub is_owner: bool,
-    /// How long to wait for the beginning of an answer.
+    /// Time limit for the start of an answer.
     pub slot: Option<Duration>,
-    /// How often a request is repeated.
+    /// Number of repetitions of a request.
     pub retries: Option<u8>,
     /// Time between two exchanges.
     pub cycle: Option<Duration>,
-    /// How long the slave waits.
+    /// Watchdog time of the slave.
     pub watchdog: Option<Duration>,
-    /// Ident number that the slave must have.
+    /// Expected ident number.
     pub ident: Option<u16>,
     /// Identifier bytes.
     pub configuration: Option<Vec<u8>>,
     /// User parameters.
     pub parameters: Option<Vec<u8>>,
-    /// The file of the maker, and the module in it.
+    /// GSD file.
     pub gsd: Option<PathBuf>,
-    /// The module in it, where several fit.
+    /// Module of the GSD file, if several fit.
     pub module: Option<String>,
-    /// Whether the words of commands stand with their high byte first.
+    /// Whether command words have their high byte first.
     pub is_big_endian: bool,
 }
 
-/// Reads what stands after `profibus:`.
+/// Parses the part after `profibus:`.
 fn parse(place: &str, query: &mut Query) -> Result<Profibus, String> {
     let port = place.strip_prefix("//").ok_or("two slashes are missing after profibus:")?;
     if port.is_empty() || port == "/" {
@@ -122,7 +121,7 @@ fn address(name: &str, text: &str) -> Result<u8, String> {
     address.ok_or_else(|| format!("{name} is a number from 0 to {MAX_STATION}, not '{text}'"))
 }
 
-/// `500k`, or all digits.
+/// Parses `500k`, or a number.
 fn baud(text: &str) -> Result<u32, String> {
     if TOO_FAST.contains(&text) {
         return Err(format!("baud: {text} is too fast for an adapter; set the bus to 1.5M or less"));
@@ -151,7 +150,7 @@ fn ident(text: &str) -> Result<u16, String> {
     ident.ok_or_else(|| format!("ident has up to four hexadecimal digits as in 0x1234, not '{text}'"))
 }
 
-/// `C0D7D7`, or with points or colons between.
+/// Parses `C0D7D7`, optionally with dots or colons.
 fn bytes(name: &str, text: &str) -> Result<Vec<u8>, String> {
     let wrong = || format!("{name} is bytes in hexadecimal as in C0D7D7, not '{text}'");
     let digits: Vec<char> = text.chars().filter(|character| !matches!(character, '.' | ':' | ' ')).collect();

@@ -1,5 +1,5 @@
-//! `profinet://` URLs: an IO device on an Ethernet interface of this machine, by its name or by its card. The maker tells
-//! neither modules nor numbers of its unit: `layout=` or `gsdml=` does.
+//! `profinet://` URLs: an IO device on an Ethernet interface of this computer, by station name or MAC address. The
+//! manufacturer has not published modules and numbers of its unit, so `layout=` or `gsdml=` is necessary.
 
 use std::net::Ipv4Addr;
 use std::path::PathBuf;
@@ -37,33 +37,33 @@ pub const SCHEME: Scheme = Scheme {
 /// A controller as an IO device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Profinet {
-    /// Which device.
+    /// Station name or MAC address.
     pub station: Station,
-    /// The interface, as the system calls it.
+    /// Name of the interface.
     pub interface: String,
-    /// The address that the device is given, if it has another one.
+    /// IP address to assign, if the device has another one.
     pub ip: Option<IpSuite>,
-    /// Time between frames.
+    /// Cycle time.
     pub cycle: Duration,
-    /// Silence after which both ends give up.
+    /// Watchdog time of both ends.
     pub watchdog: Duration,
-    /// Its modules.
+    /// Module layout.
     pub layout: Option<Layout>,
-    /// The maker's description, which has the modules, too.
+    /// GSDML file, which also contains the modules.
     pub gsdml: Option<PathBuf>,
-    /// How a connection starts.
+    /// Startup mode.
     pub startup: Startup,
-    /// Whether the words of commands stand with their high byte first.
+    /// Whether command words have their high byte first.
     pub is_big_endian: bool,
 }
 
-/// The address of a station on the network of an interface.
+/// Address of a station on the network of an interface.
 pub fn address(interface: &str, station: &Station) -> Address {
     let (kind, name) = words(station);
     Address::Named { network: format!("profinet {interface}"), kind, name }
 }
 
-/// What a station is named by.
+/// Kind and text of a station's name.
 fn words(station: &Station) -> (&'static str, String) {
     match station {
         Station::Name(name) => ("station", name.clone()),
@@ -71,14 +71,14 @@ fn words(station: &Station) -> (&'static str, String) {
     }
 }
 
-/// Time between frames unless told otherwise.
+/// Default cycle time.
 const CYCLE: Duration = Duration::from_millis(16);
-/// Cycles of the watchdog unless told otherwise: a busy machine must not lose the robot.
+/// Default watchdog in cycles, long enough for a busy computer.
 const CYCLES: u32 = 20;
-/// Bits of the mask of an address that says none.
+/// Default prefix length of an IP address.
 const PREFIX: u32 = 24;
 
-/// Reads what stands after `profinet:`.
+/// Parses the part after `profinet:`.
 fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
     let place = authority("profinet", place)?;
     let (station, interface) = place
@@ -110,7 +110,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
     })
 }
 
-/// A name, or the address of a card.
+/// Parses a station name or MAC address.
 fn station(text: &str) -> Result<Station, String> {
     if text.is_empty() {
         return Err("the station is missing, as in profinet://STATION@eth0".to_owned());
@@ -123,23 +123,23 @@ fn station(text: &str) -> Result<Station, String> {
             Ok(Station::Mac(mac))
         };
     }
-    // Schemes and hosts may be in capitals in other URLs; a station with capitals cannot be.
+    // In a URL, upper case is accepted, but station names only have lower case.
     name(&text.to_ascii_lowercase()).map(Station::Name)
 }
 
-/// A name that a station can have.
+/// Checks a station name.
 pub fn name(text: &str) -> Result<String, String> {
     let wrong = |why| format!("'{text}' is not a name of a station: {why}{}", similar(text));
     check_name(text).map(|()| text.to_owned()).map_err(wrong)
 }
 
-/// What engineering tools make of a name that is not allowed.
+/// Suggests a valid name, in the way of engineering tools.
 fn similar(name: &str) -> String {
     let name = name.to_ascii_lowercase().replace(['_', ' '], "-");
     if check_name(&name).is_ok() { format!("; did you mean '{name}'?") } else { String::new() }
 }
 
-/// A power of two of milliseconds.
+/// Parses a cycle time: a power of two in ms.
 fn cycle(text: &str) -> Result<Duration, String> {
     let cycle = duration::parse(text).map_err(|error| format!("cycle: {error}"))?;
     if ratio(cycle).is_some() {
@@ -163,7 +163,7 @@ fn watchdog(text: &str, cycle: Duration) -> Result<Duration, String> {
     Err(format!("watchdog is a time from three cycles, {least}ms, to {most}ms, not '{text}'"))
 }
 
-/// `192.168.0.5`, or with the bits of its mask behind.
+/// Parses `192.168.0.5`, optionally with a prefix length.
 pub fn suite(text: &str) -> Result<IpSuite, String> {
     let wrong = || format!("ip is an address as in 192.168.0.5 or 192.168.0.5/24, not '{text}'");
     let (address, bits) = match text.split_once('/') {

@@ -1,4 +1,4 @@
-//! The parts of a target URL.
+//! Parsers for the parts of a target URL.
 
 use std::fmt;
 use std::net::Ipv6Addr;
@@ -6,16 +6,15 @@ use std::ops::RangeInclusive;
 
 use crate::controller::nearest::nearest;
 
-/// Speeds that ports can have.
 const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
-/// What stands between the slashes and the parameters.
+/// Part between the slashes and the query.
 pub fn authority<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
     let authority = place.strip_prefix("//").ok_or_else(|| format!("two slashes are missing after {scheme}:"))?;
     Ok(authority.strip_suffix('/').unwrap_or(authority))
 }
 
-/// One of some words, the first of which is the usual one.
+/// Takes an option with fixed values; the first is the default.
 pub fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&str, T); N]) -> Result<T, String> {
     let Some(given) = query.take(key) else { return Ok(known[0].1) };
     let found = known.iter().find(|(word, _)| *word == given);
@@ -25,7 +24,7 @@ pub fn choice<T: Copy, const N: usize>(query: &mut Query, key: &str, known: [(&s
     })
 }
 
-/// Bits a second, where they are given.
+/// Takes the baud rate, if present.
 pub fn baud(query: &mut Query) -> Result<Option<u32>, String> {
     let Some(text) = query.take("baud") else { return Ok(None) };
     match text.parse() {
@@ -61,15 +60,15 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
     Ok((host.to_owned(), port))
 }
 
-/// Whether a host is all zeros, in whatever form the system takes it: `0.0.0.0`, `0`, `0x0`, `[::]`. The system would send
-/// what is for the robot to this machine.
+/// Whether a host is all zeros in any form: `0.0.0.0`, `0`, `0x0`, `[::]`. The system would send the robot's traffic to
+/// this computer.
 fn is_unspecified(host: &str) -> bool {
     let is_zero = |part: &str| !part.is_empty() && part.trim_start_matches("0x").chars().all(|digit| digit == '0');
     host.parse::<Ipv6Addr>().is_ok_and(|address| address.to_canonical().is_unspecified())
         || host.split('.').all(is_zero)
 }
 
-/// A number of a port.
+/// Parses a port number.
 pub fn port(name: &str, text: &str) -> Result<u16, String> {
     match text.parse() {
         Ok(port) if port > 0 => Ok(port),
@@ -77,11 +76,11 @@ pub fn port(name: &str, text: &str) -> Result<u16, String> {
     }
 }
 
-/// The part of a URL after `?`.
+/// Query of a URL.
 pub struct Query {
-    /// What nobody took so far.
+    /// Options that were not taken yet.
     pairs: Vec<(String, String)>,
-    /// Every parameter that was looked for: those there are.
+    /// Options that were looked for, which are the valid ones.
     known: Vec<String>,
 }
 
@@ -92,7 +91,7 @@ impl fmt::Display for Query {
 }
 
 impl Query {
-    /// Takes it apart.
+    /// Parses a query.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut pairs: Vec<(String, String)> = Vec::new();
         for pair in text.split('&').filter(|pair| !pair.is_empty()) {
@@ -105,14 +104,14 @@ impl Query {
         Ok(Self { pairs, known: Vec::new() })
     }
 
-    /// The value of a parameter, which is then no longer there.
+    /// Removes an option and returns its value.
     pub fn take(&mut self, key: &str) -> Option<String> {
         self.known.push(key.to_owned());
         let index = self.pairs.iter().position(|(known, _)| known == key)?;
         Some(self.pairs.remove(index).1)
     }
 
-    /// What nobody took is a mistake, not decoration.
+    /// Rejects options that were not taken.
     pub fn finish(&self) -> Result<(), String> {
         let Some((key, _)) = self.pairs.first() else { return Ok(()) };
         Err(match nearest(key, self.known.iter().map(String::as_str)) {
@@ -122,7 +121,7 @@ impl Query {
     }
 }
 
-/// Text without its % escapes.
+/// Decodes percent escapes.
 pub fn percent_decoded(text: &str) -> Result<String, String> {
     let wrong = || format!("'{text}' has a damaged % escape");
     let mut bytes = Vec::with_capacity(text.len());

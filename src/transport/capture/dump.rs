@@ -1,4 +1,4 @@
-//! Telegrams of PROFIBUS as a logger on the line writes them: one after the other, as bytes or in hexadecimal.
+//! Reader for dumps of a PROFIBUS line: telegrams in sequence, as raw bytes or in hexadecimal.
 
 use std::io::{BufRead, Read as _};
 use std::time::Duration;
@@ -7,36 +7,36 @@ use super::{Carrier, Damage, Message, Summary};
 use crate::profibus::wire::{CHECKSUM, Parsed, START, Telegram};
 use crate::tap::LINKTYPE_PROFIBUS_DL;
 
-/// Longest line in hexadecimal.
+/// Longest line of a hexadecimal dump.
 const MOST_LINE: usize = 16 << 20;
-/// More than the longest telegram has: what is still no telegram then never becomes one.
+/// Longer than any telegram. Bytes that are no telegram at this length never become one.
 const MOST_TELEGRAM: usize = 512;
-/// Most noise that is kept.
+/// Limit of the noise that is kept.
 const MOST_NOISE: usize = 1 << 16;
 
-/// How a dump is written.
+/// Encoding of a dump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// Digits, with or without something between the bytes.
+    /// Hexadecimal digits, with or without separators.
     Hexadecimal,
-    /// As they travel.
+    /// Raw bytes.
     Bytes,
 }
 
 impl Form {
-    /// That of a file that begins like this, if it is a dump.
+    /// Detects the encoding from the beginning of a file; `None` if it is not a dump.
     pub fn of(beginning: &[u8]) -> Option<Self> {
         let is_digits = |byte: &u8| byte.is_ascii_hexdigit() || is_between(char::from(*byte)) || b"xX".contains(byte);
         if beginning.iter().all(is_digits) && beginning.iter().any(u8::is_ascii_hexdigit) {
             return Some(Self::Hexadecimal);
         }
-        // Tokens and acknowledges are too short to tell anything of an unknown file.
+        // Only whole frames identify a dump: tokens and short acknowledgements (one byte) also occur by chance.
         let begins = |at| matches!(Telegram::parse(&beginning[at..]), Ok(Parsed::Whole(Telegram::Frame(_), _)));
         (0..beginning.len().min(MOST_TELEGRAM)).any(begins).then_some(Self::Bytes)
     }
 }
 
-/// Reads a dump. Its telegrams are counted from 1, damaged ones and what is between them as well; they have no time.
+/// Reads a dump. Telegrams, damaged telegrams and the bytes between them are all numbered from 1. A dump has no times.
 pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_>)) -> Summary {
     let mut pieces = Pieces::default();
     let mut offset = 0;
@@ -73,7 +73,7 @@ pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_
 
 const UNREADABLE: &str = "it cannot be read any further";
 
-/// The next line; nothing at the end.
+/// Reads the next line; empty at the end of the file.
 fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
     let mut line = Vec::new();
     let most = u64::try_from(MOST_LINE).unwrap_or(u64::MAX);
@@ -84,19 +84,19 @@ fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
     }
 }
 
-/// What has been read and not handed on.
+/// Bytes that were read but not delivered yet.
 #[derive(Debug, Default)]
 struct Pieces {
     bytes: Vec<u8>,
-    /// How many of them were handed on.
+    /// Number of bytes already delivered.
     start: usize,
-    /// How many behind those begin no telegram.
+    /// Number of bytes after those that begin no telegram.
     noise: usize,
     summary: Summary,
 }
 
 impl Pieces {
-    /// Hands on what is whole, and at the end the rest.
+    /// Delivers the complete telegrams, and at the end the rest.
     fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
         loop {
             let rest = &self.bytes[self.start + self.noise..];
@@ -107,7 +107,8 @@ impl Pieces {
                 Ok(Parsed::Whole(_, len)) => len,
                 Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
                 Ok(Parsed::Part(_)) => rest.len(),
-                // All of it, or what is inside would be taken for acknowledges and tokens, which have no check.
+                // Skip the whole damaged telegram. Its content could look like acknowledgements and tokens, which have
+                // no checksum.
                 Err(error) if error.field == CHECKSUM => error.offset + 2,
                 Err(_) => {
                     self.noise += 1;
@@ -126,7 +127,7 @@ impl Pieces {
         self.start = 0;
     }
 
-    /// Hands on so many bytes as one message.
+    /// Delivers the next `len` bytes as one message.
     fn hand_on(&mut self, len: usize, each: &mut impl FnMut(&Message<'_>)) {
         if len == 0 {
             return;
@@ -139,19 +140,19 @@ impl Pieces {
     }
 }
 
-/// Whether a telegram begins anywhere in these bytes, damaged or not.
+/// Whether a telegram, damaged or not, begins anywhere in these bytes.
 pub fn holds_telegram(bytes: &[u8]) -> bool {
     (0..bytes.len()).any(|at| !matches!(Telegram::parse(&bytes[at..]), Err(error) if error.field == START))
 }
 
-/// What may stand between bytes in hexadecimal.
+/// Separators allowed between hexadecimal bytes.
 fn is_between(c: char) -> bool {
     c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')
 }
 
-/// Bytes from hexadecimal digits, as tools print them: together or apart, with `0x`, colons, commas or dashes.
+/// Parses hexadecimal digits as tools print them: together or separated, with `0x`, colons, commas or dashes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
-    /// Digits that are repeated in an error.
+    /// Most digits that an error quotes.
     const MOST: usize = 24;
 
     let mut bytes = Vec::with_capacity(text.len() / 2);
@@ -180,7 +181,7 @@ mod tests {
     fn pieces(file: &[u8]) -> (Vec<Vec<u8>>, Summary) {
         let form = Form::of(file).unwrap();
         let mut all = Vec::new();
-        // In small pieces, as a pipe may give them.
+        // Small reads, as from a pipe.
         let file = std::io::BufReader::with_capacity(5, file);
         let summary = read(file, form, |message| all.push(message.bytes.to_vec()));
         (all, summary)
@@ -198,7 +199,7 @@ mod tests {
 
     #[test]
     fn damage_stays_one_piece_and_what_follows_is_found() {
-        // A check that is wrong, with an acknowledge inside; noise; a telegram; one that is cut.
+        // A telegram with a wrong checksum and an acknowledgement inside, noise, a telegram, an incomplete telegram.
         let (all, _) = pieces(b"68 05 05 68 85 82 E5 3C 3E 00 16 FF 16 10 05 02 49 50 16 68 05 05 68 85");
         let lengths: Vec<_> = all.iter().map(Vec::len).collect();
         assert_eq!(lengths, [11, 2, 6, 5]);

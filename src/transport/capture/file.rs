@@ -1,47 +1,47 @@
-//! Packets of a pcap or pcapng file (draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng).
+//! Packet reader for pcap and pcapng files (draft-ietf-opsawg-pcap, draft-ietf-opsawg-pcapng).
 
 use std::io::Read;
 use std::time::Duration;
 
 use thiserror::Error;
 
-/// A packet, with what the file says of it.
+/// A packet with its metadata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// From 1.
+    /// Number of the packet, from 1.
     pub number: u64,
-    /// Section of a pcapng file, from 1.
+    /// Section of the pcapng file, from 1.
     pub section: usize,
-    /// Since 1970; of a packet without a time, that of the packet before.
+    /// Time since 1970. A packet without a time has the time of the packet before it.
     pub time: Duration,
     /// `LINKTYPE_…`.
     pub link_type: u16,
-    /// What was recorded of it.
+    /// The recorded bytes.
     pub bytes: &'a [u8],
-    /// There was more of it.
+    /// The packet was longer than the recorded bytes.
     pub is_cut: bool,
 }
 
-/// Where a file stops to make sense.
+/// The position where a file becomes unreadable.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{problem} at offset {offset}")]
 pub struct Damage {
-    /// From the start of the file, in bytes.
+    /// Offset from the start of the file, in bytes.
     pub offset: usize,
-    /// What is wrong there.
+    /// Description of the problem.
     pub problem: &'static str,
 }
 
-/// Why a file cannot be read as a capture.
+/// Reason why a file cannot be read as a capture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum OpenError {
-    /// Compressed by gzip or zstd.
+    /// The file is compressed by gzip or zstd.
     #[error("it is compressed")]
     Compressed,
-    /// Neither pcap nor pcapng, nor anything else that is known.
+    /// Not a pcap or pcapng file.
     #[error("it is not a pcap or pcapng file")]
     Other,
-    /// Reading has failed.
+    /// A read failed.
     #[error("it cannot be read")]
     Unreadable,
 }
@@ -49,23 +49,22 @@ pub enum OpenError {
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 const INTERFACE: u32 = 1;
-/// The packet block that came before the enhanced one.
+/// Obsolete Packet Block, which the Enhanced Packet Block replaced.
 const OLD_PACKET: u32 = 2;
 const SIMPLE_PACKET: u32 = 3;
 const ENHANCED_PACKET: u32 = 6;
-/// Options of an interface.
+/// Option codes of an Interface Description Block.
 const END_OF_OPTIONS: u16 = 0;
 const TIME_RESOLUTION: u16 = 9;
 const TIME_OFFSET: u16 = 14;
-/// Length of the header of a pcap file, and of those of its packets.
+/// Header lengths of a pcap file and of its packets.
 const FILE_HEADER: usize = 24;
 const PACKET_HEADER: usize = 16;
-/// More than any packet has; what says more is no length.
+/// Upper limit of a packet length. A larger value means a damaged file.
 const MOST: usize = 16 << 20;
-/// Interfaces of a section; each is kept.
+/// Limit of interfaces per section, because each one is kept in memory.
 const MOST_INTERFACES: usize = 1 << 16;
 
-/// Numbers in the byte order of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ByteOrder {
     Big,
@@ -93,12 +92,12 @@ impl ByteOrder {
     }
 }
 
-/// What times of an interface count.
+/// Time resolution and offset of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Clock {
-    /// In a second.
+    /// Ticks per second.
     ticks: u128,
-    /// Seconds to add.
+    /// Offset in seconds.
     offset: u64,
 }
 
@@ -106,7 +105,7 @@ impl Clock {
     const MICROS: Self = Self { ticks: 1_000_000, offset: 0 };
     const NANOS: Self = Self { ticks: 1_000_000_000, offset: 0 };
 
-    /// `resolution` is a power of ten, or with its highest bit of two; what no clock can have counts as microseconds.
+    /// `resolution` is an exponent of ten, or of two if its highest bit is set. An impossible value means microseconds.
     fn new(resolution: u8, offset: u64) -> Self {
         let exponent = u32::from(resolution & 0x7F);
         let base: u128 = if resolution & 0x80 == 0 { 10 } else { 2 };
@@ -118,48 +117,47 @@ impl Clock {
         let seconds = u64::try_from(count / self.ticks).unwrap_or(u64::MAX);
         let nanos = (count % self.ticks).saturating_mul(1_000_000_000) / self.ticks;
         let nanos = u32::try_from(nanos).unwrap_or_default().min(999_999_999);
-        // The offset is signed; in two's complement the sum is the same.
+        // The offset is signed; in two's complement, the sum is the same.
         Duration::new(seconds.wrapping_add(self.offset), nanos)
     }
 }
 
-/// What a section says of the packets of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Interface {
     link_type: u16,
-    /// Bytes of a packet that are recorded at most; 0 for all.
+    /// Snapshot length; 0 means no limit.
     most: usize,
     clock: Clock,
 }
 
-/// The kind of a file, and how far a section has got.
+/// File format, with the interfaces of the current section.
 #[derive(Debug)]
 enum Format {
     Classic(Interface),
     Blocks(Vec<Interface>),
 }
 
-/// Whether a file that begins like this says of itself that it has packets, whatever their bytes are like.
+/// Whether the beginning of a file identifies it as a packet capture.
 pub fn is_capture(beginning: &[u8]) -> bool {
     matches!(Packets::open(beginning), Ok(_) | Err(OpenError::Compressed))
 }
 
-/// What is read at a time.
+/// Bytes per read.
 const PIECE: usize = 1 << 16;
 
-/// A file, of which only as much is in memory as one packet needs.
+/// A file of which only the bytes of one packet are in memory.
 #[derive(Debug)]
 struct Window<R> {
     file: R,
     bytes: Vec<u8>,
-    /// Where the bytes that nobody is done with begin.
+    /// Start of the unread bytes.
     start: usize,
-    /// How many bytes of the file came before those.
+    /// File offset of the unread bytes.
     passed: usize,
 }
 
 impl<R: Read> Window<R> {
-    /// The bytes from here on: so many, or all there are.
+    /// Returns the next `len` bytes, or fewer at the end of the file, without consuming them.
     fn look(&mut self, len: usize) -> std::io::Result<&[u8]> {
         if self.bytes.len() - self.start < len {
             self.bytes.drain(..self.start);
@@ -172,7 +170,7 @@ impl<R: Read> Window<R> {
         Ok(&rest[..rest.len().min(len)])
     }
 
-    /// The bytes from here on that were looked at.
+    /// Bytes that `look` has loaded.
     fn seen(&self) -> &[u8] {
         &self.bytes[self.start..]
     }
@@ -183,7 +181,7 @@ impl<R: Read> Window<R> {
     }
 }
 
-/// The packets of a file, up to its end or to the damage.
+/// Iterator over the packets of a file, up to its end or to the first damage.
 #[derive(Debug)]
 pub struct Packets<R> {
     file: Window<R>,
@@ -195,7 +193,7 @@ pub struct Packets<R> {
     is_over: bool,
 }
 
-/// A packet, with where its bytes are in the record or block.
+/// A packet and the range of its bytes in the record or block.
 struct PacketSpan {
     interface: Interface,
     time: Option<Duration>,
@@ -206,14 +204,14 @@ struct PacketSpan {
 const UNREADABLE: &str = "the file cannot be read any further";
 
 impl<R: Read> Packets<R> {
-    /// Begins with a file.
+    /// Reads the header of a file.
     pub fn open(file: R) -> Result<Self, OpenError> {
         let mut file = Window { file, bytes: Vec::new(), start: 0, passed: 0 };
         let head = file.look(FILE_HEADER).map_err(|_| OpenError::Unreadable)?;
         let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(OpenError::Other)?;
         let classic = |order: ByteOrder, clock| {
             let most = order.size(head, 16)?;
-            // Above the link type, a word may say that packets end with a checksum.
+            // The upper half of this word can contain the length of a frame checksum.
             let link_type = u16::try_from(order.word(head, 20)? & 0xFFFF).ok()?;
             Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
         };
@@ -231,9 +229,9 @@ impl<R: Read> Packets<R> {
         Ok(Self { file, byte_order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
     }
 
-    /// The next packet; `None` at the end, and after damage.
+    /// Returns the next packet; `None` at the end or after damage.
     pub fn next(&mut self) -> Option<Result<Packet<'_>, Damage>> {
-        // With how long the record or block is.
+        // `len` is the length of the record or block.
         let (span, len) = loop {
             if self.is_over {
                 return None;
@@ -258,13 +256,13 @@ impl<R: Read> Packets<R> {
         let (number, section, time) = (self.number, self.section, self.time);
         let before = self.file.start;
         self.file.pass(len);
-        // What was passed stays until the next look.
+        // Consumed bytes stay in the buffer until the next `look`.
         let bytes = self.file.bytes.get(before + bytes.start..before + bytes.end).unwrap_or_default();
         let is_cut = bytes.len() < original;
         Some(Ok(Packet { number, section, time, link_type: interface.link_type, bytes, is_cut }))
     }
 
-    /// The next packet of a pcap file, and how long its record is.
+    /// Returns the next packet of a pcap file and the length of its record.
     fn record(&mut self, interface: Interface) -> Result<(PacketSpan, usize), &'static str> {
         let order = self.byte_order;
         let head = self.file.look(PACKET_HEADER).map_err(|_| UNREADABLE)?;
@@ -285,13 +283,13 @@ impl<R: Read> Packets<R> {
         Ok((PacketSpan { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
     }
 
-    /// The packet of the next block of a pcapng file, if it has one, and how long the block is.
+    /// Reads the next block of a pcapng file. Returns its packet, if it has one, and its length.
     fn block(&mut self) -> Result<(Option<PacketSpan>, usize), &'static str> {
         let short = "the file ends inside a block";
         let head = self.file.look(12).map_err(|_| UNREADABLE)?;
         let kind = self.byte_order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
-            // The same in both byte orders, which this block decides.
+            // The type of this block reads the same in both byte orders. Its magic number decides the order.
             let magic = ByteOrder::Big.word(head, 8).ok_or(short)?;
             self.byte_order = match magic {
                 BYTE_ORDER_MAGIC => ByteOrder::Big,
@@ -333,7 +331,7 @@ impl<R: Read> Packets<R> {
         Ok((None, len))
     }
 
-    /// The packet in the block of this length that was looked at.
+    /// Decodes the packet in a block of `len` bytes, which `look` has loaded.
     fn packet_of(&self, kind: u32, len: usize) -> Result<PacketSpan, &'static str> {
         let body = &self.file.seen()[8..len - 4];
         let order = self.byte_order;
@@ -345,7 +343,7 @@ impl<R: Read> Packets<R> {
         };
         let interface = number.and_then(|number| interfaces.get(number).copied());
         let interface = interface.ok_or("a packet of an interface that is not there")?;
-        // Where it begins in the body, and how much of it is there.
+        // Offset of the packet in the body, and its recorded length.
         let parts = || {
             if kind == SIMPLE_PACKET {
                 let original = order.size(body, 0)?;
@@ -361,7 +359,7 @@ impl<R: Read> Packets<R> {
     }
 }
 
-/// The interface that a block describes.
+/// Decodes an Interface Description Block.
 fn interface(order: ByteOrder, body: &[u8]) -> Option<Interface> {
     let (link_type, most) = (order.short(body, 0)?, order.size(body, 4)?);
     let (mut resolution, mut offset, mut at) = (6, 0, 8);
@@ -404,7 +402,7 @@ mod tests {
         assert_eq!(Packets::open(&[0x1F, 0x8B, 8, 0][..]).unwrap_err(), OpenError::Compressed);
     }
 
-    /// Gives a file in pieces of a few bytes, and never again.
+    /// A reader that returns a few bytes per call and cannot seek.
     struct Pieces<'a>(&'a [u8]);
 
     impl Read for Pieces<'_> {

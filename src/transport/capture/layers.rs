@@ -1,4 +1,4 @@
-//! What a packet carries: from its link type through IP to UDP, TCP, or the bytes of a serial line.
+//! Decoder for the layers of a packet: link type, IP, then UDP, TCP, or the bytes of a serial line.
 
 use std::net::{IpAddr, SocketAddr};
 use std::ops::Range;
@@ -8,7 +8,7 @@ use etherparse::{EtherType, LaxNetSlice, LaxSlicedPacket, TransportSlice};
 use crate::profinet::wire::frame::Frame;
 use crate::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
-/// What is in a packet.
+/// Content of a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PacketContent<'a> {
     /// UDP or TCP.
@@ -17,27 +17,27 @@ pub enum PacketContent<'a> {
         from: SocketAddr,
         /// Receiver.
         to: SocketAddr,
-        /// What it brings.
+        /// Payload.
         payload: Payload<'a>,
-        /// It says to be longer than it is.
+        /// The headers announce more bytes than were recorded.
         is_cut: bool,
     },
     /// Bytes of a serial line.
     Serial {
-        /// Which way.
+        /// Direction of the bytes.
         direction: Direction,
         /// The bytes.
         bytes: &'a [u8],
     },
-    /// A frame of a link with frames of its own.
+    /// A frame of a link type with its own frame format, such as CAN.
     Frame,
-    /// A part of an IP packet.
+    /// A fragment of an IP packet.
     Fragment,
     /// Anything else.
     Other,
 }
 
-/// What an IP packet brings.
+/// Payload of an IP packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Payload<'a> {
     /// UDP.
@@ -49,24 +49,25 @@ pub enum Payload<'a> {
 /// A segment of a TCP stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segment<'a> {
-    /// Number of its first byte.
+    /// Sequence number of its first byte.
     pub sequence: u32,
-    /// Opens the stream.
+    /// SYN: the segment opens the stream.
     pub opens: bool,
     /// Its bytes.
     pub bytes: &'a [u8],
 }
 
-/// Looks into a packet of a link type.
+/// Decodes a packet of a link type.
 pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     let content = match link_type {
-        // Loopback of BSD: the address family, in the byte order of the host. IP tells itself which it is.
+        // BSD loopback: 4 bytes of address family in the byte order of the host. The IP header has the version, so skip
+        // them.
         0 | 108 => packet.get(4..).and_then(ip),
         super::LINKTYPE_ETHERNET if Frame::parse(packet).is_ok() => Some(PacketContent::Frame),
         super::LINKTYPE_ETHERNET => ethernet(packet, 12..14),
-        // Raw IP, as numbered by several systems.
+        // Raw IP. Systems use different numbers.
         12 | 14 | 101 | 228 | 229 => ip(packet),
-        // Linux cooked, both versions.
+        // Linux cooked capture, versions 1 and 2.
         113 => ethernet(packet, 14..16),
         276 => of_type(packet.get(..2), packet.get(20..)),
         147 => serial(packet),
@@ -76,7 +77,7 @@ pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     content.unwrap_or(PacketContent::Other)
 }
 
-/// A serial line as [`tap`](crate::tap) records it.
+/// A serial line, as [`tap`](crate::tap) records it.
 fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     let (direction, bytes) = packet.split_first()?;
     let direction = match direction {
@@ -87,12 +88,12 @@ fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     Some(PacketContent::Serial { direction, bytes })
 }
 
-/// A frame with its type at an offset.
+/// A frame with its EtherType at `kind`.
 fn ethernet(frame: &[u8], kind: Range<usize>) -> Option<PacketContent<'_>> {
     of_type(frame.get(kind.clone()), frame.get(kind.end..))
 }
 
-/// What is behind a type, VLAN tags or not.
+/// Content after an EtherType, with or without VLAN tags.
 fn of_type<'a>(kind: Option<&[u8]>, content: Option<&'a [u8]>) -> Option<PacketContent<'a>> {
     let kind = u16::from_be_bytes(*kind?.first_chunk()?);
     transport(&LaxSlicedPacket::from_ether_type(EtherType(kind), bounded(content?)))
@@ -102,7 +103,7 @@ fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
     transport(&LaxSlicedPacket::from_ip(bounded(packet)).ok()?)
 }
 
-/// A length of 0 is left to the card to fill in, which sends no packet that is longer than any.
+/// Limits the length. An IP length of 0 is valid in a capture (the network card fills it in) and would set no limit.
 fn bounded(packet: &[u8]) -> &[u8] {
     const LONGEST: usize = 40 + 0xFFFF;
 

@@ -1,9 +1,10 @@
-//! Reads capture files: pcap and pcapng, as `tap`(super::tap), tcpdump and Wireshark write them.
+//! Reader for capture files: pcap and pcapng from `tap`(super::tap), tcpdump and Wireshark, candump logs, PROFIBUS
+//! dumps.
 //!
-//! `dump` finds the telegrams of a line that was recorded byte by byte. `file` finds packets, `layers` what they carry (by `etherparse`), `stream` puts TCP together. No bytes make any of it
-//! panic. The packets are found by a reader of our own: `pcap-file` stops at a packet with a comment that is not UTF-8 or
-//! an original length of 0, where nothing that is needed is damaged, and takes a length that no block has for the end of
-//! the file.
+//! `file` reads packets, `layers` decodes them (with `etherparse`), `stream` reassembles TCP, `dump` finds PROFIBUS
+//! telegrams. No input causes a panic. The packet reader is our own, because `pcap-file` has two faults. It stops at
+//! harmless packets: a comment that is not UTF-8, or an original length of 0. And it takes an impossible block length
+//! for the end of the file.
 
 mod dump;
 mod file;
@@ -24,64 +25,64 @@ use super::tap::Direction;
 pub use self::dump::{holds_telegram, parse_hex};
 pub use self::file::{Damage, OpenError};
 
-/// Bytes that passed, with where and when.
+/// Received bytes with their origin and time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// Of the packet that it came with, from 1, as Wireshark counts them.
+    /// Number of the packet that completed the message, from 1, as in Wireshark.
     pub number: u64,
-    /// Since 1970, as the file has it.
+    /// Time since 1970, from the file.
     pub time: Duration,
-    /// What it came by.
+    /// Transport and endpoints.
     pub carrier: Carrier,
-    /// Its bytes; never empty.
+    /// Bytes of the message; never empty.
     pub bytes: &'a [u8],
-    /// The packet was longer than what was recorded of it.
+    /// The packet was longer than the recorded bytes.
     pub is_cut: bool,
 }
 
-/// What a message came by.
+/// Transport of a message, with its endpoints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Carrier {
-    /// UDP: the message is whole.
+    /// UDP: a complete message.
     Datagram {
         /// Sender.
         from: SocketAddr,
         /// Receiver.
         to: SocketAddr,
     },
-    /// TCP: some bytes in their order.
+    /// TCP: the next bytes of the stream.
     Stream {
         /// Sender.
         from: SocketAddr,
         /// Receiver.
         to: SocketAddr,
-        /// Begins a connection that was opened in the file.
+        /// The first bytes of a connection that was opened in the file.
         begins: bool,
-        /// Bytes before these that are not in the file.
+        /// Number of bytes missing before these.
         lost: u32,
     },
-    /// A serial line, or a simulator in the same process, recorded by armctl itself.
+    /// A serial line or in-process simulator that armctl recorded.
     Line {
-        /// Which way.
+        /// Direction of the bytes.
         direction: Direction,
-        /// Section of the file: one for each command that was recorded.
+        /// Section of the file; each recorded command has one.
         section: usize,
     },
-    /// A whole frame of a link with frames of its own.
+    /// A whole frame of a link type with its own frame format.
     Frame {
-        /// The kind of link, such as [`LINKTYPE_CAN`].
+        /// Link type, such as [`LINKTYPE_CAN`].
         link_type: u16,
     },
 }
 
-/// `LINKTYPE_CAN_SOCKETCAN`: frames of CAN.
+/// `LINKTYPE_CAN_SOCKETCAN`: CAN frames.
 pub const LINKTYPE_CAN: u16 = 227;
 
-/// `LINKTYPE_ETHERNET`: whole frames, of which only those of PROFINET are handed over as such.
+/// `LINKTYPE_ETHERNET`: Ethernet frames. Only PROFINET frames are delivered whole.
 pub const LINKTYPE_ETHERNET: u16 = 1;
 
 impl Carrier {
-    /// Sender and receiver, where they have addresses.
+    /// Sender and receiver, if they have addresses.
     pub const fn ends(&self) -> Option<(SocketAddr, SocketAddr)> {
         match *self {
             Self::Datagram { from, to } | Self::Stream { from, to, .. } => Some((from, to)),
@@ -90,23 +91,23 @@ impl Carrier {
     }
 }
 
-/// What a file came to.
+/// Totals of a file.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct Summary {
-    /// Packets in it.
+    /// Number of packets.
     pub packets: u64,
-    /// Time of the first, since 1970.
+    /// Time of the first packet since 1970.
     pub first: Duration,
-    /// Fragments of IP packets, which are left out.
+    /// Number of IP fragments, which are skipped.
     pub fragments: u64,
-    /// TCP segments that were there before.
+    /// Number of repeated TCP segments.
     pub repeated: u64,
-    /// Where the file is damaged; everything before was read.
+    /// Position of the damage. Everything before it was read.
     pub damage: Option<Damage>,
 }
 
-/// Reads a file piece by piece, and hands over the messages in it. Messages of a TCP stream that overtook each other
-/// come when they are in order, so after later ones of other streams.
+/// Reads a file in pieces and delivers its messages. A TCP stream is delivered in order. Segments that arrived out of
+/// order can therefore follow later messages of other streams.
 pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
     let mut summary = Summary::default();
     let mut streams = Streams::default();
@@ -115,7 +116,7 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     if beginning.starts_with(b"(") {
         return Ok(candump(file, each));
     }
-    // Packets of a capture may be telegrams.
+    // A packet capture can contain telegrams, so its own format is checked first.
     if let Some(form) = Form::of(beginning).filter(|_| !is_capture(beginning)) {
         return Ok(dump::read(file, form, each));
     }
@@ -161,10 +162,9 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     Ok(summary)
 }
 
-/// Longest line of a log.
+/// Longest line of a candump log.
 const MOST_LINE: u64 = 4096;
 
-/// Reads a log of candump, line by line.
 fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summary {
     let mut summary = Summary::default();
     let mut line = Vec::new();
@@ -181,7 +181,7 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
         };
         offset += len;
         summary.packets += 1;
-        // Extended and remote frames are no damage.
+        // Extended and remote frames are valid but not used here.
         let Some((time, frame)) = Frame::from_candump(&String::from_utf8_lossy(&line)) else { continue };
         let time = time.unwrap_or_default();
         if summary.first.is_zero() {
@@ -207,7 +207,7 @@ mod tests {
         ("10.0.0.1:40000".parse().unwrap(), "[fe80::2]:10040".parse().unwrap())
     }
 
-    /// A file of our own tap with all that it can write.
+    /// A file from our tap with every record type.
     fn recorded() -> Vec<u8> {
         let mut file = Vec::new();
         let (from, to) = ends();

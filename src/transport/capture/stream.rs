@@ -1,4 +1,4 @@
-//! TCP put together, for each direction on its own: bytes in their order, none twice, and gaps told.
+//! TCP reassembly per direction: bytes in order, without duplicates, and with the length of gaps.
 
 use std::collections::{BTreeMap, HashMap};
 use std::net::SocketAddr;
@@ -6,59 +6,59 @@ use std::time::Duration;
 
 use super::layers::Segment;
 
-/// One direction of a stream: section of the file, sender and receiver. A section is a record of its own, whose numbers
-/// begin anew.
+/// Key of one direction of a stream: section of the file, sender, receiver. Sequence numbers are per section, because
+/// each section is a separate recording.
 pub type StreamKey = (usize, SocketAddr, SocketAddr);
-/// The packet that bytes came with: its number, its time, and whether it was cut.
+/// Packet that delivered the bytes: its number, its time, and whether it was cut.
 pub type Origin = (u64, Duration, bool);
 
-/// Bytes of a stream, in their order.
+/// The next bytes of a stream.
 #[derive(Debug, Clone, Copy)]
 pub struct Piece<'a> {
-    /// Whose.
+    /// Stream and direction.
     pub key: StreamKey,
-    /// The packet they came with.
+    /// Packet that delivered the bytes.
     pub origin: Origin,
-    /// The first of a stream that was opened in the file.
+    /// The first bytes of a stream that was opened in the file.
     pub begins: bool,
-    /// Bytes before them that never came.
+    /// Number of bytes missing before these.
     pub lost: u32,
     /// The bytes.
     pub bytes: &'a [u8],
 }
 
-/// Segments of a direction that wait for one before them; with more, what is missing counts as lost.
+/// Limit of waiting segments per direction. Above it, the gap before them counts as lost.
 const MOST_WAITING: usize = 64;
 
-/// Streams, and bytes that wait in them; with more, all that is missing counts as lost, and each stream begins anew.
+/// Limits of streams and of waiting bytes. Above them, all gaps count as lost, and each stream starts again.
 const MOST_STREAMS: usize = 1 << 16;
 const MOST_HELD: usize = 32 << 20;
 
-/// All directions of all streams.
+/// TCP reassembly of all streams in a file.
 #[derive(Debug, Default)]
 pub struct Streams {
     streams: HashMap<StreamKey, Stream>,
     repeated: u64,
-    /// Bytes that wait in all of them.
+    /// Waiting bytes of all streams.
     held: usize,
 }
 
-/// One direction.
+/// One direction of a stream.
 #[derive(Debug, Default)]
 struct Stream {
-    /// Number of the byte that comes next.
+    /// Next expected sequence number.
     next: Option<u32>,
     begins: bool,
-    /// What came too early, by its place in the stream.
+    /// Early segments by their position in the stream.
     waiting: BTreeMap<u64, (Origin, Vec<u8>)>,
-    /// Bytes that were handed over or given up: places are counted by them, because numbers wrap.
+    /// Number of bytes delivered or lost. Positions count from it, because sequence numbers wrap.
     passed: u64,
-    /// Bytes that wait.
+    /// Number of waiting bytes.
     held: usize,
 }
 
 impl Streams {
-    /// Takes a segment, and hands over what is in order then.
+    /// Adds a segment, and delivers the bytes that are now in order.
     pub fn take(&mut self, key: StreamKey, segment: &Segment<'_>, origin: Origin, give: &mut impl FnMut(&Piece<'_>)) {
         if self.held > MOST_HELD || self.streams.len() >= MOST_STREAMS {
             self.finish(give);
@@ -102,7 +102,7 @@ impl Streams {
         }
     }
 
-    /// Hands over what still waits, with its gaps.
+    /// Delivers all waiting segments, with their gaps.
     pub fn finish(&mut self, give: &mut impl FnMut(&Piece<'_>)) {
         let mut left: Vec<_> = self.streams.iter_mut().filter(|(_, stream)| !stream.waiting.is_empty()).collect();
         left.sort_by_key(|(key, _)| **key);
@@ -111,7 +111,7 @@ impl Streams {
         }
     }
 
-    /// Segments that brought nothing new.
+    /// Number of segments without new bytes.
     pub fn repeated(&self) -> u64 {
         self.repeated
     }
@@ -125,7 +125,7 @@ impl Stream {
         give(&Piece { key, origin, begins: std::mem::take(&mut self.begins), lost, bytes });
     }
 
-    /// Hands over what waits without a gap; returns how many segments brought nothing new.
+    /// Delivers waiting segments up to the next gap. Returns the number of segments without new bytes.
     fn drain(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) -> u64 {
         let mut repeated = 0;
         while let Some(first) = self.waiting.first_entry()
@@ -142,7 +142,7 @@ impl Stream {
         repeated
     }
 
-    /// Gives up on what is missing before the first that waits.
+    /// Declares the bytes before the first waiting segment lost.
     fn jump(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) {
         if let Some((at, (origin, bytes))) = self.waiting.pop_first() {
             self.held -= bytes.len();
@@ -167,7 +167,7 @@ mod tests {
         (0, "10.0.0.1:1".parse().unwrap(), "10.0.0.2:2".parse().unwrap())
     }
 
-    /// What arrives of segments, with what was lost before it.
+    /// Reassembled pieces with the number of lost bytes before each.
     fn arrived(segments: &[(u32, &[u8])]) -> (Vec<(u64, u32, String)>, u64) {
         let mut streams = Streams::default();
         let mut all = Vec::new();
@@ -202,7 +202,7 @@ mod tests {
         let bytes = vec![0; 60_000];
         for number in 0..3000u32 {
             let key = (usize::try_from(number).unwrap(), key().1, key().2);
-            // The first opens the stream, and the second, after a gap, waits.
+            // The first segment opens the stream. The second waits behind a gap.
             for (sequence, bytes) in [(1, &bytes[..1]), (9, &bytes[..])] {
                 let segment = Segment { sequence, opens: false, bytes };
                 let origin = (number.into(), Duration::ZERO, false);

@@ -1,4 +1,4 @@
-//! Why something on a DeviceNet does not come about.
+//! Errors of DeviceNet connections.
 
 use std::time::Duration;
 
@@ -8,99 +8,99 @@ use super::can::{BusState, PortError};
 use super::wire::{Mac, general};
 use crate::image::view::BusError;
 
-/// Why something does not come about, or ended.
+/// An error that prevented or ended a connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Error {
-    /// Another node has the MAC that was to be ours.
+    /// Another node has the MAC of this master.
     #[error("MAC {mac}, which was to be this master's, is taken on the bus: by vendor {vendor}, serial {serial:08X}")]
     Duplicate {
         /// The MAC.
         mac: Mac,
-        /// The maker of the other.
+        /// Vendor id of the other node.
         vendor: u16,
-        /// Its serial number.
+        /// Serial number of the other node.
         serial: u32,
     },
-    /// Another master has the connections of the slave.
+    /// Another master owns the connections of the slave.
     #[error("MAC {mac} does not give its connections, which another has")]
     Owned {
         /// The slave.
         mac: Mac,
     },
-    /// The images of the slave have sizes that are not known.
+    /// The image sizes of the slave do not match any profile.
     #[error("MAC {mac} takes {consumed} bytes and sends {produced}; known are {known}")]
     Size {
         /// The slave.
         mac: Mac,
-        /// Bytes from it.
+        /// Size of the image from the slave, in bytes.
         produced: u16,
-        /// Bytes to it.
+        /// Size of the image to the slave, in bytes.
         consumed: u16,
-        /// The sizes there are, in words.
+        /// The sizes of the profiles, as text.
         known: String,
     },
-    /// The slave says no.
+    /// The slave refused a request.
     #[error("{what} of MAC {mac} was refused: {} (general {general:#04x}, additional {additional:#04x})", general::meaning(*general))]
     Refused {
-        /// What was asked.
+        /// The request.
         what: &'static str,
         /// The slave.
         mac: Mac,
         /// The general code.
         general: u8,
-        /// The additional one.
+        /// The additional code.
         additional: u8,
     },
-    /// The slave does not answer.
+    /// The slave did not answer.
     #[error("MAC {mac} does not answer {what}: {}", silence(*is_bus_alive, *state))]
     Silent {
         /// The slave.
         mac: Mac,
-        /// What was asked.
+        /// The request.
         what: &'static str,
-        /// Whether other nodes were heard.
+        /// Whether other nodes sent frames.
         is_bus_alive: bool,
-        /// How the adapter gets on with the bus.
+        /// Error state of the adapter.
         state: BusState,
     },
-    /// The slave was polled, and does not answer polls any more.
+    /// The slave stopped answering polls.
     #[error("MAC {mac} has not answered a poll for {} ms: {}", after.as_millis(),
         if *is_heard { "it is heard, but no image of it comes whole" } else { silence(*is_bus_alive, *state) })]
     Lost {
         /// The slave.
         mac: Mac,
-        /// For how long.
+        /// Duration of the silence.
         after: Duration,
-        /// Whether it was heard meanwhile, and no image came whole.
+        /// Whether frames of the slave arrived, but no complete image.
         is_heard: bool,
-        /// Whether other nodes were heard meanwhile.
+        /// Whether other nodes sent frames during that time.
         is_bus_alive: bool,
-        /// How the adapter gets on with the bus.
+        /// Error state of the adapter.
         state: BusState,
     },
-    /// The slave answers something that makes no sense.
+    /// The slave sent an invalid answer.
     #[error("the answer of MAC {mac} to {what} makes no sense: {why}")]
     Senseless {
         /// The slave.
         mac: Mac,
-        /// What was asked.
+        /// The request.
         what: &'static str,
         /// What is wrong with the answer.
         why: &'static str,
     },
-    /// The adapter has taken itself off the bus.
+    /// The adapter is bus-off.
     #[error("the adapter is bus-off: too many errors on the bus")]
     BusOff,
-    /// The adapter does not do what it should.
+    /// The adapter failed.
     #[error("{0}")]
     Port(#[from] PortError),
-    /// Nothing can be as it is wanted.
+    /// The settings are invalid or contradict each other.
     #[error("{0}")]
     Settings(String),
-    /// The link was lost meanwhile.
+    /// The link was lost after the caller last looked at it (an older generation).
     #[error("the link was lost meanwhile")]
     Outdated,
-    /// It is closed.
+    /// The connection is closed.
     #[error("it is closed")]
     Ended,
 }
@@ -110,7 +110,7 @@ impl BusError for Error {
     const ENDED: Self = Self::Ended;
 }
 
-/// What silence means.
+/// Explanation of a missing answer.
 const fn silence(is_bus_alive: bool, state: BusState) -> &'static str {
     match (is_bus_alive, state) {
         (_, BusState::Off) => "the adapter is bus-off",

@@ -1,5 +1,5 @@
-//! A bus behind SLCAN adapters for tests and simulators: each client, by TCP or on a pseudo-terminal, is an adapter, and
-//! what one sends all others get. A slave may be on it, too.
+//! Virtual CAN bus behind SLCAN adapters, for tests and simulators. Each client (TCP or pseudo-terminal) is an adapter,
+//! and a frame from one client goes to all others. A simulated slave can be on the bus.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,26 +22,26 @@ use super::device::{Application, Device, DeviceFault};
 use crate::fault::Faults;
 use crate::pty::Pty;
 
-/// Bytes that may wait for a client; what comes beyond is lost to it, as in the queue of an adapter.
+/// Limit of bytes that wait for a client. Frames above it are lost, as in the queue of a real adapter.
 const MOST_WAITING: usize = 64 * 1024;
-/// Most clients; more are let go at once.
+/// Client limit. Further clients are disconnected at once.
 const MOST_CLIENTS: usize = 64;
-/// Most frames that faults delay.
+/// Limit of frames that fault injection delays.
 const MOST_DELAYED: usize = 1024;
-/// Pause after a client that could not be taken.
+/// Pause after a failed accept.
 const PAUSE: Duration = Duration::from_millis(50);
 const BUFFER: usize = 4096;
 
-/// Where a hub can be reached.
+/// Endpoint of a hub.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Listen {
-    /// By TCP; port 0 lets the system choose.
+    /// TCP; port 0 lets the system choose.
     Tcp(SocketAddr),
-    /// On a pseudo-terminal.
+    /// A pseudo-terminal.
     Pty,
 }
 
-/// A hub that is running; it ends when it is dropped.
+/// A running hub. It stops when it is dropped.
 pub struct Hub<A: Application + 'static> {
     inner: Arc<Inner<A>>,
     places: Vec<String>,
@@ -66,13 +66,13 @@ struct Inside<A> {
     device: Option<Device<A>>,
     clients: BTreeMap<u64, Client>,
     last: u64,
-    /// Of frames: to the slave, from it.
+    /// Fault injection for frames: to the slave, from the slave.
     faults: Option<(Faults, Faults)>,
-    /// Frames that faults delay, and whether they go to the slave.
+    /// Delayed frames, and whether they go to the slave.
     delayed: Vec<(Now, bool, Frame)>,
 }
 
-/// An adapter.
+/// A connected adapter.
 #[derive(Debug)]
 struct Client {
     writer: Writer,
@@ -90,10 +90,7 @@ enum Mode {
 }
 
 impl<A: Application + 'static> Hub<A> {
-    /// Starts one, with a slave on it or without. `faults` are those of frames on their way to the slave and back.
-    ///
-    /// # Errors
-    /// When one of the places cannot be had.
+    /// Starts a hub, with or without a slave. `faults` are for frames to and from the slave.
     pub fn start(
         bitrate: Bitrate,
         device: Option<Device<A>>,
@@ -113,7 +110,7 @@ impl<A: Application + 'static> Hub<A> {
             runtime.block_on(async {
                 tokio::select! {
                     () = turn(&shared) => {}
-                    // An error says that the hub is gone, which is what is waited for.
+                    // An error means that the hub is dropped, which is also a reason to stop.
                     _ = quits => {}
                 }
             });
@@ -122,12 +119,12 @@ impl<A: Application + 'static> Hub<A> {
         Ok(Self { inner, places, quit: Some(quit), thread: Some(thread) })
     }
 
-    /// Where it can be reached, in the order of what was asked for: `127.0.0.1:40000`, `/dev/pts/4`.
+    /// Addresses of the endpoints in the order of `listen`: `127.0.0.1:40000`, `/dev/pts/4`.
     pub fn places(&self) -> &[String] {
         &self.places
     }
 
-    /// Looks at the slave, or changes it, and at what it is for.
+    /// Calls `look` with the slave.
     pub fn with<T>(&self, look: impl FnOnce(&mut Device<A>, Now) -> T) -> Option<T> {
         let now = self.inner.start.elapsed();
         let result = self.inner.lock().device.as_mut().map(|device| look(device, now));
@@ -140,7 +137,7 @@ impl<A: Application + 'static> Drop for Hub<A> {
     fn drop(&mut self) {
         self.quit = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }
@@ -152,7 +149,7 @@ impl<A> Inner<A> {
     }
 }
 
-/// Begins to take clients.
+/// Opens an endpoint and accepts clients.
 fn serve<A: Application + 'static>(runtime: &Runtime, inner: &Arc<Inner<A>>, listen: Listen) -> io::Result<String> {
     let inner = Arc::clone(inner);
     match listen {
@@ -184,7 +181,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
         if inner.lock().clients.len() >= MOST_CLIENTS {
             continue;
         }
-        // One that has left already takes no settings.
+        // The client can be disconnected already.
         let Ok(mut pipe) = Pipe::tcp(stream) else { continue };
         let inner = Arc::clone(&inner);
         tokio::spawn(async move {
@@ -223,7 +220,7 @@ async fn terminal<A: Application + 'static>(inner: Arc<Inner<A>>, mut pty: Pty) 
     inner.lock().clients.remove(&number);
 }
 
-/// Does what is due on the slave's side, again and again.
+/// Drives the slave.
 async fn turn<A: Application>(inner: &Inner<A>) {
     loop {
         let wake = inner.lock().advance(inner.start.elapsed());
@@ -249,7 +246,7 @@ impl<A: Application> Inner<A> {
         number
     }
 
-    /// Bytes from a client.
+    /// Handles bytes from a client.
     fn take(&self, number: u64, lines: &mut Lines, bytes: &[u8]) {
         let now = self.start.elapsed();
         let mut state = self.lock();
@@ -265,7 +262,7 @@ impl<A: Application> Inner<A> {
 }
 
 impl<A: Application> Inside<A> {
-    /// What a client gets for a line.
+    /// Executes a line from a client, and returns the answer.
     fn command(&mut self, now: Now, number: u64, line: &Line, bitrate: Bitrate) -> Vec<u8> {
         let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
         let is_alone =
@@ -297,7 +294,7 @@ impl<A: Application> Inside<A> {
             Command::Flags if client.mode != Mode::Closed => {
                 let flags = match (is_off, is_right && !is_alone) {
                     (true, _) => flag::BUS_ERROR | flag::PASSIVE | flag::WARNING,
-                    // Nobody acknowledges what it sends.
+                    // No other node acknowledges its frames.
                     (_, false) if client.mode == Mode::Open => flag::BUS_ERROR | flag::PASSIVE,
                     _ => 0,
                 };
@@ -323,7 +320,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    /// To all clients that are on the bus but its sender.
+    /// Sends a frame to all clients with an open channel, except its sender.
     fn spread(&mut self, from: Option<u64>, frame: &Frame, bitrate: Bitrate) {
         for (number, client) in &mut self.clients {
             if Some(*number) == from || client.mode == Mode::Closed || client.bitrate != Some(digit(bitrate)) {
@@ -358,7 +355,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    /// Does what is due, and says when to do so again.
+    /// Does what is due. Returns the time of the next call.
     fn advance(&mut self, now: Now) -> Option<Now> {
         let due: Vec<(Now, bool, Frame)> = self.delayed.extract_if(.., |(at, ..)| *at <= now).collect();
         let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
@@ -386,7 +383,7 @@ impl<A: Application> Inside<A> {
     }
 }
 
-/// The digit of the command that sets this bit rate.
+/// Digit of the SLCAN command for this bit rate.
 const fn digit(bitrate: Bitrate) -> u8 {
     match bitrate {
         Bitrate::K125 => 4,

@@ -1,5 +1,5 @@
-//! The seam for fieldbuses over DeviceNet: polls, what passes between a slave and another master, or what a slave answers
-//! to messages.
+//! DeviceNet as a fieldbus of images: a polled slave, traffic of another master, or a slave read with explicit
+//! messages.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,17 +17,17 @@ use super::wire::{Answer, Mac, Request, class, connection};
 use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Packet rates after which a slave lets go of its outputs.
+/// Number of packet rates after which a slave clears its outputs.
 const WATCHDOG: u32 = 4;
 
-/// A slave that is polled.
+/// A polled slave.
 pub type Polled = Cyclic<Connection>;
 
 impl Polled {
-    /// Opens it.
+    /// Opens the connection.
     ///
     /// # Errors
-    /// When the slave does not answer, refuses, or has images of other sizes.
+    /// The slave does not answer, refuses, or has other image sizes.
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
         let size = connection.view().details.size;
@@ -76,19 +76,19 @@ impl Bus for Connection {
     }
 }
 
-/// What another master and a slave show each other, without a bit sent from here.
+/// Images between another master and a slave. Nothing is sent, not even an acknowledgement.
 #[derive(Debug)]
 pub struct Listened {
     network: Network,
     slave: Mac,
     size: usize,
-    /// Silence after which what was seen counts no more.
+    /// Silence after which the last images are out of date.
     patience: Duration,
     seen: u64,
 }
 
 impl Listened {
-    /// Listens for at most `longest`; `None` if nothing passes.
+    /// Listens for at most `longest`; `None` if no image passes.
     pub async fn open(network: Network, slave: Mac, longest: Duration, patience: Duration) -> Option<Self> {
         let input = network.listen(slave, longest).await.input?;
         Some(Self { network, slave, size: input.image.len(), patience, seen: 0 })
@@ -140,7 +140,8 @@ impl ImageConnection for Listened {
     }
 }
 
-/// What a slave shows, by messages with a pause between them: no poll begins, so none is missed when it ends.
+/// Image of a slave, read with explicit messages at an interval. No poll connection starts, so its end cannot stop a
+/// robot.
 #[derive(Debug)]
 pub struct Reading {
     connection: Connection,
@@ -152,10 +153,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Reads it for the first time.
-    ///
-    /// # Errors
-    /// When the slave does not answer, or cannot be read.
+    /// Connects and reads the image for the first time.
     pub async fn open(network: &Network, slave: Mac, timeout: Duration, pause: Duration) -> Result<Self, Error> {
         let purpose = Purpose::Messages { with_poll: true };
         let connection = network.connect(Settings { slave, purpose, timeout }).await?;
@@ -164,7 +162,7 @@ impl Reading {
         Ok(Self { connection, slave, request, image, pause, due: Instant::now() + pause })
     }
 
-    /// What it showed last.
+    /// The last image.
     pub fn image(&self) -> &[u8] {
         &self.image
     }
@@ -187,7 +185,7 @@ impl Reading {
                 return Event::Image(Arc::clone(&self.image));
             }
             sleep_until(self.due).await;
-            // An answer that is not waited for to its end is asked for anew.
+            // If this future is dropped before the answer arrives, the next call asks again.
             match read(&self.connection, self.slave, &self.request).await {
                 Ok(image) if *image != *self.image => self.image = image.into(),
                 Ok(_) => {}
@@ -215,18 +213,15 @@ impl ImageConnection for Reading {
 }
 
 const IMAGE: &str = "what it shows";
-/// The path of what a poll connection sends: attribute 14 of it.
+/// Attribute 14 of a connection object: path of the produced data.
 const PRODUCED_PATH: u8 = 14;
 
-/// What reads the image that the slave would answer polls with, as its poll connection says.
-///
-/// # Errors
-/// When it does not say.
+/// Finds the request that reads the image which the slave would produce. Its poll connection object has the path.
 pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Error> {
     let instance = u16::from(connection::POLL_INSTANCE);
     let path = read(connection, mac, &Request::get(class::CONNECTION, instance, PRODUCED_PATH)).await?;
     match path.as_slice() {
-        // Class, instance and attribute in a byte each.
+        // Class, instance and attribute, each in one byte.
         [0x20, class, 0x24, instance, 0x30, attribute] => Ok(Request::get(*class, (*instance).into(), *attribute)),
         [0x20, class, 0x24, instance] => Ok(Request::get(*class, (*instance).into(), 3)),
         _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path to it is not one of an attribute" }),
@@ -234,9 +229,6 @@ pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Erro
 }
 
 /// Reads an attribute.
-///
-/// # Errors
-/// When it is refused, or nothing comes.
 pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Result<Vec<u8>, Error> {
     match connection.ask(request.clone()).await? {
         Answer::Done { data, .. } => Ok(data),
@@ -244,7 +236,7 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
     }
 }
 
-/// What to do about an error, where that is more than its kind tells.
+/// Advice for errors that need more than their kind gives.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
         Error::Duplicate { .. } => {

@@ -1,6 +1,7 @@
-//! DeviceNet: images to and from a slave of the predefined master/slave set, over a CAN adapter.
+//! DeviceNet master and simulated slave: images to and from a slave of the predefined master/slave set, over a CAN
+//! adapter.
 //!
-//! Knows bytes of connections and no robot.
+//! This module knows connections and bytes, but no robots.
 
 use std::time::Duration;
 
@@ -15,7 +16,7 @@ pub mod scanner;
 pub mod settings;
 pub mod wire;
 
-/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+/// A moment, as time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;
 
 #[cfg(test)]

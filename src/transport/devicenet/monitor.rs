@@ -1,4 +1,4 @@
-//! What a master and its slaves say to each other, put together by one who only listens.
+//! Passive monitor: reassembles the images between a master and its slaves.
 
 use std::collections::BTreeMap;
 
@@ -6,41 +6,41 @@ use super::Now;
 use super::can::Frame;
 use super::wire::{Assembler, Fragment, Id, Kind, Mac, Piece};
 
-/// Sizes of images that are put together where fragments are seen: the whole image. What is shorter comes bare.
+/// Size of a fragmented image. Other images are single frames.
 const WHOLE: usize = 48;
-/// Bytes of a bare image.
+/// Size of an image in a single frame.
 const BARE: usize = 4;
 
-/// An image that passed.
+/// An image seen on the bus.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seen {
-    /// When its last frame did.
+    /// Time of its last frame.
     pub at: Now,
-    /// Its bytes.
+    /// Bytes of the image.
     pub image: Vec<u8>,
 }
 
 /// What was seen of a slave.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Sight {
-    /// The newest image to it.
+    /// The newest image to the slave.
     pub output: Option<Seen>,
-    /// The newest image from it.
+    /// The newest image from the slave.
     pub input: Option<Seen>,
-    /// When it last sent anything.
+    /// Time of the last frame from the slave.
     pub heard: Option<Now>,
-    /// When its master last sent it anything.
+    /// Time of the last frame from its master.
     pub asked: Option<Now>,
 }
 
 impl Sight {
-    /// Whether images were seen both ways.
+    /// Whether images were seen in both directions.
     pub const fn is_whole(&self) -> bool {
         self.output.is_some() && self.input.is_some()
     }
 }
 
-/// Listens.
+/// The monitor.
 #[derive(Debug, Default)]
 pub struct Monitor {
     slaves: BTreeMap<Mac, Slave>,
@@ -60,7 +60,7 @@ impl Default for Slave {
 }
 
 impl Monitor {
-    /// A frame passed. The image that is whole with it, and whether it is one from the slave.
+    /// Handles a frame. Returns the image that it completes, and whether the image comes from the slave.
     pub fn hear(&mut self, now: Now, frame: &Frame) -> Option<(Mac, bool, Vec<u8>)> {
         let (mac, is_input) = match Id::parse(frame.id())? {
             Id::Poll(mac) => (mac, false),
@@ -79,7 +79,7 @@ impl Monitor {
         *(if is_input { &mut slave.sight.heard } else { &mut slave.sight.asked }) = Some(now);
         let assembler = if is_input { &mut slave.input } else { &mut slave.output };
         let image = match frame.data() {
-            // A fragment of that length would be the last of 45 bytes.
+            // As a fragment, this length would end a 45-byte image, which does not exist. So it is a 4-byte image.
             data @ [_, _, _, _] if data.len() == BARE && !assembler.is_partial() => data.to_vec(),
             data => match assembler.take(data) {
                 Piece::Whole(image) => image,
@@ -96,13 +96,13 @@ impl Monitor {
         self.slaves.get(&slave).map(|slave| slave.sight.clone()).unwrap_or_default()
     }
 
-    /// The slaves that something was seen of.
+    /// Slaves with traffic.
     pub fn slaves(&self) -> Vec<Mac> {
         self.slaves.keys().copied().collect()
     }
 }
 
-/// A frame in words, for traces: `MAC 5: poll by the master, fragment 0 (first)`.
+/// Text of a frame for traces: `MAC 5: poll by the master, fragment 0 (first)`.
 pub fn describe(frame: &Frame) -> String {
     let Some(id) = Id::parse(frame.id()) else { return format!("{:03X}: no identifier of DeviceNet", frame.id()) };
     let mut text = id.to_string();

@@ -1,5 +1,5 @@
-//! A thread behind each adapter of this process, which runs the master: polls leave on time whatever the rest of the
-//! program does, so that a prompt that waits for a person does not make a robot stop.
+//! Shared CAN adapters, each with a thread that runs the master. The polls do not depend on the rest of the program, so
+//! a prompt that waits for input does not stop a robot.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -26,35 +26,35 @@ use crate::image::tap::Passed;
 pub use crate::image::tap::Tap;
 use crate::serial::{self, Line};
 
-/// Between tries to open an adapter again.
+/// Pause between attempts to open an adapter again.
 const REOPEN: Duration = Duration::from_secs(1);
-/// How long a connection to a server of SLCAN may take.
+/// Time limit for a connection to an SLCAN server.
 const CONNECT: Duration = Duration::from_secs(5);
-/// What an adapter gets to take the last command.
+/// Time that an adapter gets for the last command.
 const FAREWELL: Duration = Duration::from_millis(20);
-/// The lines between two looks whether something passes.
+/// Interval of the checks for traffic in [`Network::listen`].
 const LISTENED: Duration = Duration::from_millis(50);
 
-/// Where an adapter is.
+/// Location of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Place {
-    /// SLCAN on a serial port; the rate is that of the port, which USB adapters do not look at.
+    /// SLCAN on a serial port. USB adapters ignore the baud rate.
     Serial {
         /// `/dev/ttyACM0`, `COM3`.
         path: String,
-        /// Bits a second.
+        /// Baud rate of the port.
         baud: u32,
     },
     /// SLCAN behind TCP.
     Tcp {
-        /// Name or address.
+        /// Host name or address.
         host: String,
-        /// Port.
+        /// TCP port.
         port: u16,
     },
-    /// An interface of Linux.
+    /// A Linux CAN interface.
     SocketCan {
-        /// `can0`.
+        /// Interface name: `can0`.
         interface: String,
     },
 }
@@ -69,18 +69,18 @@ impl fmt::Display for Place {
     }
 }
 
-/// An adapter and how it is used.
+/// An adapter and its configuration.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adapter {
-    /// Where it is.
+    /// Location.
     pub place: Place,
     /// The bit rate of the bus.
     pub bitrate: Bitrate,
-    /// Who the master on it is; `None` to listen only, so that not even an acknowledgement leaves.
+    /// Identity of the master. `None` means listen-only: nothing is sent, not even an acknowledgement.
     pub identity: Option<Identity>,
 }
 
-/// An adapter that is open. It is cheap to clone; it is closed with the last clone and the last connection.
+/// An open adapter. Clones are cheap. The adapter closes with the last clone and the last connection.
 #[derive(Debug, Clone)]
 pub struct Network {
     owner: Arc<Owner>,
@@ -99,14 +99,14 @@ struct Inner {
     wake: Notify,
     last: AtomicU64,
     state: Mutex<Inside>,
-    /// Counts what happens on the bus, for those who wait for something.
+    /// Event counter of the bus, to wake the tasks that wait.
     news: watch::Sender<u64>,
 }
 
-/// What the thread and its callers share.
+/// State shared by the thread and its callers.
 #[derive(Debug)]
 struct Inside {
-    /// `None` where it only listens.
+    /// `None` in listen-only mode.
     scanner: Option<Scanner>,
     monitor: Monitor,
     health: Health,
@@ -114,20 +114,20 @@ struct Inside {
     asked: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
     found: Option<oneshot::Sender<Vec<Found>>>,
     taps: Vec<Tap>,
-    /// Why the adapter is not there at present.
+    /// Current failure of the adapter.
     trouble: Option<Error>,
     frames: u64,
     is_over: bool,
 }
 
 impl Network {
-    /// Opens an adapter, or shares one that this process has open already. What passes goes to the tap, too, as long as the
-    /// adapter is open.
+    /// Opens an adapter, or shares one that is already open in this process. Frames also go to `tap` while the adapter
+    /// is open.
     ///
     /// # Errors
-    /// When it cannot be opened, or is used otherwise already.
+    /// The adapter cannot be opened, or is open with other settings.
     pub async fn open(adapter: &Adapter, tap: Tap) -> Result<Self, Error> {
-        // Held while one is opened, so that who wants the same meanwhile shares it.
+        // Locked while an adapter opens, so that a concurrent caller shares it.
         static SHARED: tokio::sync::Mutex<Vec<Weak<Owner>>> = tokio::sync::Mutex::const_new(Vec::new());
         let mut shared = SHARED.lock().await;
         {
@@ -135,7 +135,7 @@ impl Network {
             let same = |owner: &Arc<Owner>| owner.inner.adapter.place == adapter.place;
             if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(same) {
                 let other = &owner.inner.adapter;
-                // Who only listens can do so beside a master.
+                // A listener can share the adapter of a master.
                 let fits = adapter.identity.is_none() || adapter.identity == other.identity;
                 if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
@@ -154,7 +154,7 @@ impl Network {
         Ok(network)
     }
 
-    /// Opens an adapter for this caller alone.
+    /// Opens an adapter that is not shared.
     async fn start(adapter: Adapter, tap: Tap) -> Result<Self, Error> {
         let inside = Inside {
             scanner: adapter.identity.map(Scanner::new),
@@ -187,11 +187,11 @@ impl Network {
         Ok(Self { owner })
     }
 
-    /// Opens a connection with a slave, and holds it until it is closed or dropped.
+    /// Opens a connection to a slave. It stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// When the slave does not answer or refuses: nothing is tried twice. Later losses are not errors but states of the
-    /// view.
+    /// The slave does not answer or refuses; there is no second attempt. A later loss is not an error but a state of
+    /// the view.
     pub async fn connect(&self, settings: Settings) -> Result<Connection, Error> {
         let inner = &self.owner.inner;
         let number = inner.last.fetch_add(1, Ordering::Relaxed);
@@ -213,10 +213,10 @@ impl Network {
         Ok(connection)
     }
 
-    /// Looks who is on the bus, without owning anybody.
+    /// Finds the nodes on the bus without allocating connections.
     ///
     /// # Errors
-    /// When the own MAC is taken, or the adapter fails.
+    /// Another node has this MAC, or the adapter fails.
     pub async fn find(&self) -> Result<Vec<Found>, Error> {
         let inner = &self.owner.inner;
         let (sender, found) = oneshot::channel();
@@ -233,7 +233,7 @@ impl Network {
         found.map_err(|_| trouble.unwrap_or(Error::Ended))
     }
 
-    /// Listens to what a master and this slave say to each other, for at most `longest`; what was seen.
+    /// Listens to the traffic of a slave and its master for at most `longest`.
     pub async fn listen(&self, slave: Mac, longest: Duration) -> Sight {
         let until = Instant::now() + longest;
         loop {
@@ -245,30 +245,30 @@ impl Network {
         }
     }
 
-    /// What passes between a master and this slave, as it was seen last.
+    /// Last traffic of a slave and its master.
     pub fn sight(&self, slave: Mac) -> Sight {
         self.owner.inner.lock().monitor.sight(slave)
     }
 
-    /// The moment, on the clock of what is seen.
+    /// Current time on the clock of [`Sight`].
     pub fn now(&self) -> Now {
         self.owner.inner.now()
     }
 
-    /// Waits for something to happen on the bus; returns at once if it has since `seen`, which it brings up to date.
+    /// Waits for bus activity after `seen`, and updates `seen`. Returns at once if there was some already.
     pub async fn changed(&self, seen: &mut u64) {
         let mut news = self.owner.inner.news.subscribe();
-        // The sender lives as long as this.
+        // `self` keeps the sender alive, so this cannot fail.
         let now = news.wait_for(|count| count != seen).await.map_or(*seen, |count| *count);
         *seen = now;
     }
 
-    /// Why the adapter is not there at present.
+    /// Current failure of the adapter.
     pub fn trouble(&self) -> Option<Error> {
         self.owner.inner.lock().trouble.clone()
     }
 
-    /// How the adapter is, and how many frames came from the bus.
+    /// Health of the adapter, and the number of frames received.
     pub fn health(&self) -> (Health, u64) {
         let state = self.owner.inner.lock();
         (state.health, state.frames)
@@ -277,7 +277,7 @@ impl Network {
 
 const ONLY_LISTENS: &str = "the adapter only listens";
 
-/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+/// An open connection. Dropping it closes it, if the process lives long enough.
 #[derive(Debug)]
 pub struct Connection {
     network: Network,
@@ -286,29 +286,26 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         self.views.now()
     }
 
-    /// Waits until the view is so. It never is again once the connection is closed.
+    /// Waits until `condition` is true, or until the connection is closed.
     pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
         self.views.until(condition).await
     }
 
-    /// Shows this image from the next poll on; see [`Scanner::set_image`].
+    /// Sends this image from the next poll on; see [`Scanner::set_image`].
     ///
     /// # Errors
-    /// If the connection is not open in this generation, or the image has another size.
+    /// The connection is not open in this generation, or the image has another size.
     pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, Error> {
         let changed = self.with(|scanner, _| scanner.set_image(self.number, generation, image));
         changed.unwrap_or(Err(Error::Ended))
     }
 
-    /// Asks something of the slave. A refusal is an answer.
-    ///
-    /// # Errors
-    /// When nothing comes that could be read.
+    /// Sends an explicit request. A refusal is an answer.
     pub async fn ask(&self, request: Request) -> Result<Answer, Error> {
         let inner = &self.network.owner.inner;
         let token = Token(inner.last.fetch_add(1, Ordering::Relaxed));
@@ -318,14 +315,17 @@ impl Connection {
         answer.await.unwrap_or(Err(Error::Ended))
     }
 
-    /// Closes it: the slave's connections are released. Says if the slave did not confirm that.
+    /// Closes the connection: releases the connections of the slave.
+    ///
+    /// # Errors
+    /// The slave did not confirm the release.
     pub async fn close(mut self) -> Result<(), Error> {
         let before = self.view().trouble;
         self.with(|scanner, now| scanner.close(now, self.number));
         self.views.closed(before.as_ref()).await
     }
 
-    /// The adapter that it goes over.
+    /// The adapter of the connection.
     pub const fn network(&self) -> &Network {
         &self.network
     }
@@ -349,7 +349,7 @@ impl Drop for Owner {
     fn drop(&mut self) {
         self.inner.lock().is_over = true;
         self.inner.wake.notify_one();
-        // It releases what is still held before it ends; who drops the last of it on that thread must not wait for it.
+        // The thread first releases open connections. If this drop runs on that thread, it must not wait for itself.
         if let Some(thread) = self.thread.take().filter(|thread| thread.thread().id() != thread::current().id()) {
             let _ = thread.join();
         }
@@ -367,7 +367,7 @@ impl Inner {
 }
 
 impl Inside {
-    /// Shows what has changed, and hands over answers.
+    /// Publishes changed views and delivers answers.
     fn publish(&mut self) {
         let Some(scanner) = &mut self.scanner else { return };
         for number in scanner.changed() {
@@ -377,7 +377,7 @@ impl Inside {
         }
         while let Some(Reply { token, result, .. }) = scanner.reply() {
             if let Some(answer) = self.asked.remove(&token) {
-                // Who asked may have gone.
+                // The caller can be gone already.
                 let _ = answer.send(result);
             }
         }
@@ -400,19 +400,19 @@ impl Inside {
     }
 }
 
-/// Has a frame recorded.
+/// Records a frame.
 fn pass(taps: &[Tap], frame: &Frame) {
     for tap in taps {
         tap.pass(|| Passed::Frame(frame.to_capture()));
     }
 }
 
-/// Opens the adapter, and again after every loss as long as there is a connection that waits for it.
+/// Thread body: opens the adapter, and opens it again after a loss while connections wait for it.
 async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     let mut port = match open(&inner.adapter).await {
         Ok(port) => port,
         Err(error) => {
-            // Who wanted it may have gone.
+            // The caller can be gone already.
             let _ = opened.send(Err(Error::Port(error)));
             return;
         }
@@ -455,7 +455,7 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     }
 }
 
-/// Moves frames until all is over, or the adapter is lost.
+/// Moves frames until the network is closed or the adapter fails.
 async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError> {
     loop {
         let wake = {
@@ -466,7 +466,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             if let Some(scanner) = scanner {
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
-                    // First, so that no record has an answer before what it answers.
+                    // Before the send, so that a trace never has an answer before its request.
                     pass(taps, &frame);
                     port.send(&frame)?;
                 }
@@ -502,7 +502,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
                         scanner.handle(now, &frame);
                     }
                 }
-                // It is looked at before anything else is done.
+                // The loop reads the health first on every pass.
                 Heard::Health(_) => {}
             }
         }

@@ -1,4 +1,4 @@
-//! What a connection is to be.
+//! Connection settings.
 
 use std::time::Duration;
 
@@ -6,71 +6,71 @@ use super::can::Bitrate;
 use super::error::Error;
 use super::wire::Mac;
 
-/// Shortest and longest pause between two polls.
+/// Valid poll intervals.
 pub const CYCLES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
-/// Shortest and longest packet rate: attribute 9 has 16 bits of milliseconds, and 0 would switch the watchdog off.
+/// Valid packet rates. Attribute 9 has 16 bits of milliseconds, and 0 would switch the watchdog off.
 pub const RATES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_millis(65_535);
-/// A shorter packet rate stops a robot for a hiccup of this machine.
+/// Lower limit of the default packet rate. A shorter one could stop a robot when this computer is briefly busy.
 const LEAST_RATE: Duration = Duration::from_millis(100);
 
-/// What is wanted of a slave.
+/// Settings of a connection to a slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
-    /// Its MAC.
+    /// MAC of the slave.
     pub slave: Mac,
-    /// What for.
+    /// Purpose of the connection.
     pub purpose: Purpose,
-    /// How long to wait for an answer before a request is repeated once.
+    /// Time limit for an answer. Then the request is repeated once.
     pub timeout: Duration,
 }
 
-/// What a connection is for.
+/// Purpose of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
-    /// To command it: images both ways.
+    /// Control: images in both directions.
     Images(Images),
-    /// To ask it; with the poll connection allocated, which is not brought up, or without.
+    /// Explicit messages only. The poll connection can be allocated, but is not established.
     Messages {
-        /// So that its sizes can be asked.
+        /// Allocate the poll connection, so that its sizes can be read.
         with_poll: bool,
     },
 }
 
-/// Images both ways.
+/// Settings of the image exchange.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Images {
-    /// The sizes that a slave may have.
+    /// Image sizes that the slave can have.
     pub profiles: Vec<Profile>,
-    /// From one poll to the next.
+    /// Interval of polls.
     pub cycle: Duration,
-    /// The expected packet rate: the slave gives the connection up after four times that.
+    /// Expected packet rate. The slave closes the connection after four times this.
     pub rate: Duration,
 }
 
-/// A size that images may have, the same both ways.
+/// An image size, the same in both directions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Profile {
-    /// What it is called.
+    /// Name of the profile.
     pub name: &'static str,
-    /// The image that a connection begins with, and after every loss again; its length is the size.
+    /// First image after every opening. Its length is the size.
     pub resting: Vec<u8>,
 }
 
 impl Images {
-    /// With the cycle that suits this bit rate, and the packet rate that suits the cycle.
+    /// Default settings for a bit rate.
     pub fn usual(profiles: Vec<Profile>, bitrate: Option<Bitrate>) -> Self {
         let cycle = Duration::from_millis(if bitrate == Some(Bitrate::K125) { 50 } else { 20 });
         Self { profiles, cycle, rate: Self::rate_of(cycle) }
     }
 
-    /// The packet rate that suits a cycle.
+    /// Default packet rate for a poll interval.
     pub fn rate_of(cycle: Duration) -> Duration {
         (cycle * 5).clamp(LEAST_RATE, *RATES.end())
     }
 }
 
 impl Settings {
-    /// Whether a connection can be so, for a master with this MAC.
+    /// Checks the settings for a master with this MAC.
     pub fn check(&self, own: Mac) -> Result<(), Error> {
         let wrong = |text: String| Err(Error::Settings(text));
         if self.slave == own {

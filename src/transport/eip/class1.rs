@@ -1,4 +1,4 @@
-//! Both ends of a cyclic stream: when to send what, and what to make of what comes.
+//! Producer and consumer of a class 1 (cyclic) data stream.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use super::Now;
 use super::settings::FIRST_PACKET;
 use super::wire::Cyclic;
 
-/// Sends at a fixed interval.
+/// Sender with a fixed interval.
 #[derive(Debug, Clone)]
 pub(super) struct Producer {
     id: u32,
@@ -14,25 +14,23 @@ pub(super) struct Producer {
     due: Now,
     sequence: u32,
     count: u16,
-    /// Datagrams made.
     pub(super) sent: u64,
-    /// Moments that were missed by a whole interval.
+    /// Send times omitted because a whole interval was missed.
     pub(super) skipped: u64,
 }
 
 impl Producer {
-    /// Begins at `now`.
     pub(super) const fn new(id: u32, interval: Duration, now: Now) -> Self {
         Self { id, interval, due: now, sequence: 0, count: 0, sent: 0, skipped: 0 }
     }
 
-    /// When the next datagram is due.
+    /// Time of the next datagram.
     pub(super) const fn due(&self) -> Now {
         self.due
     }
 
-    /// The datagram that is due at `now`. The next one is due an interval after this one was, so that there is no drift;
-    /// whole intervals that were missed are left out, so that there is no burst.
+    /// Returns the datagram due at `now`. The next one is due one interval after this due time, so there is no drift.
+    /// Missed intervals are omitted, so there is no burst.
     pub(super) fn produce(&mut self, now: Now, header: Option<u32>, image: &[u8]) -> Vec<u8> {
         self.sequence = self.sequence.wrapping_add(1);
         self.count = self.count.wrapping_add(1);
@@ -46,25 +44,24 @@ impl Producer {
     }
 }
 
-/// What a datagram is worth.
+/// Result of a received datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict<'a> {
-    /// An image, and for streams with a header whether the sender runs.
+    /// A new image.
     Image {
-        /// The run bit; `true` for streams without a header.
+        /// Run bit; `true` for streams without a run/idle header.
         run: bool,
-        /// The image.
         image: &'a [u8],
     },
-    /// A sign of life without an image, as of a sender that has none, or for heartbeats.
+    /// No image: a heartbeat, or a sender without data. It restarts the timeout.
     Alive,
-    /// Older than what came before, or the same again.
+    /// Old or duplicate.
     Stale,
-    /// Of another size than was agreed.
+    /// Not the agreed size.
     WrongSize,
 }
 
-/// Hears a stream, and notices when it ends.
+/// Receiver with a watchdog.
 #[derive(Debug, Clone)]
 pub(super) struct Consumer {
     id: u32,
@@ -74,20 +71,20 @@ pub(super) struct Consumer {
     timeout: Duration,
     until: Now,
     last: Option<(u32, Now)>,
-    /// Datagrams that were good.
+    /// Valid datagrams.
     pub(super) received: u64,
-    /// Numbers that never came.
+    /// Missing sequence numbers.
     pub(super) lost: u64,
-    /// Datagrams that came more than half an interval late.
+    /// Datagrams more than half an interval late.
     pub(super) late: u64,
-    /// Datagrams that were old or came again.
+    /// Old and duplicate datagrams.
     pub(super) stale: u64,
     /// Datagrams of a wrong size.
     pub(super) misfit: u64,
 }
 
 impl Consumer {
-    /// Begins at `now`. The first datagram may take [`FIRST_PACKET`], or the time-out if that is longer.
+    /// Starts at `now`. The timeout of the first datagram is [`FIRST_PACKET`], or the normal one if that is longer.
     pub(super) fn new(id: u32, size: usize, header: bool, interval: Duration, intervals: u32, now: Now) -> Self {
         let timeout = interval.saturating_mul(intervals);
         Self {
@@ -106,22 +103,20 @@ impl Consumer {
         }
     }
 
-    /// The id of the stream.
     pub(super) const fn id(&self) -> u32 {
         self.id
     }
 
-    /// When the stream counts as ended, if nothing comes.
+    /// Time when the stream times out.
     pub(super) const fn until(&self) -> Now {
         self.until
     }
 
-    /// How long a silence ends it now.
+    /// Current timeout.
     pub(super) fn patience(&self) -> Duration {
         if self.last.is_some() { self.timeout } else { self.timeout.max(FIRST_PACKET) }
     }
 
-    /// Takes a datagram of the stream.
     pub(super) fn take<'a>(&mut self, now: Now, datagram: &Cyclic<'a>) -> Verdict<'a> {
         if let Some((last, _)) = self.last
             && !is_after(datagram.sequence, last)
@@ -154,7 +149,7 @@ impl Consumer {
     }
 }
 
-/// Whether one number follows another, around the end of their range.
+/// Serial number arithmetic: whether `one` comes after `other`, with wrap-around.
 const fn is_after(one: u32, other: u32) -> bool {
     let ahead = one.wrapping_sub(other);
     ahead != 0 && ahead < 1 << 31

@@ -1,4 +1,4 @@
-//! Messages to a device without a connection for images.
+//! Explicit messaging client without an I/O connection.
 
 use std::net::{SocketAddr, SocketAddrV4};
 
@@ -12,14 +12,14 @@ use super::session::{Ask, Session, Step, Token};
 use super::tap::Tap;
 use super::wire::{Command, Identity, Services};
 
-/// The one request that is on its way.
+/// Token of the one request in progress.
 const TOKEN: Token = Token(0);
-/// How long to wait for room for a session, in time-outs.
+/// Time limit for a busy device to free a session, in multiples of the timeout.
 pub const PATIENCE: u32 = 4;
-/// Room for what is read at once.
+/// Bytes per read.
 const BUFFER: usize = 4096;
 
-/// A session with a device, opened when first used.
+/// A session with a device. It opens at the first request.
 #[derive(Debug)]
 pub struct Client {
     target: SocketAddrV4,
@@ -31,43 +31,43 @@ pub struct Client {
 }
 
 impl Client {
-    /// For the device whose TCP address this is; `timeout` is for connecting, and for each answer. Where the device has no
-    /// room for another session, it comes back for [`PATIENCE`] times as long.
+    /// Creates a client for the device at this TCP address. `timeout` limits the connection and each answer. If the
+    /// device has no free session, the client retries for [`PATIENCE`] times as long.
     pub fn new(target: SocketAddrV4, timeout: Duration, tap: Tap) -> Self {
         let session = Session::new(timeout).patient(timeout.saturating_mul(PATIENCE));
         Self { target, session, stream: None, start: Instant::now(), timeout, tap }
     }
 
-    /// Where the device is.
+    /// TCP address of the device.
     pub const fn target(&self) -> SocketAddrV4 {
         self.target
     }
 
-    /// Asks an object. A refusal is an answer.
+    /// Sends a request to an object. A refusal is an answer.
     pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()?).await?)
     }
 
-    /// Asks who the device is.
+    /// Sends ListIdentity.
     pub async fn identity(&mut self) -> Result<Option<Identity>, EipError> {
         let what = "ListIdentity";
         let data = self.send(what, Command::LIST_IDENTITY, Vec::new()).await?;
         Identity::parse(&data).map_err(|error| EipError::Malformed { what, error })
     }
 
-    /// Asks what the device can do.
+    /// Sends ListServices.
     pub async fn services(&mut self) -> Result<Option<Services>, EipError> {
         let what = "ListServices";
         let data = self.send(what, Command::LIST_SERVICES, Vec::new()).await?;
         Services::parse(&data).map_err(|error| EipError::Malformed { what, error })
     }
 
-    /// Takes leave of the device.
+    /// Closes the session.
     pub async fn close(mut self) {
         self.session.end();
         while let Some(step) = self.session.poll(self.start.elapsed()) {
             if let Step::Send(bytes) = step {
-                // It is told out of politeness; the end of the connection says the same.
+                // A failure does not matter: the device also notices the closed connection.
                 let _ = self.write(&bytes).await;
             }
         }
@@ -100,7 +100,7 @@ impl Client {
         let until = Instant::now() + self.timeout;
         match timeout_at(until, TcpStream::connect(self.target)).await {
             Ok(Ok(stream)) => {
-                // Without it a request may wait for the acknowledgement of the one before; it works all the same.
+                // Optional: without it, a request can wait for the acknowledgement of the previous one.
                 let _ = stream.set_nodelay(true);
                 self.stream = Some(stream);
                 self.session.connected(self.start.elapsed());
@@ -120,7 +120,7 @@ impl Client {
         stream.write_all(bytes).await
     }
 
-    /// Reads once, or waits until the session wants to do something.
+    /// Reads once, or waits until the session is due.
     async fn read(&mut self, what: &'static str) {
         let until = self.session.wake().map_or_else(|| Instant::now() + self.timeout, |wake| self.start + wake);
         let Some(stream) = &mut self.stream else { return sleep_until(until).await };

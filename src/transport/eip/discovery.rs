@@ -1,4 +1,4 @@
-//! Who is there: ListIdentity by UDP, to one device or to all of a network.
+//! Device discovery: ListIdentity by UDP, to one device or a broadcast address.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -10,27 +10,27 @@ use tokio::time::{Instant, timeout_at};
 use super::tap::Tap;
 use super::wire::{Command, Frame, Identity};
 
-/// How long devices may spread their answers to a broadcast (volume 2, 2-4.2.2).
+/// Time over which devices spread their answers to a broadcast (volume 2, 2-4.2.2).
 const SPREAD: Duration = Duration::from_millis(500);
-/// Room for an answer.
 const BUFFER: usize = 2048;
-/// Most devices that are told of.
+/// Limit of reported devices.
 const MOST: usize = 1024;
 
 /// A device that answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// Where the answer came from.
+    /// Address of the sender.
     pub address: SocketAddrV4,
-    /// Who it says it is.
+    /// Identity of the device.
     pub identity: Identity,
 }
 
-/// From an address of this machine (0.0.0.0 for any), asks devices, or whole networks by their broadcast addresses, and gathers answers until `wait` is over, or until
-/// every single device has answered. Devices answer a broadcast within half a second; over 2 s is a good wait.
+/// Sends ListIdentity from a local address (0.0.0.0 for any) to devices and broadcast addresses. Collects answers until
+/// `wait` is over, or until every single device has answered. Devices answer a broadcast within half a second; `wait`
+/// should be 2 s or more.
 ///
 /// # Errors
-/// When no socket can be opened, or nothing can be sent to any target.
+/// No socket can be opened, or nothing can be sent to any target.
 pub async fn list_identity(
     own: Ipv4Addr,
     targets: &[SocketAddrV4],
@@ -45,7 +45,7 @@ pub async fn list_identity(
     let request = request.emit();
     let start = Instant::now();
     let mut found: Vec<Found> = Vec::new();
-    // Datagrams get lost, so everybody who has not answered by half-time is asked once more.
+    // Datagrams can be lost, so at half-time the request is repeated to targets that have not answered.
     for until in [start + wait / 2, start + wait] {
         let mut failure = None;
         let mut sent = false;
@@ -66,8 +66,7 @@ pub async fn list_identity(
     Ok(found)
 }
 
-/// The broadcast addresses of this machine's networks, where the system tells them: without a default route nothing else
-/// reaches everybody.
+/// Broadcast addresses of the local networks. Without a default route, only these reach all devices.
 #[cfg(target_os = "linux")]
 pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     use nix::net::if_::InterfaceFlags;
@@ -77,7 +76,7 @@ pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     Ok(ready.filter_map(|entry| Some(entry.broadcast?.as_sockaddr_in()?.ip())).collect())
 }
 
-/// The broadcast addresses of this machine's networks: this system is not asked for them.
+/// Not supported on this system; returns no addresses.
 #[cfg(not(target_os = "linux"))]
 pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     Ok(Vec::new())
@@ -95,7 +94,7 @@ async fn gather(
     while found.len() < MOST && !targets.iter().all(|target| found.iter().any(|found| found.address == *target)) {
         let (len, address) = match timeout_at(until, socket.recv_from(&mut buffer)).await {
             Ok(Ok((len, SocketAddr::V4(address)))) => (len, address),
-            // Port unreachable, as Windows tells it: others may answer still.
+            // On Windows, "port unreachable" from one device. Others can still answer.
             Ok(_) => continue,
             Err(_) => return,
         };

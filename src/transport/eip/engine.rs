@@ -1,8 +1,7 @@
-//! Two threads behind a scanner or a server: one for sockets, one for the clock.
+//! Two threads behind a scanner or server: one for sockets, one for timing.
 //!
-//! Images go out on time whatever the rest of the program does, so they have threads of their own: a prompt that waits
-//! for a person must not make a robot stop. The clock has one for itself because tokio's timers tell whole milliseconds
-//! only, and a parked thread wakes within a tenth of one.
+//! Image exchange does not depend on the rest of the program: a prompt that waits for input must not stop a robot.
+//! Timing has its own thread, because tokio timers have a resolution of 1 ms. A parked thread wakes within 0.1 ms.
 
 use std::future::Future;
 use std::io;
@@ -16,17 +15,17 @@ use tokio::sync::oneshot;
 
 use super::Now;
 
-/// Wakes the thread of the clock when something is due before it meant to wake.
+/// Wakes the timing thread earlier than planned.
 #[derive(Debug, Default)]
 pub(super) struct Alarm {
-    /// When it means to wake, in nanoseconds; the highest while it is awake, so that nothing is missed.
+    /// Planned wake-up time in nanoseconds. It is the maximum while the thread runs, so that no alarm is missed.
     planned: AtomicU64,
     thread: OnceLock<Thread>,
     is_over: AtomicBool,
 }
 
 impl Alarm {
-    /// Something is due at this moment.
+    /// Requests a wake-up at `at`.
     pub(super) fn set(&self, at: Option<Now>) {
         let Some(at) = at else { return };
         if nanos(at) < self.planned.load(Ordering::SeqCst)
@@ -36,9 +35,9 @@ impl Alarm {
         }
     }
 
-    /// Calls `turn` whenever what it returned the last time is due, or an alarm was set.
+    /// Calls `turn` at the time that it last returned, or after an alarm.
     fn run(&self, start: Instant, mut turn: impl FnMut() -> Option<Now>) {
-        // The thread is only ever set here.
+        // This is the only place that sets the thread.
         let _ = self.thread.set(thread::current());
         while !self.is_over.load(Ordering::SeqCst) {
             self.planned.store(u64::MAX, Ordering::SeqCst);
@@ -64,7 +63,7 @@ fn nanos(at: Now) -> u64 {
     u64::try_from(at.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// The threads; they end when it is dropped.
+/// The running threads. They stop when it is dropped.
 #[derive(Debug)]
 pub(super) struct Engine {
     alarm: Arc<Alarm>,
@@ -72,15 +71,15 @@ pub(super) struct Engine {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// The thread for sockets before it runs, so that sockets can be opened on it.
+/// The socket thread before it starts, so that sockets can be opened on its runtime.
 #[derive(Debug)]
 pub(super) struct Prepared {
-    /// `None` once it runs on its thread.
+    /// `None` after the thread has started.
     runtime: Option<Runtime>,
     handle: Handle,
 }
 
-/// Where sockets could not be opened it goes unused, maybe on a thread that must not wait for it.
+/// If it was never started, this drop can run inside another runtime, which must not block.
 impl Drop for Prepared {
     fn drop(&mut self) {
         if let Some(runtime) = self.runtime.take() {
@@ -95,12 +94,11 @@ impl Prepared {
         Ok(Self { handle: runtime.handle().clone(), runtime: Some(runtime) })
     }
 
-    /// Where tasks run.
     pub(super) fn handle(&self) -> &Handle {
         &self.handle
     }
 
-    /// Starts both threads. `turn` does what is due by the clock and says when to do so again.
+    /// Starts both threads. `turn` does what is due, and returns the time of its next call.
     pub(super) fn start(
         mut self,
         name: &str,
@@ -113,7 +111,7 @@ impl Prepared {
         let runtime = self.runtime.take();
         let sockets = thread::Builder::new().name(format!("{name}-io"));
         engine.threads.push(sockets.spawn(move || {
-            // An error says that the engine is gone, which is what is waited for.
+            // An error means that the engine is dropped, which is also a reason to stop.
             let _ = runtime.map(|runtime| runtime.block_on(quits));
         })?);
         let clock = thread::Builder::new().name(format!("{name}-clock"));
@@ -127,14 +125,14 @@ impl Drop for Engine {
         self.alarm.stop();
         self.quit = None;
         for thread in self.threads.drain(..) {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }
 }
 
-/// Runs something on the thread for sockets.
+/// Starts a task on the socket thread.
 pub(super) fn spawn(handle: &Handle, task: impl Future<Output = ()> + Send + 'static) {
-    // Tasks end with the runtime; nobody waits for one.
+    // Tasks end with the runtime.
     drop(handle.spawn(task));
 }

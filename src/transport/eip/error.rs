@@ -1,4 +1,4 @@
-//! What can go wrong between an originator and a device.
+//! Errors of EtherNet/IP connections.
 
 use std::io;
 use std::time::Duration;
@@ -11,102 +11,102 @@ use crate::image::view::BusError;
 use crate::local::LocalError;
 use crate::plain;
 
-/// Why something did not come about.
+/// An error of a request or connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum EipError {
-    /// No address belongs to the name.
+    /// The host name has no address.
     #[error("cannot find host '{host}'")]
     NotFound {
-        /// The name.
+        /// Host name.
         host: String,
     },
-    /// The addresses are not IPv4.
+    /// The host has no IPv4 address.
     #[error("'{host}' has no IPv4 address, as EtherNet/IP needs")]
     NotIpv4 {
-        /// The name.
+        /// Host name.
         host: String,
     },
-    /// Nobody listens there, or nobody is there.
+    /// TCP connection refused or timed out.
     #[error("no TCP connection: {text}")]
     Unreachable {
-        /// The system's reason.
+        /// Kind of the system error.
         kind: io::ErrorKind,
-        /// In its words.
+        /// Text of the system error.
         text: String,
     },
-    /// The TCP connection ended before the answer.
+    /// The TCP connection was closed before the answer.
     #[error("the TCP connection ended before {what} was answered")]
     Hangup {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
     },
     /// No answer in time.
     #[error("{what} was not answered within {} ms", after.as_millis())]
     NoAnswer {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
-    /// The encapsulation refused.
+    /// Encapsulation error.
     #[error("{what} was refused: {} ({status:#04x})", status::encapsulation(*status).map_or("an unknown status", |code| code.name))]
     Encapsulation {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// The status.
+        /// Encapsulation status.
         status: u32,
     },
-    /// The device refused.
+    /// CIP error response.
     #[error("{what} was refused: {}", status::describe(status))]
     Refused {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// The status.
+        /// CIP status.
         status: Status,
     },
-    /// An answer that cannot be read.
+    /// The answer cannot be decoded.
     #[error("the answer to {what} cannot be read: {error}")]
     Malformed {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
         /// The field that is wrong.
         error: WireError,
     },
-    /// An answer that can be read, and makes no sense.
+    /// The answer can be decoded, but is not valid.
     #[error("the answer to {what} makes no sense: {why}")]
     Senseless {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// What is wrong with it.
+        /// What is wrong with the answer.
         why: &'static str,
     },
-    /// The device no longer sends its image.
+    /// Timeout: the device stopped sending its image.
     #[error("no image came for {} ms", after.as_millis())]
     Silent {
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
-    /// The image or the wish is for a connection that has ended meanwhile.
+    /// The connection was lost after the caller last looked at it (an older generation).
     #[error("the connection was lost meanwhile")]
     Outdated,
-    /// An assembly that was read has another size than was expected.
+    /// An assembly does not have the expected size.
     #[error("the input assembly has {found} bytes, not {expected}")]
     WrongSize {
-        /// Its bytes.
+        /// Size in bytes.
         found: usize,
-        /// What was expected.
+        /// Expected size.
         expected: u16,
     },
-    /// The connection was closed here.
+    /// The connection was closed by this program.
     #[error("the connection is closed")]
     Ended,
-    /// A local socket did not work.
+    /// A local socket failed.
     #[error(transparent)]
     Local(#[from] LocalError),
-    /// Something that cannot be, such as settings that no connection can have; nothing was sent.
+    /// Invalid settings or request; nothing was sent.
     #[error("{0}")]
     Impossible(
-        /// Why it cannot be.
+        /// The reason.
         String,
     ),
 }
@@ -121,7 +121,7 @@ impl EipError {
         Self::Unreachable { kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
-    /// What the code in it means, and what to do about it.
+    /// Meaning and remedy of the status code in the error.
     pub fn code(&self) -> Option<&'static status::Code> {
         match self {
             Self::Encapsulation { status, .. } => status::encapsulation(*status),

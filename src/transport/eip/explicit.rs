@@ -1,46 +1,43 @@
-//! Messages to objects of a device, and what it answers.
+//! Explicit messages: requests to objects and their answers.
 
 use super::error::EipError;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
-/// Most data of a request: with the rest it fits a frame. Devices take less.
+/// Limit of request data, so that the message fits a frame. Devices accept less.
 const MOST_DATA: usize = 60_000;
-/// Most bytes of a path: its length has a byte, in words.
+/// Limit of a path in bytes: its length field is one byte and counts words.
 const MOST_PATH: usize = 510;
 
 /// A request to an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// What is to be done; see [`service`].
+    /// Service code; see [`service`].
     pub service: u8,
-    /// The object.
+    /// Path of the object.
     pub path: Path,
-    /// What the service takes.
+    /// Service data.
     pub data: Vec<u8>,
 }
 
 impl Message {
-    /// Reads an attribute.
+    /// Get_Attribute_Single.
     pub fn get(class: u32, instance: u32, attribute: u32) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::ATTRIBUTE_SINGLE, path, data: Vec::new() }
     }
 
-    /// Reads all attributes of an instance.
+    /// Get_Attributes_All.
     pub fn get_all(class: u32, instance: u32) -> Self {
         Self { service: service::ATTRIBUTES_ALL, path: Path::object(class, instance), data: Vec::new() }
     }
 
-    /// Changes an attribute.
+    /// Set_Attribute_Single.
     pub fn set(class: u32, instance: u32, attribute: u32, value: &[u8]) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::SET_ATTRIBUTE_SINGLE, path, data: value.to_vec() }
     }
 
-    /// The data of the frame that carries it.
-    ///
-    /// # Errors
-    /// If it takes more than a message can hold.
+    /// Encodes the frame data.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
             let text = format!("a message has {MOST_DATA} bytes of data and {MOST_PATH} of path at most");
@@ -49,23 +46,23 @@ impl Message {
         Ok(RrData::new(&self.request()).emit())
     }
 
-    /// The message itself: service, path, data.
+    /// Encodes the message: service, path, data.
     pub fn request(&self) -> Vec<u8> {
         Request { service: self.service, path: self.path.clone(), data: &self.data }.emit()
     }
 }
 
-/// What a device answered; a refusal is an answer, too.
+/// Answer of a device, including a refusal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
-    /// How it went.
+    /// CIP status.
     pub status: Status,
-    /// What the service gives, or more about a refusal.
+    /// Response data, or details of a refusal.
     pub data: Vec<u8>,
 }
 
 impl Answer {
-    /// Reads the data of a frame that answers `what`.
+    /// Decodes the frame data of the answer to `what`.
     pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, EipError> {
         let malformed = |error| EipError::Malformed { what, error };
         let message = RrData::parse_answer(data).map_err(malformed)?.message;
@@ -73,7 +70,7 @@ impl Answer {
         Ok(Self { status: reply.status, data: reply.data.to_vec() })
     }
 
-    /// What the service gives; a refusal is a trouble.
+    /// Returns the data. A refusal becomes an error.
     pub fn done(self, what: &'static str) -> Result<Vec<u8>, EipError> {
         if self.status.is_ok() { Ok(self.data) } else { Err(EipError::Refused { what, status: self.status }) }
     }

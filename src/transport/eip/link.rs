@@ -1,4 +1,4 @@
-//! The seam for fieldbuses over EtherNet/IP: a class 1 connection, or an assembly that is read by messages.
+//! EtherNet/IP as a fieldbus of images: a class 1 connection, or an assembly read with messages.
 
 use std::net::{SocketAddr, SocketAddrV4};
 use std::sync::Arc;
@@ -20,16 +20,16 @@ use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Siz
 /// A class 1 connection.
 pub type Class1 = Cyclic<Device>;
 
-/// The device of one.
+/// The device of a class 1 connection.
 #[derive(Debug)]
 pub struct Device {
     connection: Connection,
-    /// What it does with its outputs once it does not hear this end any more.
+    /// What the device does with its outputs after a loss.
     outputs: Outputs,
 }
 
 impl Class1 {
-    /// Opens it to the first IPv4 address of the host. All of a process share a UDP socket.
+    /// Connects to the first IPv4 address of the host. All connections of a process share one UDP socket.
     pub async fn open(host: &str, port: u16, settings: Settings, tap: Tap) -> Result<Self, EipError> {
         let target = resolve(host, port).await?;
         let sizes = Sizes { output: settings.output_size.into(), input: settings.input_size.into() };
@@ -55,7 +55,7 @@ impl Bus for Device {
 
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         let change = self.connection.set_image(generation, image)?;
-        // From the first image after an opening on the device may act upon it.
+        // With the first image after an opening, set the device to run.
         let runs = self.connection.view().details.run;
         if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
@@ -82,7 +82,7 @@ impl Bus for Device {
     }
 }
 
-/// What the device shows in an assembly, by messages with a pause between them. Nothing can be shown to it.
+/// An assembly read with messages at an interval. It has no outputs.
 #[derive(Debug)]
 pub struct Reading {
     reader: Reader,
@@ -90,10 +90,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Reads it for the first time.
-    ///
-    /// # Errors
-    /// When it cannot be read.
+    /// Reads the assembly for the first time.
     pub async fn open(client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
         let reader = Reader::open(client, assembly, pause).await?;
         Ok(Self { reader, size: assembly.size.into() })
@@ -132,10 +129,7 @@ impl ImageConnection for Reading {
     }
 }
 
-/// The first IPv4 address of a host.
-///
-/// # Errors
-/// When there is none.
+/// First IPv4 address of a host.
 pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     let found = tokio::net::lookup_host((host, port)).await;
     let mut addresses = found.map_err(|_| EipError::NotFound { host: host.to_owned() })?;
@@ -146,9 +140,9 @@ pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     first.ok_or_else(|| EipError::NotIpv4 { host: host.to_owned() })
 }
 
-/// Extended status of a refusal: somebody owns the outputs.
+/// Extended status: another originator owns the outputs.
 const OWNED: u32 = 0x0106;
-/// What of a URL a device may not like.
+/// URL options that a refusal can be about.
 const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
@@ -183,7 +177,7 @@ impl From<EipError> for LinkError {
     }
 }
 
-/// A remedy as advice is written: small, without a full stop.
+/// Converts a remedy to the form of an advice: lower case, no full stop.
 pub fn as_advice(remedy: &str) -> String {
     let mut chars = remedy.trim_end_matches('.').chars();
     chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()

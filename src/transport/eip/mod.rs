@@ -1,6 +1,6 @@
-//! EtherNet/IP: images to and from an adapter, cyclically over UDP, and messages to it over TCP.
+//! EtherNet/IP originator and simulated adapter: cyclic images over UDP, explicit messages over TCP.
 //!
-//! Knows bytes of assemblies and no robot.
+//! This module knows assemblies and bytes, but no robots.
 
 use std::time::Duration;
 
@@ -22,14 +22,14 @@ pub mod status;
 pub mod tap;
 pub mod wire;
 
-/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+/// A moment, as time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;
 
 /// TCP port of sessions, and UDP port of ListIdentity.
 pub const PORT: u16 = 44818;
 /// UDP port of cyclic data.
 pub const IO_PORT: u16 = 2222;
-/// The class of assemblies.
+/// Class code of the assembly object.
 pub const ASSEMBLY: u32 = 4;
-/// Vendors have numbers from the ODVA; this program's maker has none. Targets only tell originators apart by it.
+/// Vendor id of this program. ODVA has not assigned one; targets use it only to identify originators.
 pub const UNREGISTERED_VENDOR: u16 = 0xFFFF;

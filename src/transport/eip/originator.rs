@@ -1,9 +1,9 @@
-//! The originator's end of a connection: opens it, sends and hears images, notices its loss, opens it again. Without
-//! sockets and without a clock.
+//! Originator of a connection: opens it, exchanges images, detects its loss, opens it again. It has no sockets and no
+//! clock.
 //!
-//! Every opening is a generation. What is to be sent names the generation it is meant for: after a loss the device gets
-//! the resting image, idle, until somebody who knows of the loss says otherwise. So nothing that was meant for the time
-//! before can happen a second time.
+//! Each opening starts a new generation, and every image to send names its generation. After a loss, the device gets
+//! the resting image in idle mode until a caller that has seen the loss sets another. Therefore no image from before a
+//! loss is sent again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -28,11 +28,11 @@ const OPEN: Token = Token(0);
 const CLOSE: Token = Token(1);
 const FORWARD_OPEN: &str = "ForwardOpen";
 const FORWARD_CLOSE: &str = "ForwardClose";
-/// Class 1, cyclic.
+/// Transport class 1, cyclic.
 const TRANSPORT: u8 = 1;
-/// Extended status of a close: there is no such connection.
+/// Extended status of a ForwardClose: no such connection.
 const NOT_FOUND: u16 = 0x0107;
-/// Waits before another try, one after the other; the last one again and again.
+/// Pauses before another attempt. The last one repeats.
 const BACKOFF: [Duration; 5] = [
     Duration::from_millis(250),
     Duration::from_millis(500),
@@ -41,26 +41,26 @@ const BACKOFF: [Duration; 5] = [
     Duration::from_secs(5),
 ];
 
-/// What is to be done.
+/// An action for the driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Action {
-    /// Open the TCP connection to the device; then [`Originator::connected`] or [`Originator::hung_up`].
+    /// Open the TCP connection; then call [`Originator::connected`] or [`Originator::hung_up`].
     Connect,
-    /// Send this on it.
+    /// Send these bytes on the TCP connection.
     Send(Vec<u8>),
-    /// Close it.
+    /// Close the TCP connection.
     Disconnect,
-    /// Send this by UDP.
+    /// Send this datagram.
     Datagram(SocketAddrV4, Vec<u8>),
-    /// Hear this group.
+    /// Join this multicast group.
     Join(Ipv4Addr),
-    /// Hear it no longer.
+    /// Leave this multicast group.
     Leave(Ipv4Addr),
-    /// A message of the caller's was answered.
+    /// Deliver the answer to a caller's message.
     Answer(Token, Result<Vec<u8>, EipError>),
 }
 
-/// A stream each way.
+/// Image streams in both directions.
 #[derive(Debug, Clone)]
 struct Io {
     producer: Producer,
@@ -73,21 +73,21 @@ struct Io {
 enum Phase {
     /// Before the first poll.
     New,
-    /// ForwardOpen is on its way.
+    /// ForwardOpen was sent.
     Opening,
     Open,
-    /// The last image, idle, goes out before the close: as many datagrams had been sent.
+    /// Sending one last image in idle mode before the close. The number is that of the datagrams sent before.
     Parting(u64),
-    /// ForwardClose is on its way; then all ends, or it is opened again.
+    /// ForwardClose was sent. Then the connection ends, or opens again.
     Closing {
         again: bool,
     },
-    /// Until the next try.
+    /// Waiting until the next attempt.
     Waiting(Now),
     Ended,
 }
 
-/// A connection.
+/// A connection to a device.
 #[derive(Debug)]
 pub struct Originator {
     settings: Settings,
@@ -101,10 +101,10 @@ pub struct Originator {
     io: Option<Io>,
     image: Vec<u8>,
     revision: u64,
-    /// Whether it is to end as soon as it can.
+    /// The caller has closed the connection.
     is_over: bool,
     tries: usize,
-    /// What earlier generations counted.
+    /// Counters of earlier generations.
     before: Statistics,
     view: View,
     has_changed: bool,
@@ -112,10 +112,7 @@ pub struct Originator {
 }
 
 impl Originator {
-    /// A connection to the device at `target` (its TCP address); images are heard on UDP port `port`.
-    ///
-    /// # Errors
-    /// If no connection can be as `settings` say.
+    /// Creates a connection to the device at this TCP address. Images arrive on UDP port `port`.
     pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
         settings.check()?;
         Ok(Self {
@@ -139,12 +136,12 @@ impl Originator {
         })
     }
 
-    /// Where the device is.
+    /// TCP address of the device.
     pub const fn target(&self) -> SocketAddrV4 {
         self.target
     }
 
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         let mut view = self.view.clone();
         view.statistics = self.before;
@@ -154,21 +151,21 @@ impl Originator {
         view
     }
 
-    /// Whether there is something new to see since this was last asked.
+    /// Whether the view changed since the last call.
     pub const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.has_changed, false)
     }
 
-    /// Whether all has ended and nothing is left to do.
+    /// Whether the connection has ended and no action is left.
     pub fn is_finished(&self) -> bool {
         self.phase == Phase::Ended && self.actions.is_empty()
     }
 
-    /// Sends this image from the next interval on, and says which change it was: it has gone out when the view's `sent`
-    /// is as high.
+    /// Sends this image from the next interval on. Returns the number of the change. It was sent when `sent` of the
+    /// view has reached that number.
     ///
     /// # Errors
-    /// If the connection is not open in this generation, or the image has another size.
+    /// The connection is not open in this generation, or the image has another size.
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         self.view.check(generation)?;
         if image.len() != self.image.len() {
@@ -180,10 +177,10 @@ impl Originator {
         Ok(self.revision)
     }
 
-    /// Tells the device to run, or that its master idles; likewise.
+    /// Sets the run/idle bit. Returns the number of the change, as [`set_image`](Self::set_image) does.
     ///
     /// # Errors
-    /// If the connection is not open in this generation.
+    /// The connection is not open in this generation.
     pub fn set_run(&mut self, generation: u32, run: bool) -> Result<u64, EipError> {
         self.view.check(generation)?;
         self.view.details.run = run;
@@ -191,7 +188,7 @@ impl Originator {
         Ok(self.revision)
     }
 
-    /// Asks something over the same session. Tokens 0 and 1 are taken.
+    /// Sends a message on the same session. Tokens 0 and 1 are reserved.
     pub fn ask(&mut self, ask: Ask) {
         if self.phase == Phase::Ended {
             self.actions.push_back(Action::Answer(ask.token, Err(EipError::Ended)));
@@ -200,7 +197,7 @@ impl Originator {
         }
     }
 
-    /// Ends the connection: idle once more, then a proper close.
+    /// Closes the connection: one image in idle mode, then ForwardClose.
     pub fn close(&mut self) {
         if self.is_over {
             return;
@@ -213,40 +210,40 @@ impl Originator {
                 self.show(State::Closing);
             }
             Phase::New | Phase::Waiting(_) => self.finish(None),
-            // The answer that is awaited comes first.
+            // The pending answer comes first.
             Phase::Opening | Phase::Closing { .. } => self.show(State::Closing),
             Phase::Parting(_) | Phase::Ended => {}
         }
     }
 
-    /// The TCP connection is there.
+    /// The TCP connection is open.
     pub fn connected(&mut self, now: Now) {
         self.session.connected(now);
     }
 
-    /// The TCP connection did not come about, or ended. Images travel on without it.
+    /// The TCP connection failed or was closed. The image exchange does not need it.
     pub fn hung_up(&mut self, why: &EipError) {
         self.session.lost(why);
     }
 
-    /// Something arrived on the TCP connection.
+    /// Handles bytes from the TCP connection.
     pub fn received(&mut self, now: Now, bytes: &[u8]) {
         self.session.received(now, bytes);
     }
 
-    /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
+    /// An action on a local socket failed. The connection continues until it times out.
     pub fn failed(&mut self, trouble: EipError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
     }
 
-    /// Whether datagrams of this id, from this address, are for this connection.
+    /// Whether datagrams with this id from this address belong to the connection.
     pub fn expects(&self, from: Ipv4Addr, id: u32) -> bool {
         let hosts = |io: &Io| from == *self.target.ip() || from == *io.destination.ip();
         self.io.as_ref().is_some_and(|io| io.consumer.id() == id && hosts(io))
     }
 
-    /// A datagram for this connection arrived.
+    /// Handles a datagram of this connection.
     pub fn hear(&mut self, now: Now, datagram: &Cyclic<'_>) {
         let Some(io) = &mut self.io else { return };
         match io.consumer.take(now, datagram) {
@@ -265,7 +262,7 @@ impl Originator {
         }
     }
 
-    /// What to do at `now`; call until it answers `None`.
+    /// Returns the next action at `now`. Call it until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Action> {
         loop {
             if let Some(action) = self.actions.pop_front() {
@@ -284,7 +281,7 @@ impl Originator {
         }
     }
 
-    /// When to call again at the latest.
+    /// Latest time of the next call.
     pub fn wake(&self) -> Option<Now> {
         let own = match self.phase {
             Phase::New => Some(Now::ZERO),
@@ -295,7 +292,7 @@ impl Originator {
         [own, io, self.session.wake()].into_iter().flatten().min()
     }
 
-    /// Does what is due; says whether anything was.
+    /// Does what is due. Returns whether anything was due.
     fn advance(&mut self, now: Now) -> bool {
         match self.phase {
             Phase::New => self.open(),
@@ -308,7 +305,7 @@ impl Originator {
         true
     }
 
-    /// Sends what is due, and looks whether the device has gone.
+    /// Sends a due image, and checks whether the device has timed out.
     fn exchange(&mut self, now: Now) -> bool {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
@@ -342,20 +339,20 @@ impl Originator {
             transport: TRANSPORT,
             path: self.settings.opening_path(),
         };
-        // A group has its port from the device; else this is where we listen.
+        // The device chooses the port of a group. Otherwise, name our own port.
         let own = (open.t_o.net == Net::PointToPoint).then(|| SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
         let data = RrData { t_o: own, ..RrData::new(&open.emit()) }.emit();
         self.session.ask(Ask { token: OPEN, what: FORWARD_OPEN, command: Command::SEND_RR_DATA, data });
     }
 
-    /// ForwardOpen has come to its end.
+    /// Handles the outcome of ForwardOpen.
     fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, EipError>) {
         let trouble = match result.and_then(|data| self.opened(now, &data)) {
             Ok(()) if self.is_over => return self.ask_close(false),
             Ok(()) => return,
             Err(trouble) => trouble,
         };
-        // Unless it was refused, the device may have opened it.
+        // Without a refusal, the device may have opened the connection.
         let is_refusal = matches!(trouble, EipError::Refused { .. } | EipError::Encapsulation { .. });
         let again = self.view.generation > 0 && !self.is_over;
         self.view.trouble = Some(trouble);
@@ -402,8 +399,8 @@ impl Originator {
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);
         self.io = Some(Io {
-            // Devices begin to send when they answer. Half an interval later, what they make of an image goes back with
-            // the next one instead of just missing it.
+            // Devices start to send with their answer. A start half an interval later means that their reaction to our
+            // image is in their next one.
             producer: Producer::new(opened.o_t_id, to, now.saturating_add(to / 2)),
             consumer: Consumer::new(opened.t_o_id, size, false, from, intervals, now),
             destination,
@@ -417,7 +414,7 @@ impl Originator {
         Ok(())
     }
 
-    /// The device has gone silent.
+    /// The device has timed out.
     fn lose(&mut self, trouble: EipError) {
         self.stop();
         self.view.trouble = Some(trouble);
@@ -426,7 +423,8 @@ impl Originator {
                 self.image.clone_from(&self.settings.resting);
                 self.view.details.run = false;
                 self.show(State::Lost);
-                // The device may only have lost its way to us: a proper close frees it for the next opening.
+                // Possibly only the path from the device to us is broken. ForwardClose frees the connection for the
+                // next opening.
                 self.ask_close(true);
             }
             Phase::Parting(_) => self.ask_close(false),
@@ -441,7 +439,7 @@ impl Originator {
         self.session.ask(Ask { token: CLOSE, what: FORWARD_CLOSE, command: Command::SEND_RR_DATA, data });
     }
 
-    /// ForwardClose has come to its end.
+    /// Handles the outcome of ForwardClose.
     fn closed(&mut self, now: Now, result: Result<Vec<u8>, EipError>) {
         self.stop();
         let Phase::Closing { again } = self.phase else { return };
@@ -451,7 +449,7 @@ impl Originator {
         let outcome = result.and_then(|data| Answer::parse(FORWARD_CLOSE, &data)).and_then(|answer| {
             if answer.status.extended.first() == Some(&NOT_FOUND) { Ok(Vec::new()) } else { answer.done(FORWARD_CLOSE) }
         });
-        // A close that failed is told, unless something else had gone wrong before.
+        // A failed close is reported, unless there was an earlier error.
         self.finish(outcome.err());
     }
 
@@ -472,7 +470,7 @@ impl Originator {
         self.show(State::Closed);
     }
 
-    /// Ends the streams, and keeps what they counted.
+    /// Stops the streams and saves their counters.
     fn stop(&mut self) {
         if let Some(io) = self.io.take() {
             self.before.add(&io.producer, &io.consumer);

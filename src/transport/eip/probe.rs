@@ -1,8 +1,8 @@
-//! Finds out which assemblies a device has, of which sizes, and which of them make a connection.
+//! Search for the assemblies of a device, their sizes, and a combination that makes a connection.
 //!
-//! A survey reads assemblies and asks for nothing else. A probe asks for connections as well, with sizes that no assembly
-//! has, so that the device refuses them and says why: which instances it does not have, and which sizes are right. A device
-//! that opens one all the same has this program as its master until it is told to close it: a probe may take command.
+//! A survey only reads assemblies. A probe also requests connections with a size that no assembly has. The device
+//! refuses, and the reason names missing instances and correct sizes. A device that accepts such a connection has this
+//! program as its master until the connection is closed. A probe can therefore take control.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,46 +17,46 @@ use super::{ASSEMBLY, UNREGISTERED_VENDOR};
 /// Attributes of an assembly.
 const DATA: u32 = 3;
 const SIZE: u32 = 4;
-/// Instances that are looked at: those of devices with 8-bit numbers.
+/// Instances that are searched: the 8-bit numbers.
 pub const INSTANCES: std::ops::RangeInclusive<u32> = 1..=255;
-/// Configurations that are tried, `None` for none at all.
+/// Configuration instances that are tried; `None` means no configuration.
 const CONFIGURATIONS: [Option<u32>; 5] = [Some(1), Some(5), Some(151), Some(199), None];
-/// Refusals.
+/// Status codes of refusals.
 const NO_SUCH_OBJECT: [u8; 2] = [0x05, 0x16];
 const SIZES: u16 = 0x0109;
 const O_T_SIZE: u16 = 0x0127;
 const T_O_SIZE: u16 = 0x0128;
 const OWNED: u16 = 0x0106;
-/// The interval that is asked for; all devices have it.
+/// Requested interval; all devices support it.
 const RPI: Duration = Duration::from_millis(100);
-/// Bytes on the wire before the image to the device: count and header; and before the one from it.
+/// Overhead before the image. To the device: sequence count and header. From the device: sequence count.
 const O_T_EXTRA: u16 = 6;
 const T_O_EXTRA: u16 = 2;
 /// A size that no assembly has.
 const NEVER: u16 = 499;
 
-/// An assembly that can be read.
+/// A readable assembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Assembly {
-    /// Its number.
+    /// Instance number.
     pub instance: u32,
-    /// Its bytes, where the device tells.
+    /// Size in bytes, if the device reports it.
     pub size: Option<u16>,
 }
 
-/// Instances that a connection may be made of.
+/// Instances of a possible connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instances {
-    /// What the device takes.
+    /// Consumed assembly (output).
     pub output: u32,
-    /// What it sends.
+    /// Produced assembly (input).
     pub input: u32,
-    /// Its configuration.
+    /// Configuration assembly.
     pub configuration: Option<u32>,
 }
 
 impl fmt::Display for Instances {
-    /// "out 150, in 100, config 1".
+    /// Format: "out 150, in 100, config 1".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "out {}, in {}, ", self.output, self.input)?;
         match self.configuration {
@@ -66,46 +66,46 @@ impl fmt::Display for Instances {
     }
 }
 
-/// A connection that was asked for, and how that went.
+/// A requested connection and its result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Attempt {
-    /// Of which instances.
+    /// Requested instances.
     pub instances: Instances,
-    /// Bytes of the images: to the device, from it.
+    /// Requested image sizes in bytes: to the device, from the device.
     pub sizes: (u16, u16),
-    /// What the device said.
+    /// Status of the answer.
     pub status: Status,
 }
 
-/// What can be connected to.
+/// A possible connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Connectable {
-    /// Of which instances.
+    /// Instances of the connection.
     pub instances: Instances,
-    /// Bytes of the image to the device, where it tells.
+    /// Size of the image to the device in bytes, if the device reports it.
     pub output_size: Option<u16>,
-    /// Bytes of the image from the device, likewise.
+    /// Size of the image from the device in bytes, if the device reports it.
     pub input_size: Option<u16>,
 }
 
-/// All that was found.
+/// Result of a search.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Findings {
-    /// Who the device is, if it says so.
+    /// Identity, if the device reports it.
     pub identity: Option<Identity>,
-    /// The assemblies that can be read.
+    /// Readable assemblies.
     pub assemblies: Vec<Assembly>,
-    /// What was tried, in order.
+    /// Attempts, in order.
     pub attempts: Vec<Attempt>,
-    /// What can be connected to, if anything.
+    /// The possible connection, if one was found.
     pub connectable: Option<Connectable>,
 }
 
-/// Reads every assembly of [`INSTANCES`], one by one, and opens no connection. `thought` are instances that may be right,
-/// the likeliest first; the first ones that can all be read are connectable.
+/// Reads every assembly of [`INSTANCES`], without a connection. `thought` are candidates, likeliest first. The first
+/// candidate whose assemblies can all be read is reported as connectable.
 ///
 /// # Errors
-/// When the device does not answer, or answers nonsense. What it refuses is what is found.
+/// The device does not answer, or its answer is invalid. A refusal is a result.
 pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findings, EipError> {
     let identity = match client.identity().await {
         Err(EipError::Encapsulation { .. }) => None,
@@ -125,11 +125,11 @@ pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findin
     Ok(Findings { identity, assemblies, attempts: Vec::new(), connectable })
 }
 
-/// A survey, then connections of likely instances, beginning with those that are thought to be right, until one would be
-/// opened with the right sizes. A device that opens one in spite of its wrong sizes is commanded until that is closed.
+/// Makes a survey, then requests connections of likely instances, `thought` first, until one would be accepted with
+/// correct sizes. A device that accepts wrong sizes is controlled by this program until the connection is closed.
 ///
 /// # Errors
-/// Likewise.
+/// As in [`survey`].
 pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, EipError> {
     let Findings { identity, assemblies, mut attempts, .. } = survey(client, &[]).await?;
     for instances in likely(thought, &assemblies) {
@@ -140,21 +140,21 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
     Ok(Findings { identity, assemblies, attempts, connectable: None })
 }
 
-/// What reading tells of one assembly.
+/// Result of reading one assembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Presence {
-    /// There is none of that number.
+    /// The instance does not exist.
     Absent,
-    /// The device tells neither its bytes nor its size.
+    /// The device reports neither data nor size.
     Unknown,
-    /// It can be read, or its size can.
+    /// The data or the size can be read.
     Readable(Assembly),
 }
 
 /// Reads one assembly.
 ///
 /// # Errors
-/// Likewise.
+/// As in [`survey`].
 pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, EipError> {
     let what = "Get_Attribute_Single of an assembly";
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, DATA)).await?;
@@ -164,15 +164,15 @@ pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, Ei
     if NO_SUCH_OBJECT.contains(&answer.status.general) {
         return Ok(Presence::Absent);
     }
-    // It is there, and cannot be read; its size may be.
+    // The assembly exists, but its data cannot be read. Its size may be readable.
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, SIZE)).await?;
     let size = answer.data.first_chunk().filter(|_| answer.status.is_ok()).map(|bytes| u16::from_le_bytes(*bytes));
-    // A device that refuses everything alike says nothing by it.
+    // If the device refuses both requests, nothing is known.
     Ok(size.map_or(Presence::Unknown, |size| Presence::Readable(Assembly { instance, size: Some(size) })))
 }
 
-/// Instances worth a try: those thought of, the same exchanged, then pairs that were found; each with likely
-/// configurations.
+/// Candidates: the given instances, the same with input and output exchanged, then pairs that were found. Each is tried
+/// with likely configurations.
 fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     let exchanged = (thought.input, thought.output);
     let mut pairs = vec![(thought.output, thought.input), exchanged];
@@ -193,10 +193,10 @@ fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     all
 }
 
-/// Most assemblies of which all pairs are tried.
+/// Limit of assemblies of which all pairs are tried.
 const MOST_PAIRED: usize = 6;
 
-/// Asks for a connection of these instances until its sizes are known, or the instances are wrong.
+/// Requests a connection of these instances until the sizes are known, or the instances are wrong.
 async fn attempt(
     client: &mut Client,
     instances: Instances,
@@ -222,12 +222,12 @@ async fn attempt(
     }))
 }
 
-/// What is known of two sizes.
+/// What is known of the two sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Guess {
     output: Option<u16>,
     input: Option<u16>,
-    /// A size on the wire that the device named without saying for which way, as it is tried now.
+    /// A size that the device named without a direction, and the direction that is tried now.
     unclear: Option<(u16, Way)>,
     tries: u8,
 }
@@ -240,16 +240,16 @@ enum Way {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Progress {
-    /// Ask again, with the next sizes.
+    /// Ask again with the next sizes.
     Again,
     /// These instances make no connection.
     Wrong,
-    /// All is known that the device tells.
+    /// The device has reported all it can.
     Known,
 }
 
 impl Guess {
-    /// The sizes to ask for next. One of them is always wrong.
+    /// Sizes of the next request. One of them is always wrong.
     fn next(&mut self) -> (u16, u16) {
         self.tries += 1;
         match self.unclear {
@@ -263,7 +263,7 @@ impl Guess {
 
     fn take(&mut self, status: &Status) -> Progress {
         let (code, right) = match status.extended[..] {
-            // Opened, or somebody else has it open: there is nothing wrong with the instances.
+            // Accepted, or another originator has it open. The instances are correct.
             _ if status.is_ok() => return Progress::Known,
             [OWNED, ..] if status.general == 1 => return Progress::Known,
             [code @ (SIZES | O_T_SIZE | T_O_SIZE), ref more @ ..] if status.general == 1 => {
@@ -276,18 +276,18 @@ impl Guess {
             (O_T_SIZE, _) => self.output = Some(right.saturating_sub(O_T_EXTRA)),
             (T_O_SIZE, _) => self.input = Some(right.saturating_sub(T_O_EXTRA)),
             (_, None) => self.unclear = Some((right, Way::Out)),
-            // The size fitted the way to the device, and now the other way is named.
+            // The size was correct for the direction to the device. Now the device names the other one.
             (_, Some((size, Way::Out))) if size != right => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(right.saturating_sub(T_O_EXTRA));
             }
-            // It did not fit: it is named again. So it was for the other way.
+            // The device named the same size again, so it belongs to the other direction.
             (_, Some((size, Way::Out))) => self.unclear = Some((size, Way::In)),
             (_, Some((size, Way::In))) if size != right => {
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
                 self.output = Some(right.saturating_sub(O_T_EXTRA));
             }
-            // Both ways have the same size on the wire.
+            // Both directions have the same size on the wire.
             (_, Some((size, Way::In))) => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
@@ -298,10 +298,10 @@ impl Guess {
     }
 }
 
-/// Most requests for one pair of instances.
+/// Limit of requests per pair of instances.
 const MOST_TRIES: u8 = 5;
 
-/// Asks for a connection; one that is opened is closed.
+/// Requests a connection. If the device accepts it, closes it.
 async fn open(
     client: &mut Client,
     instances: Instances,
@@ -343,7 +343,7 @@ async fn open(
 mod tests {
     use super::*;
 
-    /// Plays a device with 48 bytes to it and `input` from it, which looks at one way first.
+    /// A device with 48 bytes of output and `input` bytes of input, which checks the direction `first` first.
     fn sizes(first: Way, input: u16, codes: (u16, u16)) -> (Guess, u8) {
         let mut guess = Guess::default();
         loop {
@@ -362,7 +362,7 @@ mod tests {
     fn sizes_are_found_whichever_way_a_device_looks_at_first() {
         for first in [Way::Out, Way::In] {
             for codes in [(SIZES, SIZES), (O_T_SIZE, T_O_SIZE)] {
-                // 52 bytes back are as many on the wire as 48 there.
+                // 52 bytes of input and 48 bytes of output have the same size on the wire.
                 for input in [48, 52, 2, 400] {
                     let (guess, tries) = sizes(first, input, codes);
                     assert_eq!((guess.output, guess.input), (Some(48), Some(input)), "{first:?} {codes:?}");

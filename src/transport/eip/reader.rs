@@ -1,7 +1,7 @@
-//! What a device shows, read by messages over and over.
+//! Image of a device, read with explicit messages at an interval.
 //!
-//! There is no connection for images, so nothing that the device would miss when it ends; a device with an owner is read
-//! all the same.
+//! No I/O connection is opened, so the end of the program has no effect on the device. A device with an owner can be
+//! read.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,24 +14,24 @@ use super::client::Client;
 use super::error::EipError;
 use super::explicit::Message;
 
-/// The attribute of an assembly that is its image.
+/// Attribute 3 of an assembly: its data.
 const IMAGE: u32 = 3;
 /// Pause after a failure.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// What is read.
+/// The assembly to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Assembly {
-    /// Its number.
+    /// Instance number.
     pub instance: u32,
-    /// Its bytes.
+    /// Size in bytes.
     pub size: u16,
 }
 
-/// The newest image, or why there is none.
+/// The newest image, or the error of the last read.
 pub type Reading = Result<Arc<[u8]>, EipError>;
 
-/// Reads an assembly again and again, until it is closed or dropped.
+/// Reads an assembly until it is closed or dropped.
 #[derive(Debug)]
 pub struct Reader {
     readings: watch::Receiver<Reading>,
@@ -39,10 +39,10 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Reads the assembly once, and then again after each pause.
+    /// Reads the assembly once, then again after each pause.
     ///
     /// # Errors
-    /// When it cannot be read. Later failures are readings.
+    /// The first read failed. Later failures are readings.
     pub async fn open(mut client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
         let first = read(&mut client, assembly).await?;
         let (sender, readings) = watch::channel(Ok(first));
@@ -55,18 +55,18 @@ impl Reader {
         self.readings.borrow().clone()
     }
 
-    /// Waits for another reading than those that were seen.
+    /// Waits for the next reading.
     pub async fn changed(&mut self) {
         if self.readings.changed().await.is_err() {
-            // Whoever reads is gone, and nothing changes any more.
+            // The task has ended, so nothing changes any more.
             std::future::pending::<()>().await;
         }
     }
 
-    /// Ends it, and takes leave of the device.
+    /// Stops, and closes the session.
     pub async fn close(self) {
         drop(self.readings);
-        // A task that broke down has ended as well.
+        // A panic of the task also ends it.
         let _ = self.task.await;
     }
 }

@@ -1,4 +1,4 @@
-//! Connections to any number of devices on one UDP socket.
+//! Driver for any number of connections on one UDP socket.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io;
@@ -25,14 +25,14 @@ mod tcp;
 
 use tcp::Line;
 
-/// First token for messages of callers; the ones before are the originator's own.
+/// First token for messages of callers. The originator uses the lower ones.
 const FIRST_TOKEN: u64 = 2;
-/// Datagrams taken at once before others have their turn.
+/// Limit of datagrams handled before other tasks run.
 const AT_ONCE: usize = 64;
-/// Room for the largest datagram.
+/// Receive buffer for the largest datagram.
 const BUFFER: usize = 65_536;
 
-/// Holds connections. It is cheap to clone; its threads end with the last clone and the last connection.
+/// Owner of connections. Clones are cheap. Its threads stop with the last clone and the last connection.
 #[derive(Debug, Clone)]
 pub struct Scanner {
     owner: Arc<Owner>,
@@ -41,7 +41,7 @@ pub struct Scanner {
 #[derive(Debug)]
 struct Owner {
     inner: Arc<Inner>,
-    /// Ends the threads, which hold `inner`, too.
+    /// Stops the threads, which also hold `inner`.
     _engine: Engine,
 }
 
@@ -55,24 +55,24 @@ struct Inner {
     numbers: Arc<Numbers>,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
-    /// Groups with the interface they are heard on, and by how many connections.
+    /// Multicast memberships: group and interface, with the number of connections.
     groups: Mutex<HashMap<(Ipv4Addr, Ipv4Addr), usize>>,
 }
 
-/// A connection and what belongs to it.
+/// A connection with its driver state.
 #[derive(Debug)]
 struct Slot {
     core: Originator,
     tap: Tap,
     line: Option<Line>,
-    /// Our address on the way to the device, once it is known.
+    /// Local address of the path to the device, once known.
     here: Ipv4Addr,
     view: watch::Sender<View>,
     answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, EipError>>>,
 }
 
 impl Scanner {
-    /// The one of this process, on all its addresses: started when there is none, so that all connections share a socket.
+    /// The scanner of this process, on all local addresses. All connections share its socket.
     pub fn shared() -> Result<Self, EipError> {
         static SHARED: Mutex<Weak<Owner>> = Mutex::new(Weak::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -84,7 +84,7 @@ impl Scanner {
         Ok(scanner)
     }
 
-    /// Listens for images on UDP port 2222 of this address, or on any port if another program has that one.
+    /// Binds UDP port 2222, or any port if another program uses that one.
     pub fn start(address: Ipv4Addr) -> Result<Self, EipError> {
         let failed = |error: io::Error| LocalError::new("UDP socket for images", &error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
@@ -121,16 +121,16 @@ impl Scanner {
         Ok(Self { owner: Arc::new(Owner { inner, _engine: engine }) })
     }
 
-    /// The UDP port on which images are heard.
+    /// UDP port on which images arrive.
     pub fn port(&self) -> u16 {
         self.owner.inner.local.port()
     }
 
-    /// Opens a connection to the device whose TCP address this is, and holds it until it is closed or dropped.
+    /// Opens a connection to the device at this TCP address. It stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// When the device is not there, does not answer, or refuses: nothing is tried twice. Later losses are not errors
-    /// but states of the view.
+    /// The device does not answer or refuses; there is no second attempt. A later loss is not an error but a state of
+    /// the view.
     pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
@@ -149,7 +149,7 @@ impl Scanner {
     }
 }
 
-/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+/// An open connection. Dropping it closes it, if the process lives long enough.
 #[derive(Debug)]
 pub struct Connection {
     owner: Arc<Owner>,
@@ -159,17 +159,17 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         self.views.now()
     }
 
-    /// The moment, on the clock of the view's images.
+    /// Current time on the clock of the view's images.
     pub fn now(&self) -> Now {
         self.owner.inner.now()
     }
 
-    /// Waits until the view is so. It never is again once the connection is closed.
+    /// Waits until `condition` is true, or until the connection is closed.
     pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
         self.views.until(condition).await
     }
@@ -179,12 +179,12 @@ impl Connection {
         self.with(|core| core.set_image(generation, image))
     }
 
-    /// Tells the device to run, or that its master idles; see [`Originator::set_run`].
+    /// Sets the run/idle bit; see [`Originator::set_run`].
     pub fn set_run(&self, generation: u32, run: bool) -> Result<u64, EipError> {
         self.with(|core| core.set_run(generation, run))
     }
 
-    /// Asks an object of the device, over the same session. A refusal is an answer.
+    /// Sends a request to an object of the device on the same session. A refusal is an answer.
     pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         let token = Token(self.tokens);
         self.tokens += 1;
@@ -198,7 +198,7 @@ impl Connection {
         Answer::parse(what, &data)
     }
 
-    /// Closes it: idle once more, then a proper close. Says if the device did not confirm that.
+    /// Closes the connection: one image in idle mode, then ForwardClose. Fails if the device did not confirm.
     pub async fn close(mut self) -> Result<(), EipError> {
         let before = self.view().trouble;
         self.with(|core| {
@@ -229,7 +229,7 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with a connection, and all that follows from it; `None` if it is gone.
+    /// Calls `change` with a connection, then executes the resulting actions; `None` if it is closed.
     fn with<T>(self: &Arc<Self>, id: u64, change: impl FnOnce(&mut Slot, Now) -> T) -> Option<T> {
         let mut slots = self.slots();
         let slot = slots.get_mut(&id)?;
@@ -243,7 +243,7 @@ impl Inner {
         Some(result)
     }
 
-    /// Does what is due by the clock, and says when to do so again.
+    /// Does what is due. Returns the time of the next call.
     fn turn(self: &Arc<Self>) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -256,7 +256,7 @@ impl Inner {
         slots.values().filter_map(|slot| slot.core.wake()).min()
     }
 
-    /// Does what a connection wants done, and shows what came of it.
+    /// Executes the actions of a connection, and publishes its view.
     fn follow(self: &Arc<Self>, id: u64, slot: &mut Slot, now: Now) {
         while let Some(action) = slot.core.poll(now) {
             match action {
@@ -275,7 +275,7 @@ impl Inner {
                 }
                 Action::Disconnect => slot.line = None,
                 Action::Datagram(to, bytes) => {
-                    // First, so that no record has an answer before what it answers.
+                    // Before the send, so that a trace never has an answer before its request.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
                         slot.core.failed(LocalError::new("sending an image", &error).into());
@@ -289,7 +289,7 @@ impl Inner {
                 Action::Leave(group) => self.leave(group, slot.here),
                 Action::Answer(token, result) => {
                     if let Some(answer) = slot.answers.remove(&token) {
-                        // Who asked may have gone.
+                        // The caller can be gone already.
                         let _ = answer.send(result);
                     }
                 }
@@ -300,12 +300,11 @@ impl Inner {
         }
     }
 
-    /// A datagram came.
     fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
         let now = self.now();
         let mut slots = self.slots();
-        // Connections to one device may share a group.
+        // Connections to one device can share a multicast group.
         for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
             slot.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
             slot.core.hear(now, &datagram);
@@ -334,13 +333,13 @@ impl Inner {
         let Some(members) = groups.get_mut(&(group, here)).filter(|members| **members > 0) else { return };
         *members -= 1;
         if *members == 0 {
-            // Where this fails the interface is gone, and the group with it.
+            // If this fails, the interface is gone, and the membership with it.
             let _ = self.socket.leave_multicast_v4(&group, &here);
         }
     }
 }
 
-/// Takes datagrams until the runtime ends.
+/// Receives datagrams until the runtime ends.
 async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
     let mut buffer = vec![0; BUFFER];
     loop {
@@ -351,7 +350,7 @@ async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
             match socket.try_recv_from(&mut buffer) {
                 Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
-                // What one device's host says (Windows: port unreachable) is nothing to the others.
+                // The error concerns one device (Windows: port unreachable). The others are not affected.
                 Ok(_) | Err(_) => {}
             }
         }

@@ -1,7 +1,6 @@
-//! A session on a TCP connection: one request at a time, each with its answer, without sockets and without a clock.
+//! Encapsulation session on a TCP connection: one request at a time. It has no sockets and no clock.
 //!
-//! The TCP connection is opened when there is something to ask, and again when it was lost meanwhile. A request that
-//! was sent is never sent again.
+//! The TCP connection opens with the first request, and opens again after a loss. A request is never sent twice.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -10,50 +9,50 @@ use super::Now;
 use super::error::EipError;
 use super::wire::{Command, Frame, Frames};
 
-/// Most requests that wait.
+/// Limit of queued requests.
 const MOST_WAITING: usize = 64;
-/// Status of RegisterSession: the device has no room for another session now.
+/// Status of RegisterSession: the device has no free session.
 const NO_ROOM: u32 = 0x02;
-/// Longest wait before another try to register where there was no room; the first one is a sixteenth of it. Chance
-/// shortens each, so that those who were refused together do not come back together.
+/// Longest pause before another attempt to register; the first is a sixteenth of it. A random factor shortens each, so
+/// that clients refused together do not retry together.
 const MOST_PAUSE: Duration = Duration::from_millis(800);
 
-/// Tells answers apart.
+/// Identifies an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Token(
-    /// Chosen by whoever asks.
+    /// A number that the caller chooses.
     pub u64,
 );
 
 /// A request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ask {
-    /// Which one it is.
+    /// Token of the answer.
     pub token: Token,
-    /// What it is called in error texts.
+    /// Name of the request in error texts.
     pub what: &'static str,
-    /// The encapsulation command.
+    /// Encapsulation command.
     pub command: Command,
-    /// Its data.
+    /// Command data.
     pub data: Vec<u8>,
 }
 
-/// What a session wants done.
+/// An action for the driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
     /// Open the TCP connection; then call [`Session::connected`] or [`Session::lost`].
     Connect,
-    /// Send this on it.
+    /// Send these bytes.
     Send(Vec<u8>),
-    /// Close it; nothing more of it may be handed in.
+    /// Close the TCP connection. Bytes that still arrive from it must be dropped.
     Disconnect,
-    /// A request has come to its end.
+    /// A request is complete.
     Answer {
-        /// Which one.
+        /// Token of the request.
         token: Token,
-        /// Whether it had left the house, so that the device may have acted on it.
+        /// Whether the request was sent, so that the device may have executed it.
         sent: bool,
-        /// The data of the answer.
+        /// Data of the answer.
         result: Result<Vec<u8>, EipError>,
     },
 }
@@ -67,14 +66,14 @@ enum Phase {
     Registering {
         until: Now,
     },
-    /// The device had no room for a session; until the next try.
+    /// The device has no free session. Waiting until the next attempt.
     Full {
         until: Now,
     },
     Up,
 }
 
-/// The session.
+/// An encapsulation session.
 #[derive(Debug, Clone)]
 pub struct Session {
     phase: Phase,
@@ -82,18 +81,18 @@ pub struct Session {
     frames: Frames,
     waiting: VecDeque<Ask>,
     pending: Option<(Ask, Now)>,
-    /// Number of the request that is on its way; it goes in the context, so that no late answer is mistaken.
+    /// Number of the current request. It is the sender context, so a late answer is recognized.
     number: u64,
     timeout: Duration,
-    /// How long to try again where there is no room for a session.
+    /// How long to retry if the device has no free session.
     patience: Duration,
-    /// Since when there is none, and how often it was tried.
+    /// Time of the first refusal for lack of sessions, and the number of attempts.
     full: Option<(Now, u32)>,
     steps: VecDeque<Step>,
 }
 
 impl Session {
-    /// A session that waits this long for a connection, and for an answer.
+    /// Creates a session. `timeout` limits the connection and each answer.
     pub fn new(timeout: Duration) -> Self {
         Self {
             phase: Phase::Down,
@@ -109,13 +108,13 @@ impl Session {
         }
     }
 
-    /// The same, which comes back for so long where a device has no room for another session. No request was sent then.
+    /// Sets how long to retry if the device has no free session. No request was sent in that case.
     #[must_use]
     pub fn patient(self, patience: Duration) -> Self {
         Self { patience, ..self }
     }
 
-    /// Asks, after what waits already.
+    /// Queues a request.
     pub fn ask(&mut self, ask: Ask) {
         if self.waiting.len() >= MOST_WAITING {
             let why = "too many requests wait already";
@@ -125,7 +124,7 @@ impl Session {
         }
     }
 
-    /// What to do at `now`; call until it answers `None`.
+    /// Returns the next action at `now`. Call it until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Step> {
         if self.steps.is_empty() {
             self.advance(now);
@@ -133,7 +132,7 @@ impl Session {
         self.steps.pop_front()
     }
 
-    /// When to call again at the latest.
+    /// Latest time of the next call.
     pub fn wake(&self) -> Option<Now> {
         match self.phase {
             Phase::Connecting { until } | Phase::Registering { until } | Phase::Full { until } => Some(until),
@@ -141,7 +140,7 @@ impl Session {
         }
     }
 
-    /// The TCP connection is there.
+    /// The TCP connection is open.
     pub fn connected(&mut self, now: Now) {
         if matches!(self.phase, Phase::Connecting { .. }) {
             self.frames.clear();
@@ -151,7 +150,7 @@ impl Session {
         }
     }
 
-    /// Something arrived on the TCP connection.
+    /// Handles bytes from the TCP connection.
     pub fn received(&mut self, now: Now, bytes: &[u8]) {
         if matches!(self.phase, Phase::Down | Phase::Full { .. }) {
             return;
@@ -164,20 +163,20 @@ impl Session {
         }
     }
 
-    /// The TCP connection did not come about, or ended; `why` tells whoever waits.
+    /// The TCP connection failed or was closed. `why` is the error for queued requests.
     pub fn lost(&mut self, why: &EipError) {
         let was_up = self.phase == Phase::Up;
         self.phase = Phase::Down;
         if let Some((ask, _)) = self.pending.take() {
             self.answer(ask.token, true, Err(EipError::Hangup { what: ask.what }));
         }
-        // Where nobody answers, nobody is kept waiting. After a hang-up the rest goes by a new connection.
+        // If there was no session, queued requests fail at once. After a closed session they use a new connection.
         if !was_up {
             self.fail_waiting(why);
         }
     }
 
-    /// Takes leave and closes the TCP connection; what waits is told that all has ended.
+    /// Unregisters the session and closes the TCP connection. Queued requests fail.
     pub fn end(&mut self) {
         if self.phase == Phase::Up {
             self.steps.push_back(Step::Send(Frame::unregister(self.handle).emit()));
@@ -199,7 +198,7 @@ impl Session {
                 Some((ask, until)) if now >= *until => {
                     let (token, what) = (ask.token, ask.what);
                     self.pending = None;
-                    // What comes late must not be heard; a new connection is quiet.
+                    // A late answer must be ignored, so use a new connection.
                     self.disconnect();
                     self.answer(token, true, Err(EipError::NoAnswer { what, after: self.timeout }));
                 }
@@ -215,7 +214,7 @@ impl Session {
         self.phase = Phase::Connecting { until: now.saturating_add(self.timeout) };
     }
 
-    /// RegisterSession was refused: waits for room, or gives up.
+    /// RegisterSession was refused: waits for a free session, or gives up.
     fn refused(&mut self, now: Now, status: u32) {
         self.disconnect();
         let (since, tries) = self.full.unwrap_or((now, 0));
@@ -259,7 +258,7 @@ impl Session {
                 let result = if frame.status == 0 {
                     Ok(frame.data.to_vec())
                 } else {
-                    // The session may be what is wrong, so the next request begins a new one.
+                    // The session itself can be invalid, so the next request opens a new one.
                     self.disconnect();
                     Err(EipError::Encapsulation { what: ask.what, status: frame.status })
                 };
@@ -312,12 +311,12 @@ mod tests {
         }
     }
 
-    /// Answers the frame that was sent, with a session of 7.
+    /// Answers a sent frame, with session 7.
     fn answer(bytes: &[u8], status: u32, data: &[u8]) -> Vec<u8> {
         Frame { session: 7, status, data, ..Frame::parse(bytes).unwrap() }.emit()
     }
 
-    /// A session with a request on its way.
+    /// A session with a request in progress.
     fn asking() -> (Session, Vec<u8>) {
         let mut session = Session::new(TIMEOUT);
         session.ask(ask(1));
@@ -407,7 +406,7 @@ mod tests {
         assert!(now < NOW + TIMEOUT, "not longer than its patience");
         let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
         assert_eq!(result, (false, Err(trouble)));
-        // Any other refusal, and one without patience, is told at once.
+        // Any other refusal, and one without retries, is reported at once.
         for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
             let mut session = Session::new(TIMEOUT).patient(patience);
             session.ask(ask(1));

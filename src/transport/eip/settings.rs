@@ -1,97 +1,97 @@
-//! What a connection is to be.
+//! Connection settings.
 
 use std::time::Duration;
 
 use super::error::EipError;
 use super::wire::{Flow, Key, Net, Path, Segment};
 
-/// Bytes of the sequence count before what a packet carries.
+/// Size of the sequence count before the data.
 const COUNT: u16 = 2;
-/// Bytes of the run/idle header to the target.
+/// Size of the run/idle header to the target.
 const HEADER: u16 = 4;
-/// Most bytes of an image: with the rest it fits a datagram.
+/// Limit of an image in bytes, so that it fits a datagram.
 pub const MOST_IMAGE: u16 = 65_000;
-/// Most bytes of configuration data: with the rest of the path it fits the 255 words of its length.
+/// Limit of configuration data in bytes, so that the path fits 255 words.
 const MOST_CONFIGURATION: usize = 400;
 /// Shortest interval.
 pub const SHORTEST: Duration = Duration::from_millis(1);
 /// Longest interval.
 pub const LONGEST: Duration = Duration::from_secs(10);
-/// Before the first packet a watchdog waits at least this long (volume 1, 3-4.6).
+/// Minimum timeout before the first packet (volume 1, 3-4.6).
 pub const FIRST_PACKET: Duration = Duration::from_secs(10);
-/// Priority "scheduled", which cyclic data has.
+/// Priority "scheduled" for cyclic data.
 const SCHEDULED: u8 = 2;
 
-/// What is wanted of the device.
+/// Connection type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// To set its outputs, as one of one, and see its inputs.
+    /// Sets the outputs, as the only originator, and receives the inputs.
     ExclusiveOwner,
-    /// To see its inputs; the output instance is the one for heartbeats.
+    /// Receives the inputs. The output instance is the heartbeat.
     InputOnly,
-    /// To see its inputs as long as another connection has them sent; likewise.
+    /// Receives the inputs while another connection exists. The output instance is the heartbeat.
     ListenOnly,
 }
 
-/// How many intervals without a packet make a connection lost.
+/// Connection timeout multiplier: intervals without a packet before a timeout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Multiplier(u8);
 
 impl Multiplier {
-    /// 4, 8, 16, 32, 64, 128, 256 or 512 intervals.
+    /// From a number of intervals: 4, 8, 16, 32, 64, 128, 256 or 512.
     pub fn of(intervals: u32) -> Option<Self> {
         (0..8).map(Self).find(|multiplier| multiplier.intervals() == intervals)
     }
 
-    /// From its code in a request; codes above 7 are reserved.
+    /// Decodes a multiplier; codes above 7 are reserved.
     pub const fn from_code(code: u8) -> Option<Self> {
         if code < 8 { Some(Self(code)) } else { None }
     }
 
-    /// Its code in a request.
+    /// Code of the multiplier.
     pub const fn code(self) -> u8 {
         self.0
     }
 
-    /// How many intervals.
+    /// Number of intervals.
     pub const fn intervals(self) -> u32 {
         4 << self.0
     }
 }
 
-/// Assemblies, sizes, times and manners of a connection.
+/// Settings of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
-    /// What is wanted.
+    /// Connection type.
     pub role: Role,
-    /// The assembly that the device takes, or the one for heartbeats.
+    /// Consumed assembly of the device, or its heartbeat instance.
     pub output: u32,
-    /// The assembly that the device sends.
+    /// Produced assembly of the device.
     pub input: u32,
-    /// The configuration assembly, for devices that want one named.
+    /// Configuration assembly, for devices that need one.
     pub configuration: Option<u32>,
-    /// What the device is to be configured with; mostly nothing.
+    /// Configuration data; usually empty.
     pub configuration_data: Vec<u8>,
-    /// Bytes of the image to the device; 0 for heartbeats.
+    /// Size of the image to the device in bytes; 0 for heartbeats.
     pub output_size: u16,
-    /// Bytes of the image from the device.
+    /// Size of the image from the device in bytes.
     pub input_size: u16,
-    /// The interval that is asked for, both ways; the device answers with those it keeps.
+    /// Requested interval in both directions. The device answers with the actual ones.
     pub rpi: Duration,
-    /// After how many intervals without a packet the connection is lost, both ways.
+    /// Timeout multiplier in both directions.
     pub multiplier: Multiplier,
-    /// Whether the device is to send to a group instead of to us.
+    /// Whether the device sends to a multicast group.
     pub multicast: bool,
-    /// Which device is expected, if that is to be checked.
+    /// Electronic key, if the device checks it.
     pub key: Option<Key>,
-    /// The image that a connection begins with, after every loss again, and idle.
+    /// First image after every opening, sent in idle mode.
     pub resting: Vec<u8>,
-    /// How long to wait for a TCP connection and for an answer on it.
+    /// Time limit for the TCP connection and for each answer.
     pub timeout: Duration,
 }
 
 impl Default for Settings {
-    /// An exclusive owner of no bytes each way: instances 150, 100 and 1, 20 ms, 16 intervals.
+    /// Exclusive owner with empty images: instances 150, 100 and 1, 20 ms, 16 intervals.
     fn default() -> Self {
         Self {
             role: Role::ExclusiveOwner,
@@ -112,7 +112,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Whether a connection can be so.
+    /// Checks the settings.
     pub fn check(&self) -> Result<(), EipError> {
         let wrong = |text: String| Err(EipError::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
@@ -134,7 +134,7 @@ impl Settings {
         Ok(())
     }
 
-    /// The connection path: key, assembly class, configuration, output, input.
+    /// Connection path: key, assembly class, configuration, output, input.
     pub fn path(&self) -> Path {
         let mut segments: Vec<Segment> = self.key.map(Segment::Key).into_iter().collect();
         segments.push(Segment::Class(super::ASSEMBLY));
@@ -143,7 +143,7 @@ impl Settings {
         Path(segments)
     }
 
-    /// The path with configuration data behind it, which goes with the opening only.
+    /// Connection path with configuration data, for ForwardOpen only.
     pub fn opening_path(&self) -> Path {
         let mut path = self.path();
         if !self.configuration_data.is_empty() {
@@ -152,7 +152,7 @@ impl Settings {
         path
     }
 
-    /// To the device: count, and for an owner header and image.
+    /// Parameters to the device: sequence count, and for an owner header and image.
     pub fn o_t(&self) -> Flow {
         let size = match self.role {
             Role::ExclusiveOwner => COUNT + HEADER + self.output_size.min(MOST_IMAGE),
@@ -161,7 +161,7 @@ impl Settings {
         self.flow(Net::PointToPoint, size)
     }
 
-    /// From the device: count and image.
+    /// Parameters from the device: sequence count and image.
     pub fn t_o(&self) -> Flow {
         let net = if self.multicast { Net::Multicast } else { Net::PointToPoint };
         self.flow(net, COUNT + self.input_size.min(MOST_IMAGE))

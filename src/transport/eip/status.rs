@@ -1,23 +1,23 @@
-//! What codes mean: of the encapsulation, of CIP, and of the connection manager.
+//! Texts of status codes: encapsulation, CIP, connection manager.
 
 use std::fmt::Write as _;
 
 use super::wire::Status;
 
-/// A code, in plain words.
+/// Description of a status code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Code {
-    /// The number.
+    /// The code.
     pub code: u32,
-    /// What it is called.
+    /// Short name.
     pub name: &'static str,
-    /// What it comes from.
+    /// Cause.
     pub cause: &'static str,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
-/// Statuses of the encapsulation (volume 2, table 2-3.3).
+/// Encapsulation status codes (volume 2, table 2-3.3).
 pub const ENCAPSULATION: &[Code] = &[
     code(0x00, "success", "The message was taken.", "Nothing to do."),
     code(
@@ -58,7 +58,7 @@ pub const ENCAPSULATION: &[Code] = &[
     ),
 ];
 
-/// General statuses of CIP (volume 1, appendix B-1).
+/// CIP general status codes (volume 1, appendix B-1).
 pub const GENERAL: &[Code] = &[
     code(0x00, "success", "The request was carried out.", "Nothing to do."),
     code(
@@ -167,7 +167,7 @@ pub const GENERAL: &[Code] = &[
     code(0x29, "member not settable", "The member can only be read.", "Nothing to do; it cannot be changed."),
 ];
 
-/// Extended statuses of the connection manager, beside general status 0x01 (volume 1, table 3-5.29).
+/// Extended status codes of the connection manager, with general status 0x01 (volume 1, table 3-5.29).
 pub const CONNECTION: &[Code] = &[
     code(
         0x0100,
@@ -393,28 +393,28 @@ pub const CONNECTION: &[Code] = &[
     code(0x0813, "not configured for off-subnet multicast", "Groups do not cross routers here.", "Turn multicast off."),
 ];
 
-/// The meaning of an encapsulation status.
+/// Description of an encapsulation status.
 pub fn encapsulation(status: u32) -> Option<&'static Code> {
     find(ENCAPSULATION, status)
 }
 
-/// The meaning of a general status.
+/// Description of a general status.
 pub fn general(status: u8) -> Option<&'static Code> {
     find(GENERAL, status.into())
 }
 
-/// The meaning of an extended status beside general status 0x01.
+/// Description of an extended status with general status 0x01.
 pub fn connection(extended: u16) -> Option<&'static Code> {
     find(CONNECTION, extended.into())
 }
 
-/// The meaning of a status: that of the extended one where it has one.
+/// Description of a status, of the extended code if there is one.
 pub fn meaning(status: &Status) -> Option<&'static Code> {
     let extended = status.extended.first().filter(|_| status.general == 1);
     extended.and_then(|extended| connection(*extended)).or_else(|| general(status.general))
 }
 
-/// A line about a status, as "invalid connection size (0x01/0x0109), the right one is 54 bytes".
+/// One-line text, such as "invalid connection size (0x01/0x0109), the right one is 54 bytes".
 pub fn describe(status: &Status) -> String {
     let mut text = meaning(status).map_or("an unknown status", |code| code.name).to_owned();
     // Writing to a string cannot fail.

@@ -1,4 +1,4 @@
-//! What passes on the wire, for records.
+//! Hook that records the traffic.
 
 use std::fmt;
 use std::net::SocketAddrV4;
@@ -11,9 +11,9 @@ use crate::image::tap;
 pub struct Passed<'a> {
     /// Whether it is a piece of a TCP stream.
     pub is_tcp: bool,
-    /// Where it comes from.
+    /// Sender.
     pub from: SocketAddrV4,
-    /// Where it goes.
+    /// Receiver.
     pub to: SocketAddrV4,
     /// The bytes.
     pub bytes: &'a [u8],
@@ -21,12 +21,12 @@ pub struct Passed<'a> {
 
 type Look = dyn Fn(&Passed<'_>) + Send + Sync;
 
-/// Called with all that passes, from the threads that move it; it must not block.
+/// Called with all traffic, on the threads that move it. It must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 
 impl Tap {
-    /// Calls this.
+    /// Creates a tap that calls this function.
     pub fn new(tap: impl Fn(&Passed<'_>) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }

@@ -1,10 +1,9 @@
-//! Faults of datagrams.
+//! Fault injection for datagrams.
 //!
-//! What `corrupt` does is limited on purpose. UDP's checksum stops nearly all damage on the way; what still gets through
-//! comes from broken stacks, wrong senders and wrong ports. So a corrupt datagram is cut, extended, zeroed, changed in
-//! its first eight bytes (where protocols keep identifiers and sizes) or replaced by noise. It is never a whole datagram
-//! with a changed payload: a protocol without a checksum of its own cannot tell that from a true one, so a test that did
-//! it would only show what is known.
+//! `corrupt` is limited on purpose. UDP's checksum detects nearly all damage on the network. What remains comes from
+//! broken stacks, wrong senders and wrong ports. A corrupt datagram is therefore cut, extended, zeroed, changed in its
+//! first eight bytes (where protocols keep identifiers and sizes) or replaced by noise. A changed payload is not
+//! simulated, because a protocol without a checksum cannot detect it.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -18,38 +17,37 @@ use super::{
     write_shares,
 };
 
-/// Most bytes of noise in place of a datagram.
+/// Limit of noise bytes in place of a datagram.
 const MOST_NOISE: usize = 600;
-/// Most bytes added to a datagram.
+/// Limit of bytes added to a datagram.
 const MOST_EXTRA: usize = 32;
-/// The first bytes of a datagram, one of which may be changed.
+/// Number of bytes at the start of a datagram that can be changed.
 const HEAD: usize = 8;
-/// How long a reordered datagram is held back beyond its delay: longer than a quick answer takes, and at most longer
-/// than the usual wait before a repeat, so that it meets both the next exchange and its own repeat.
+/// Extra delay of a reordered datagram. It is longer than a fast answer takes, and can exceed the usual retry time. The
+/// datagram therefore meets the next exchange or its own repetition.
 const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
 
-/// Which faults, how often. Written `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`, every part
-/// optional.
+/// Fault rates. Text form: `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`; every part is optional.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultSpec {
-    /// Datagrams that never arrive.
+    /// Lost datagrams.
     pub drop: Share,
-    /// Datagrams that arrive twice, the second copy after a delay of its own.
+    /// Doubled datagrams. The copy has its own delay.
     pub dup: Share,
-    /// How long a datagram travels. A delay alone keeps the order.
+    /// Transmission time. A delay alone keeps the order.
     pub delay: RangeInclusive<Duration>,
-    /// Datagrams that are held back, so that what is sent meanwhile overtakes them.
+    /// Datagrams that are delayed beyond later ones.
     pub reorder: Share,
-    /// Datagrams that arrive damaged.
+    /// Damaged datagrams.
     pub corrupt: Share,
-    /// Requests that a simulated controller refuses as busy. Only carried here: it takes a protocol to do it.
+    /// Requests that a simulated controller refuses as busy. The simulator applies it, not this module.
     pub busy: Share,
-    /// Start of the random sequence.
+    /// Seed of the random sequence.
     pub seed: u64,
 }
 
 impl Default for FaultSpec {
-    /// No faults at all.
+    /// No faults.
     fn default() -> Self {
         Self {
             drop: Share::NONE,
@@ -63,7 +61,7 @@ impl Default for FaultSpec {
     }
 }
 
-/// Every key with the form of its value.
+/// Keys with the form of their values.
 const KEYS: [Key<FaultSpec>; 7] = [
     ("drop", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.drop = share))),
     ("dup", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.dup = share))),
@@ -83,7 +81,7 @@ impl FromStr for FaultSpec {
 }
 
 impl fmt::Display for FaultSpec {
-    /// The parts that are not 0, and the seed in any case; reads back as the same value.
+    /// Writes the parts that are not 0, and always the seed. Parsing the text gives the same value.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_shares(f, &[("drop", self.drop), ("dup", self.dup)])?;
         write_delay(f, &self.delay)?;
@@ -92,23 +90,23 @@ impl fmt::Display for FaultSpec {
     }
 }
 
-/// One direction of a faulty link.
+/// Fault injection for one direction.
 #[derive(Debug, Clone)]
 pub struct Faults {
     spec: FaultSpec,
     rng: Rng,
-    /// When the last datagram arrives that was not reordered.
+    /// Arrival of the last datagram that was not reordered.
     last: Duration,
 }
 
 impl Faults {
-    /// A direction with the faults of `spec`.
+    /// Creates the faults of one direction.
     pub fn new(spec: FaultSpec) -> Self {
         let rng = Rng::with_seed(spec.seed);
         Self { spec, rng, last: Duration::ZERO }
     }
 
-    /// Both directions of a link, each with a random sequence of its own.
+    /// Creates the faults of both directions, each with its own random sequence.
     pub fn pair(spec: FaultSpec) -> (Self, Self) {
         let there = Self::new(spec);
         let mut back = there.clone();
@@ -116,8 +114,8 @@ impl Faults {
         (there, back)
     }
 
-    /// What becomes of a datagram that is sent at `now`: for each copy that arrives, the moment and the bytes, in no
-    /// particular order. Moments count from the origin of `now`.
+    /// Applies the faults to a datagram that is sent at `now`. Returns the arrival time and bytes of each copy, in no
+    /// particular order. Times have the same origin as `now`.
     pub fn pass(&mut self, now: Duration, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
         if self.spec.drop.hits(&mut self.rng) {
             return Vec::new();
@@ -147,10 +145,9 @@ impl Faults {
     }
 }
 
-/// A way to damage a datagram.
 type Damage = fn(&mut Rng, Vec<u8>) -> Vec<u8>;
 
-/// Each leaves a datagram different in length or in its first bytes.
+/// Each of these changes the length or the first bytes.
 const DAMAGES: [Damage; 5] = [
     |rng, mut bytes| {
         bytes.truncate(rng.usize(..bytes.len().max(1)));

@@ -1,4 +1,4 @@
-//! Faults of a line that carries characters one after the other.
+//! Fault injection for a serial line.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -13,30 +13,30 @@ use super::{
     write_shares,
 };
 
-/// Which faults, how often. Written `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`, every part
-/// optional. Shares are of characters.
+/// Fault rates. Text form: `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`; every part is
+/// optional. Rates are per character.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineFaultSpec {
-    /// Characters that become another one, or that get a random one in front of them.
+    /// Changed characters, and characters with a random one before them.
     pub noise: Share,
-    /// Characters that arrive with the wrong parity, so that the receiver knows them to be damaged.
+    /// Characters with a parity error, which the receiver detects.
     pub parity: Share,
-    /// Characters that never arrive.
+    /// Lost characters.
     pub drop: Share,
-    /// Characters that arrive twice.
+    /// Doubled characters.
     pub dup: Share,
-    /// How long what is written in one piece is held back. The order is kept.
+    /// Delay per write. The order is kept.
     pub delay: RangeInclusive<Duration>,
-    /// Requests that a simulated controller refuses as busy. Only carried here: it takes a protocol to do it.
+    /// Requests that a simulated controller refuses as busy. The simulator applies it, not this module.
     pub busy: Share,
-    /// Whether all that the host sends comes back to it as well, as from some RS-485 adapters and a loop-back plug.
+    /// Whether the host receives an echo of what it sends, as from some RS-485 adapters and a loop-back plug.
     pub echo: bool,
-    /// Start of the random sequence.
+    /// Seed of the random sequence.
     pub seed: u64,
 }
 
 impl Default for LineFaultSpec {
-    /// No faults at all.
+    /// No faults.
     fn default() -> Self {
         Self {
             noise: Share::NONE,
@@ -51,7 +51,7 @@ impl Default for LineFaultSpec {
     }
 }
 
-/// Every key with the form of its value.
+/// Keys with the form of their values.
 const KEYS: [Key<LineFaultSpec>; 8] = [
     ("noise", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.noise = share))),
     ("parity", Setter::Value(SHARE_FORM, |spec, text| Share::parse(text).map(|share| spec.parity = share))),
@@ -72,7 +72,7 @@ impl FromStr for LineFaultSpec {
 }
 
 impl fmt::Display for LineFaultSpec {
-    /// The parts that are not 0, and the seed in any case; reads back as the same value.
+    /// Writes the parts that are not 0, and always the seed. Parsing the text gives the same value.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shares = [("noise", self.noise), ("parity", self.parity), ("drop", self.drop), ("dup", self.dup)];
         write_shares(f, &shares)?;
@@ -85,32 +85,32 @@ impl fmt::Display for LineFaultSpec {
     }
 }
 
-/// One direction of a faulty line.
+/// Fault injection for one direction.
 #[derive(Debug, Clone)]
 pub struct LineFaults {
     spec: LineFaultSpec,
     rng: Rng,
 }
 
-/// What becomes of characters that were written in one piece.
+/// Characters of one write after the faults.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Passed {
-    /// How long they are held back.
+    /// Delay of the write.
     pub delay: Duration,
-    /// The characters that arrive.
+    /// Characters that arrive.
     pub bytes: Vec<u8>,
-    /// Which of them have the wrong parity, in rising order.
+    /// Positions of characters with a parity error, in rising order.
     pub damaged: VecDeque<usize>,
 }
 
 impl LineFaults {
-    /// A direction with the faults of `spec`.
+    /// Creates the faults of one direction.
     pub fn new(spec: LineFaultSpec) -> Self {
         let rng = Rng::with_seed(spec.seed);
         Self { spec, rng }
     }
 
-    /// Both directions of a line, each with a random sequence of its own.
+    /// Creates the faults of both directions, each with its own random sequence.
     pub fn pair(spec: LineFaultSpec) -> (Self, Self) {
         let there = Self::new(spec);
         let mut back = there.clone();
@@ -118,7 +118,7 @@ impl LineFaults {
         (there, back)
     }
 
-    /// What becomes of characters that are written in one piece.
+    /// Applies the faults to the characters of one write.
     pub fn pass(&mut self, bytes: &[u8]) -> Passed {
         let delay = between(&mut self.rng, &self.spec.delay);
         let mut passed = Passed { delay, bytes: Vec::with_capacity(bytes.len()), damaged: VecDeque::new() };
@@ -139,7 +139,7 @@ impl LineFaults {
         if is_noisy {
             passed.bytes.push(self.rng.u8(..));
         }
-        // Half of the noise is in place of the character.
+        // Half of the noise replaces the character.
         if is_noisy && self.rng.bool() {
             return;
         }
@@ -149,7 +149,7 @@ impl LineFaults {
         passed.bytes.push(byte);
     }
 
-    /// What cannot happen draws nothing, so that a line without faults costs nothing.
+    /// A rate of 0 draws no random number, so a line without faults costs nothing.
     fn hits(&mut self, share: Share) -> bool {
         share != Share::NONE && share.hits(&mut self.rng)
     }

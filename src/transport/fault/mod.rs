@@ -1,8 +1,7 @@
-//! Seeded injectors of faults, without sockets and without a clock: [`Faults`] of datagrams, [`LineFaults`] of a line
-//! that carries characters.
+//! Fault injection with a seed, without sockets and clock: [`Faults`] for datagrams, [`LineFaults`] for a serial line.
 //!
-//! They are handed what is sent and say what arrives. The same seed and the same traffic give the same faults on every
-//! machine.
+//! The input is what is sent, the output is what arrives. The same seed and the same traffic give the same faults on
+//! every computer.
 
 mod datagram;
 mod line;
@@ -17,20 +16,20 @@ use thiserror::Error;
 pub use datagram::{FaultSpec, Faults};
 pub use line::{LineFaultSpec, LineFaults, Passed};
 
-/// Longest delay that can be asked for.
+/// Longest delay that a specification can contain.
 const LONGEST_DELAY: Duration = Duration::from_secs(60);
 
-/// A share of what is sent, in steps of 0.01 %.
+/// A rate in steps of 0.01 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Share(u16);
 
 impl Share {
-    /// None.
+    /// 0 %.
     pub const NONE: Self = Self(0);
-    /// Every one.
+    /// 100 %.
     pub const ALL: Self = Self(10_000);
 
-    /// Of 10,000, as many as this.
+    /// The rate in 1/10,000.
     pub const fn per_10_000(self) -> u16 {
         self.0
     }
@@ -39,7 +38,7 @@ impl Share {
         rng.u16(0..Self::ALL.0) < self.0
     }
 
-    /// Reads "5%" or "0.25%".
+    /// Parses "5%" or "0.25%".
     fn parse(text: &str) -> Option<Self> {
         let number = text.strip_suffix('%')?;
         let (whole, fraction) = number.split_once('.').unwrap_or((number, "0"));
@@ -63,7 +62,7 @@ impl fmt::Display for Share {
     }
 }
 
-/// Why a text is no [`FaultSpec`] or [`LineFaultSpec`].
+/// Error of a [`FaultSpec`] or [`LineFaultSpec`] text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FaultSpecError {
     /// A part without a value.
@@ -72,31 +71,31 @@ pub enum FaultSpecError {
         /// The part.
         part: String,
     },
-    /// A key there is not.
+    /// An unknown key.
     #[error("unknown key '{key}'; there are {known}")]
     UnknownKey {
         /// The key.
         key: String,
-        /// Those there are.
+        /// The valid keys.
         known: String,
     },
-    /// A key given twice.
+    /// A repeated key.
     #[error("{key} is given twice")]
     Twice {
         /// The key.
         key: &'static str,
     },
-    /// A value its key does not take.
+    /// A value that does not fit its key.
     #[error("{key}: '{value}' is not {form}")]
     Value {
         /// The key.
         key: &'static str,
         /// The value.
         value: String,
-        /// What it takes.
+        /// Valid form of the value.
         form: &'static str,
     },
-    /// A value where the key alone says all.
+    /// A value for a key that takes none.
     #[error("{key} takes no value, but has '{value}'")]
     NeedlessValue {
         /// The key.
@@ -110,18 +109,17 @@ const SHARE_FORM: &str = "a share of 0% to 100% with at most two decimals, as in
 const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
 const SEED_FORM: &str = "a whole number of 0 to 18446744073709551615";
 
-/// A part of a specification `S`: its name, and how it is put in its place.
+/// Key of a specification `S`, with the function that sets its value.
 type Key<S> = (&'static str, Setter<S>);
 
-/// How a part is put in its place.
 enum Setter<S> {
-    /// The form of the value, and what puts it there; `None` if it is not of that form.
+    /// Form of the value, and the function that parses and sets it; `None` for a value of another form.
     Value(&'static str, fn(&mut S, &str) -> Option<()>),
-    /// The key alone.
+    /// A key without a value.
     Flag(fn(&mut S)),
 }
 
-/// Reads parts between commas, each at most once.
+/// Parses comma-separated parts, each at most once.
 fn parse<S: Default, const N: usize>(text: &str, keys: &[Key<S>; N]) -> Result<S, FaultSpecError> {
     let mut spec = S::default();
     let mut seen = [false; N];
@@ -150,20 +148,20 @@ fn parse<S: Default, const N: usize>(text: &str, keys: &[Key<S>; N]) -> Result<S
     Ok(spec)
 }
 
-/// The keys as a sentence lists them.
+/// Lists the keys for a sentence.
 fn known<S>(keys: &[Key<S>]) -> String {
     let names: Vec<&str> = keys.iter().map(|(key, _)| *key).collect();
     let (last, others) = names.split_last().expect("a table of keys has some");
     format!("{} and {last}", others.join(", "))
 }
 
-/// Writes the shares that are not 0, each with a comma behind it.
+/// Writes the rates that are not 0, each followed by a comma.
 fn write_shares(f: &mut fmt::Formatter<'_>, shares: &[(&str, Share)]) -> fmt::Result {
     let mut some = shares.iter().filter(|(_, share)| *share != Share::NONE);
     some.try_for_each(|(key, share)| write!(f, "{key}={share},"))
 }
 
-/// Writes a delay that is not 0, with a comma behind it.
+/// Writes a delay that is not 0, followed by a comma.
 fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> fmt::Result {
     let (least, most) = (delay.start(), delay.end());
     match least == most {
@@ -173,7 +171,7 @@ fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> 
     }
 }
 
-/// A time in the largest unit that shows it exactly; finer than microseconds cannot be asked for.
+/// A time in the largest unit that shows it exactly. The resolution is 1 µs.
 struct Time(Duration);
 
 impl fmt::Display for Time {
@@ -186,10 +184,9 @@ impl fmt::Display for Time {
     }
 }
 
-/// Units of time in microseconds, small to large.
 const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
 
-/// Reads "20ms", "0..50ms" or "500us..2ms"; a lower end without a unit has that of the upper end.
+/// Parses "20ms", "0..50ms" or "500us..2ms". A lower limit without a unit has the unit of the upper limit.
 fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
     let Some((least, most)) = text.split_once("..") else {
         let (number, unit) = number_and_unit(text);
@@ -216,6 +213,6 @@ fn time(number: &str, unit: &str) -> Option<Duration> {
 fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
     let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
     let (least, most) = (micros(range.start()), micros(range.end()));
-    // A spec that was built by hand may have its ends the wrong way round.
+    // A specification made in code can have its limits in the wrong order.
     Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
 }

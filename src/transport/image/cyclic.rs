@@ -1,4 +1,4 @@
-//! A connection over a fieldbus that exchanges images in a cycle of its own, on a thread of its own.
+//! Image connection over a fieldbus with its own cycle and its own thread.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,53 +9,52 @@ use futures_util::future::LocalBoxFuture;
 use super::view::{BusError, State, View, Views};
 use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// An open connection, as its fieldbus has it.
+/// An open connection of a fieldbus.
 pub trait Bus: fmt::Debug + 'static {
-    /// What goes wrong on it.
+    /// Error type of the fieldbus.
     type Error: BusError;
-    /// What is counted on it.
+    /// Counters of the fieldbus.
     type Statistics: Clone + Default;
-    /// What only it has to see.
+    /// Details that only this fieldbus has.
     type Details: Clone;
 
-    /// What there is to see of it.
+    /// State of the connection.
     fn views(&mut self) -> &mut Views<Self::Error, Self::Statistics, Self::Details>;
 
-    /// Shows the device this image in this generation. The number is that of the change: it has left once the view's
-    /// `sent` is as high.
+    /// Sends this image to the device in this generation. Returns the number of the change. It was sent when `sent` of
+    /// the view has reached that number.
     ///
     /// # Errors
-    /// When the connection is not open in this generation, or the image has another size.
+    /// The connection is not open in this generation, or the image has another size.
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Self::Error>;
 
-    /// An image of the device as it is meant, where the bus has it otherwise.
+    /// Corrects the byte order of an image if the bus has another one.
     fn turned(&self, image: Arc<[u8]>) -> Arc<[u8]> {
         image
     }
 
-    /// Why the connection is lost, and what is now true of the outputs.
+    /// Cause of a loss, and the state of the outputs after it.
     fn loss(&self, view: View<Self::Error, Self::Statistics, Self::Details>) -> (Cause, Outputs);
 
-    /// What was counted.
+    /// Counters of the connection.
     fn traffic(&self) -> Traffic;
 
-    /// Ends it properly.
+    /// Closes the connection.
     fn close(self) -> LocalBoxFuture<'static, Result<(), Self::Error>>;
 }
 
-/// A connection over such a bus.
+/// An image connection over a [`Bus`].
 #[derive(Debug)]
 pub struct Cyclic<B> {
     bus: B,
     sizes: Sizes,
-    /// The opening that is known of.
     generation: u32,
-    /// The change that has not left yet.
+    /// Number of the change that is not sent yet.
     pending: Option<u64>,
 }
 
 impl<B: Bus> Cyclic<B> {
-    /// Over this one, which is open.
+    /// Wraps an open connection.
     pub fn over(mut bus: B, sizes: Sizes) -> Self {
         let generation = bus.views().now().generation;
         Self { bus, sizes, generation, pending: None }
@@ -95,14 +94,14 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
     }
 
     fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // What was to be seen before is replaced, whatever becomes of this.
+        // The previous image is replaced, even if this one fails.
         self.pending = None;
         match self.bus.set_image(self.generation, image) {
             Ok(change) => {
                 self.pending = Some(change);
                 Ok(())
             }
-            // The loss is told by `next`.
+            // `next` reports the loss.
             Err(error) if error == B::Error::OUTDATED || error == B::Error::ENDED => Ok(()),
             Err(error) => Err(error.into()),
         }

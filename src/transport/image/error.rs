@@ -1,5 +1,4 @@
-//! Why an image link did not come about, or ended: the same few cases on every fieldbus. What the device said in the
-//! words of its own bus, and what can be set about it, comes with them as data.
+//! Errors of image links: the same cases on every fieldbus. The device's own code and the options to check are data.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,82 +6,82 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-/// Why a link did not come about, or ended.
+/// An error that prevented or ended a link.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LinkError {
-    /// Another master commands the device, and it takes one at a time.
+    /// Another master controls the device, which accepts only one.
     #[error("{0}")]
     Owned(Cause),
     /// The device has images of another size.
     #[error("{0}")]
     Size(Cause),
-    /// The device says no to something else.
+    /// The device refuses for another reason.
     #[error("{0}")]
     Refused(Cause),
-    /// Nobody is there, or does not answer.
+    /// The device does not answer.
     #[error("{0}")]
     Silent(Cause),
-    /// Something answers that is no such device.
+    /// The answer is not that of such a device.
     #[error("{0}")]
     Malformed(Cause),
-    /// The link was up, and is lost. It opens itself again.
+    /// The link was open and is lost. It opens again by itself.
     #[error("{cause}")]
     Lost {
-        /// What happened.
+        /// Cause of the loss.
         cause: Cause,
-        /// What is now true of what the device was shown.
+        /// State of the outputs.
         outputs: Outputs,
     },
-    /// Nothing was sent: no link can be as the settings want it.
+    /// Invalid settings; nothing was sent.
     #[error("{0}")]
     Settings(Cause),
-    /// An adapter, a port or a socket of this machine does not work.
+    /// A local adapter, port or socket failed.
     #[error("{0}")]
     Local(Cause),
 }
 
-/// What happened, in words and as data.
+/// Cause of an error, as text and data.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Cause {
-    /// What was sent, and what was said to it, or what was waited for.
+    /// The request and the answer, or what was missing.
     pub text: String,
-    /// The code that the device gave, such as `0x0106`.
+    /// Code of the device, such as `0x0106`.
     pub code: Option<String>,
-    /// The options of the URL that may be wrong, by their names.
+    /// Names of URL options that can be wrong.
     pub options: &'static [&'static str],
-    /// What else to set or to check, as hints are written: small, without a full stop.
+    /// Further advice: lower case, no full stop.
     pub advice: Option<Cow<'static, str>>,
 }
 
-/// What is true of the outputs of a device whose link is lost.
+/// State of the device's outputs after the link is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outputs {
-    /// They were never this link's.
+    /// This link never controlled them.
     Never,
-    /// The device has let go of them.
+    /// The device has cleared them.
     Released,
-    /// The device holds them as they were, and lets go of them after so long without a word from here.
+    /// The device keeps them, and clears them after this time without contact.
     ReleasedWithin(Duration),
 }
 
 impl Cause {
-    /// Nothing but words.
+    /// A cause with text only.
     pub fn new(text: impl fmt::Display) -> Self {
         Self { text: text.to_string(), ..Self::default() }
     }
 
-    /// Why a connection is lost, or that it is another one by now.
+    /// Cause of a loss; without an error, the connection was opened again in the meantime.
     pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
         trouble.map_or_else(|| Self::new("it was opened anew"), Self::new)
     }
 
-    /// With what to set or to check.
+    /// Adds advice.
     #[must_use]
     pub fn advice(self, advice: impl Into<Cow<'static, str>>) -> Self {
         Self { advice: Some(advice.into()), ..self }
     }
 
-    /// With the options of the URL that may be wrong.
+    /// Adds URL options that can be wrong.
     #[must_use]
     pub fn options(self, options: &'static [&'static str]) -> Self {
         Self { options, ..self }
@@ -90,7 +89,7 @@ impl Cause {
 }
 
 impl LinkError {
-    /// What happened.
+    /// Cause of the error.
     pub fn cause(&self) -> &Cause {
         match self {
             Self::Owned(cause)

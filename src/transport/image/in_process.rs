@@ -1,4 +1,4 @@
-//! A connection whose other end is in this process, on tokio's clock, which tests can halt and turn.
+//! Image connection to a peer in this process. It uses tokio's clock, which tests can pause and advance.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,17 +9,17 @@ use tokio::time::{Instant, sleep_until};
 
 use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes};
 
-/// The other end of a connection in this process, such as a simulated controller.
+/// Peer of an in-process connection, such as a simulated controller.
 pub trait ImagePeer: fmt::Debug {
-    /// Takes what it is shown from `now` on; `None`: whoever showed something is gone.
+    /// Receives an image at `now`; `None` means that the master is gone.
     fn input(&mut self, now: Duration, image: Option<&[u8]>);
-    /// What it shows at `now`; `None` while the link is down.
+    /// Image of the peer at `now`; `None` while the link is down.
     fn output(&mut self, now: Duration) -> Option<Vec<u8>>;
-    /// When it may show something else by itself.
+    /// Time of the next change that the peer makes by itself.
     fn wake(&self) -> Option<Duration>;
 }
 
-/// Time between two images to a peer in this process.
+/// Cycle time of an in-process link.
 pub const CYCLE: Duration = Duration::from_millis(5);
 
 /// A connection to a peer in this process.
@@ -27,16 +27,16 @@ pub const CYCLE: Duration = Duration::from_millis(5);
 pub struct InProcess {
     peer: Box<dyn ImagePeer>,
     start: Instant,
-    /// Bytes of what the peer showed at first, and takes.
+    /// Size of the images in both directions.
     size: usize,
-    /// What has not left yet.
+    /// Image that is not sent yet.
     pending: Option<Vec<u8>>,
-    /// The earliest moment for the next image to leave.
+    /// Earliest time to send the next image.
     due: Duration,
 }
 
 impl InProcess {
-    /// Begins to show nothing yet. The peer takes images of the size that it shows.
+    /// Creates a connection that has not sent an image yet. The peer's first image sets the size of both directions.
     pub fn new(mut peer: Box<dyn ImagePeer>) -> Self {
         let size = peer.output(Duration::ZERO).map_or(0, |image| image.len());
         Self { peer, start: Instant::now(), size, pending: None, due: Duration::ZERO }
@@ -66,7 +66,7 @@ impl InProcess {
             if let Some(image) = shown.filter(|image| known.is_news(image)) {
                 return Event::Image(image.into());
             }
-            // Whoever is due all the time is looked at in the rhythm of the link.
+            // A peer that is always due is polled once per cycle.
             let wake = self.peer.wake().map(|wake| if wake > now { wake } else { now + CYCLE });
             let leave = self.pending.as_ref().filter(|_| known.is_up).map(|_| self.due);
             match wake.into_iter().chain(leave).min() {

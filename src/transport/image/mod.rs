@@ -1,15 +1,15 @@
-//! The seam for fieldbuses: links that carry images, which each side shows the other over and over, where other links
-//! carry bytes that pass once.
+//! Image links: the interface that all fieldbuses implement. Both sides of a link exchange a complete image again and
+//! again, instead of bytes that pass once.
 //!
-//! A fieldbus sends the newest image in its own rhythm; what is replaced before its turn never leaves. So whoever needs
-//! an image to be seen shows it and waits for [`Event::Sent`]. After a loss the peer is shown what the connection rests
-//! at until something is shown again: nothing that was meant for the time before happens a second time.
+//! A fieldbus sends the newest image in its own cycle. An image that is replaced before its cycle is never sent. To be
+//! sure that an image was sent, show it and wait for [`Event::Sent`]. After a loss, the peer gets the resting image
+//! until a new one is shown. Therefore no image from before a loss is sent again.
 //!
-//! Each fieldbus implements [`cyclic::Bus`] for a connection that commands, and [`ImageConnection`] for one that only
-//! looks, with [`LinkError`] for whatever its devices say. [`InProcess`] is a connection whose other end is in this process,
+//! A fieldbus implements [`cyclic::Bus`] for a connection that controls the device, and [`ImageConnection`] for one
+//! that only reads. Errors of devices become [`LinkError`]. [`InProcess`] is a connection to a peer in this process,
 //! such as a simulated controller.
 //!
-//! A link may be another process's, which lets several have it: see [`session`](super::session).
+//! A link can belong to another process that shares it; see [`session`](super::session).
 
 pub mod cyclic;
 mod error;
@@ -32,101 +32,100 @@ pub use self::in_process::{CYCLE, ImagePeer, InProcess};
 use super::session::client::{self, Attached, SessionBusy};
 use super::session::wire::Change;
 
-/// What happens on a link.
+/// Event of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// What was shown last has left.
+    /// The last shown image was sent.
     Sent,
-    /// The peer shows something new; or it shows something for the first time since the link is up.
+    /// A new image of the peer, or its first one after the link opened.
     Image(Arc<[u8]>),
-    /// The link went down, and why.
+    /// The link was lost.
     Lost(LinkError),
-    /// The link is up again.
+    /// The link is open again.
     Reopened,
-    /// Somebody else who uses the link has changed what the peer is shown.
+    /// Another user of the link has changed the image to the peer.
     Shown(Change),
-    /// The process that holds the link shows the peer nothing of what this one wants: the peer is read-only.
+    /// The session refuses all images of this process, because the robot is read-only.
     Denied,
-    /// Nothing until then.
+    /// No event before the deadline.
     Timeout,
 }
 
-/// A connection over a fieldbus, open from the beginning. It opens itself again after a loss, until it is closed.
+/// A connection over a fieldbus. It is open from the start. After a loss it opens again by itself until it is closed.
 pub trait ImageConnection: fmt::Debug {
-    /// Bytes of the images, as the device has them.
+    /// Image sizes of the device in bytes.
     fn sizes(&self) -> Sizes;
 
-    /// Shows the device this image from the next cycle on; `next` tells when it has left. While the connection is down,
-    /// nothing is kept for later.
+    /// Sends this image from the next cycle on; `next` reports when it was sent. While the connection is down, the
+    /// image is dropped.
     ///
     /// # Errors
-    /// When the image does not have the size of the connection, or nothing can be shown at all, as where the connection
-    /// only looks. A loss is none: `next` tells it.
+    /// The image has another size, or the connection is read-only. A loss is not an error here; `next` reports it.
     fn show(&mut self, _image: &[u8]) -> Result<(), LinkError> {
         Err(LinkError::Settings(Cause::new("a link that only reads or listens shows nothing")))
     }
 
-    /// Waits for what is new to whoever knows this much: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or
-    /// [`Event::Reopened`]. The future may be dropped.
+    /// Waits for news beyond `known`: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or [`Event::Reopened`]. Cancel
+    /// safe.
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event>;
 
-    /// What was counted; `None` for what has no cycle of its own.
+    /// Counters; `None` for a connection without a cycle.
     fn traffic(&self) -> Option<Traffic> {
         None
     }
 
-    /// Ends it properly.
+    /// Closes the connection.
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
         std::future::ready(Ok(())).boxed_local()
     }
 }
 
-/// Bytes of images.
+/// Image sizes in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// What the device takes; 0 where nothing is shown to it.
+    /// Size of the image to the device; 0 for a read-only connection.
     pub output: usize,
-    /// What it shows.
+    /// Size of the image from the device.
     pub input: usize,
 }
 
-/// What has been told of a connection.
+/// What the caller of [`ImageConnection::next`] already knows.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
-    /// Whether it is up.
+    /// Whether the link is up.
     pub is_up: bool,
-    /// What the device was last told to show, since it is up.
+    /// Last image from the device since the link opened.
     pub image: Option<&'a Arc<[u8]>>,
 }
 
 impl Known<'_> {
-    /// Whether this image would be news.
+    /// Whether this image is new to the caller.
     pub fn is_news(&self, image: &[u8]) -> bool {
         self.is_up && self.image.is_none_or(|known| **known != *image)
     }
 }
 
-/// What was counted on a connection.
+/// Counters of a connection.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Traffic {
-    /// Images that left.
+    /// Images sent.
     pub sent: u64,
-    /// Images that came.
+    /// Images received.
     pub received: u64,
-    /// Time between two images to the device and from it, where that is agreed.
+    /// Intervals of images to and from the device, if they are agreed.
     pub intervals: Option<(Duration, Duration)>,
-    /// How often something went otherwise than it should, and what: `(2, "late")`.
+    /// Irregular events with their names: `(2, "late")`.
     pub odd: Vec<(u64, &'static str)>,
 }
 
-/// A link to one peer: a connection of this process, or one that another process holds.
+/// A link to one peer, over a connection of this process or of another one.
 #[derive(Debug)]
 pub struct ImageLink {
     end: End,
-    /// What the peer was last told to show, to tell news from repetition.
+    /// Last image from the peer, to detect changes.
     seen: Option<Arc<[u8]>>,
     is_up: bool,
-    /// What must live as long as the link, such as the other end where that is in this process.
+    /// Value that must live as long as the link, such as an in-process peer.
     kept: Option<Box<dyn fmt::Debug>>,
 }
 
@@ -137,23 +136,23 @@ enum End {
 }
 
 impl ImageLink {
-    /// A link over this connection.
+    /// Creates a link over a connection.
     pub fn over(connection: impl ImageConnection + 'static) -> Self {
         Self { end: End::Own(Box::new(connection)), seen: None, is_up: true, kept: None }
     }
 
-    /// A link to a peer in this process.
+    /// Creates a link to a peer in this process.
     pub fn in_process(peer: Box<dyn ImagePeer>) -> Self {
         Self::over(InProcess::new(peer))
     }
 
-    /// A link that another process holds.
+    /// Creates a link over a session, which another process holds.
     pub fn in_session(attached: Box<Attached>) -> Self {
         let is_up = attached.welcome.down.is_none();
         Self { end: End::Session(attached), seen: None, is_up, kept: None }
     }
 
-    /// Keeps something until the link is closed.
+    /// Keeps a value alive until the link is closed.
     #[must_use]
     pub fn keeping(self, kept: Box<dyn fmt::Debug>) -> Self {
         Self { kept: Some(kept), ..self }
@@ -164,7 +163,7 @@ impl ImageLink {
         self.is_up
     }
 
-    /// Bytes of the image that the peer takes; 0 where nothing is shown to it.
+    /// Size of the image to the peer in bytes; 0 for a read-only link.
     pub fn output_size(&self) -> usize {
         match &self.end {
             End::Own(connection) => connection.sizes().output,
@@ -172,7 +171,7 @@ impl ImageLink {
         }
     }
 
-    /// What the peer is shown already where another process holds the link.
+    /// In a session, the image that is sent to the peer now.
     pub fn shown(&self) -> Option<&[u8]> {
         match &self.end {
             End::Session(attached) => attached.shown(),
@@ -180,7 +179,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits until the exclusive part of what is shown is this process's to change, but not longer than `until`.
+    /// Waits until this process has exclusive control of the shared outputs, at most until `until`.
     pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.take(until).await,
@@ -188,21 +187,22 @@ impl ImageLink {
         }
     }
 
-    /// Lets others change the exclusive part.
+    /// Gives up exclusive control.
     pub fn give(&mut self) {
         if let End::Session(attached) = &mut self.end {
             attached.over();
         }
     }
 
-    /// Has a session show these bits, mask and value, if this process dies; or no more. Without one, the link dies with it.
+    /// Sets the bits (mask and value) that the session sends if this process dies, or none. Without a session, the link
+    /// dies with the process.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         if let End::Session(attached) = &mut self.end {
             attached.set_last_will(bits);
         }
     }
 
-    /// Becomes the only one who moves the robot.
+    /// Claims the right to move the robot for this process alone.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.claim_motion().await,
@@ -210,7 +210,7 @@ impl ImageLink {
         }
     }
 
-    /// Why the process that held the link holds it no longer.
+    /// Reason why the session has ended, if it has.
     pub fn ended(&self) -> Option<&str> {
         match &self.end {
             End::Session(attached) => attached.ended(),
@@ -218,14 +218,14 @@ impl ImageLink {
         }
     }
 
-    /// Shows the peer this image from the next cycle on; [`Event::Sent`] tells when it has left. While the link is down
-    /// it never does.
+    /// Sends this image from the next cycle on; [`Event::Sent`] reports when it was sent. While the link is down, the
+    /// image is dropped.
     ///
     /// # Errors
-    /// When the image does not have the size of the connection.
+    /// The image has another size.
     pub fn show(&mut self, image: &[u8]) -> Result<(), LinkError> {
         match &mut self.end {
-            // What is meant for the time before a loss must not happen after it.
+            // An image from before a loss must not be sent after it.
             End::Own(_) if !self.is_up => Ok(()),
             End::Own(connection) => connection.show(image),
             End::Session(attached) => {
@@ -235,7 +235,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits for the next thing to happen, but not longer than `until`. The future may be dropped.
+    /// Waits for the next event, at most until `until`. Cancel safe.
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.end {
             End::Own(connection) => {
@@ -257,7 +257,7 @@ impl ImageLink {
         event
     }
 
-    /// What was counted; `None` for what has no network of its own.
+    /// Counters; `None` for a link without its own network.
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.end {
             End::Own(connection) => connection.traffic(),
@@ -265,7 +265,7 @@ impl ImageLink {
         }
     }
 
-    /// Ends it properly; one that another process holds goes on.
+    /// Closes the link. A session stays open.
     pub async fn close(self) -> Result<(), LinkError> {
         let Self { end, kept, .. } = self;
         let closed = match end {
@@ -275,7 +275,7 @@ impl ImageLink {
                 Ok(())
             }
         };
-        // The other end must not go before it is told.
+        // The peer must live until the close is complete.
         drop(kept);
         closed
     }
@@ -288,7 +288,7 @@ impl From<client::Event> for Event {
             client::Event::Image(image) => Self::Image(image.into()),
             client::Event::Shown(change) => Self::Shown(change),
             client::Event::Denied => Self::Denied,
-            // What is true of the outputs, the process that holds the link has told where it could.
+            // The session host has already reported the state of the outputs, if it could.
             client::Event::Lost(why) => Self::Lost(LinkError::Silent(Cause::new(why))),
             client::Event::Reopened => Self::Reopened,
             client::Event::Timeout => Self::Timeout,

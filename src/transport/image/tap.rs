@@ -1,52 +1,52 @@
-//! What passes on the wire of a fieldbus, for records.
+//! Hook that records fieldbus traffic.
 
 use std::fmt;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-/// Something that passed.
+/// A recorded item.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Passed {
     /// A datagram.
     Datagram {
-        /// Where it comes from.
+        /// Sender.
         from: SocketAddr,
-        /// Where it goes.
+        /// Receiver.
         to: SocketAddr,
-        /// What it carries.
+        /// Payload.
         bytes: Vec<u8>,
     },
     /// A piece of a TCP stream.
     Segment {
-        /// Where it comes from.
+        /// Sender.
         from: SocketAddr,
-        /// Where it goes.
+        /// Receiver.
         to: SocketAddr,
-        /// The piece.
+        /// Bytes of the piece.
         bytes: Vec<u8>,
     },
-    /// A whole frame of a link with frames of its own, which the record names by its link type.
+    /// A whole frame of a link with its own frame format. The link type of the recording identifies it.
     Frame(Vec<u8>),
 }
 
 type Look = dyn Fn(Passed) + Send + Sync;
 
-/// Called with all that passes, from the threads that move it; it must not block.
+/// Called with all traffic, on the threads that move it. It must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 
 impl Tap {
-    /// Calls this.
+    /// Creates a tap that calls this function.
     pub fn new(tap: impl Fn(Passed) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }
 
-    /// Whether somebody listens.
+    /// Whether the tap records anything.
     pub fn is_open(&self) -> bool {
         self.0.is_some()
     }
 
-    /// Tells what passes, if somebody listens.
+    /// Records an item. `passed` is only called if the tap is open.
     pub fn pass(&self, passed: impl FnOnce() -> Passed) {
         if let Some(tap) = &self.0 {
             tap(passed());

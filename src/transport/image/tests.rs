@@ -1,14 +1,14 @@
-//! What leaves when, what is told, and what becomes of it when the peer is gone.
+//! Tests of image links: sending, events, losses.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
 use super::*;
 
-/// What was shown, and when.
+/// Received images with their times.
 type Heard = Vec<(Duration, Option<Vec<u8>>)>;
 
-/// Shows back what it is shown, a scan of 3 ms later; is gone between two moments.
+/// Echo peer: returns each image 3 ms later. Between two times it is gone.
 #[derive(Debug, Default)]
 struct Echo {
     coming: VecDeque<(Duration, Vec<u8>)>,

@@ -1,4 +1,4 @@
-//! What can be seen of a connection that exchanges images in a cycle of its own, on any fieldbus.
+//! State of a cyclic image connection, the same for every fieldbus.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,61 +7,61 @@ use tokio::sync::watch;
 
 use super::LinkError;
 
-/// How a connection is doing.
+/// State of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum State {
-    /// Being opened for the first time.
+    /// Opening for the first time.
     Opening,
-    /// Images travel, or questions can be asked.
+    /// Open: images are exchanged, or requests are possible.
     Open,
-    /// Lost, or its data cannot be used; being opened again.
+    /// Lost, or its data is invalid. It is being opened again.
     Lost,
-    /// Being closed.
+    /// Closing.
     Closing,
-    /// At its end: closed, or never opened.
+    /// Closed, or opening failed.
     Closed,
 }
 
 /// An image from the device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
-    /// The bytes.
+    /// Bytes of the image.
     pub image: Arc<[u8]>,
-    /// When it came.
+    /// Time of arrival.
     pub at: Duration,
-    /// In which generation.
+    /// Generation of the connection.
     pub generation: u32,
 }
 
-/// The errors of a fieldbus, as far as all have the same.
+/// Errors that every fieldbus has.
 pub trait BusError: Clone + PartialEq + Into<LinkError> {
-    /// What was wanted is for an opening that is over.
+    /// The request names an older generation.
     const OUTDATED: Self;
     /// The connection is closed.
     const ENDED: Self;
 }
 
-/// All that can be seen of a connection: its errors `E`, what is counted on it `S`, and what only its bus has `D`.
+/// State of a connection, with error type `E`, counters `S` and bus-specific details `D`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct View<E, S, D> {
-    /// How it is doing.
+    /// State of the connection.
     pub state: State,
-    /// Counts the openings; 0 before the first.
+    /// Number of openings; 0 before the first.
     pub generation: u32,
-    /// The newest image of the device. It may stay when the connection is lost: compare the generation.
+    /// Newest image of the device. It can be older than a loss: compare the generation.
     pub input: Option<Input>,
-    /// The newest change of what is shown that has left; where the bus answers, that was answered.
+    /// Number of the newest change that was sent, or confirmed if the bus has confirmations.
     pub sent: u64,
-    /// Why it was lost, or not opened, the last time; while it is open, what went wrong here.
+    /// Reason of the last loss or failed opening. While the connection is open, the last local error.
     pub trouble: Option<E>,
-    /// What was counted, over all generations.
+    /// Counters over all generations.
     pub statistics: S,
-    /// What only this bus has.
+    /// Bus-specific details.
     pub details: D,
 }
 
 impl<E: BusError, S: Default, D> View<E, S, D> {
-    /// That of a connection that begins to open.
+    /// View of a connection that starts to open.
     pub fn new(details: D) -> Self {
         Self {
             state: State::Opening,
@@ -74,10 +74,10 @@ impl<E: BusError, S: Default, D> View<E, S, D> {
         }
     }
 
-    /// Whether something can be shown that is meant for this generation.
+    /// Checks that an image for this generation can be sent.
     ///
     /// # Errors
-    /// When the connection is lost, was opened anew, or is closed.
+    /// The connection is lost, was opened again, or is closed.
     pub fn check(&self, generation: u32) -> Result<(), E> {
         match self.state {
             State::Open if generation == self.generation => Ok(()),
@@ -87,32 +87,31 @@ impl<E: BusError, S: Default, D> View<E, S, D> {
     }
 }
 
-/// The view of a connection as it changes.
+/// Receiver of view changes.
 #[derive(Debug)]
 pub struct Views<E, S, D>(watch::Receiver<View<E, S, D>>);
 
 impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
-    /// With the end that shows it.
+    /// Creates a sender and a receiver.
     pub fn new(view: View<E, S, D>) -> (watch::Sender<View<E, S, D>>, Self) {
         let (shows, seen) = watch::channel(view);
         (shows, Self(seen))
     }
 
-    /// What there is to see now.
+    /// Current view.
     pub fn now(&self) -> View<E, S, D> {
         self.0.borrow().clone()
     }
 
-    /// Waits for something new: an image, or a change of state. After the view that says that the connection is closed
-    /// nothing comes any more.
+    /// Waits for a change: an image or a state. Never returns after the connection is closed.
     pub async fn changed(&mut self) {
-        // The other end goes when all has ended; then nothing changes any more.
+        // The sender ends with the connection, so nothing changes any more.
         if self.0.changed().await.is_err() {
             std::future::pending::<()>().await;
         }
     }
 
-    /// Waits until the view is so. It never is again once the connection is closed.
+    /// Waits until `condition` is true, or until the connection is closed.
     pub async fn until(&mut self, mut condition: impl FnMut(&View<E, S, D>) -> bool) -> View<E, S, D> {
         loop {
             let view = self.0.borrow_and_update().clone();
@@ -125,10 +124,10 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
         }
     }
 
-    /// Waits until it is open. What does not come about is closed first.
+    /// Waits until the connection is open. After a failure, it first waits for the close.
     ///
     /// # Errors
-    /// When it does not come about.
+    /// Opening failed.
     pub async fn opened(&mut self) -> Result<(), E> {
         let view = self.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
         match view.state {
@@ -137,10 +136,10 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
         }
     }
 
-    /// Waits until it is closed.
+    /// Waits until the connection is closed.
     ///
     /// # Errors
-    /// What went wrong with that, as far as it is not what was wrong before.
+    /// A new error during the close.
     pub async fn closed(&mut self, before: Option<&E>) -> Result<(), E> {
         let view = self.until(|view| view.state == State::Closed).await;
         view.trouble.filter(|trouble| before != Some(trouble)).map_or(Ok(()), Err)

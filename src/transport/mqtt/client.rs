@@ -1,4 +1,4 @@
-//! Moves what a session wants moved, over TCP or TLS.
+//! MQTT driver: moves the bytes of a session over TCP or TLS.
 
 use std::future::poll_fn;
 use std::io;
@@ -14,23 +14,22 @@ use super::super::tcp::{self, ConnectError};
 use super::tls::{Tls, TlsError};
 use super::{Event, Hello, Loss, Message, SendError, Session};
 
-/// Bytes that are read at a time.
+/// Bytes per read.
 const CHUNK: usize = 16 * 1024;
-/// How long a broker may leave unread what waits for it.
+/// Time after which a broker that reads nothing counts as stuck.
 const UNREAD: Duration = Duration::from_secs(30);
 
-/// Where a broker is.
+/// Address of a broker.
 #[derive(Debug, Clone)]
 pub struct Endpoint {
-    /// Name or address.
+    /// Host name or address.
     pub host: String,
-    /// Its port.
+    /// TCP port.
     pub port: u16,
-    /// How it is trusted; `None` without TLS.
+    /// TLS settings; `None` without TLS.
     pub tls: Option<Arc<Tls>>,
 }
 
-/// What bytes are moved over.
 trait Duplex: AsyncRead + AsyncWrite + Unpin {}
 
 impl<T: AsyncRead + AsyncWrite + Unpin> Duplex for T {}
@@ -41,15 +40,12 @@ pub struct Client {
     session: Session,
     buffer: Vec<u8>,
     is_flushed: bool,
-    /// Since when the line has taken none of what waits for it.
+    /// Time since when the connection accepts no bytes.
     stuck_since: Option<Instant>,
 }
 
 impl Client {
-    /// Connects, and says hello; whether the broker takes the client is the first event. All of it has `within`.
-    ///
-    /// # Errors
-    /// If nobody is reached, or cannot be trusted.
+    /// Connects and sends CONNECT. The first event is the broker's answer. `within` limits the whole procedure.
     pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
         let by = Instant::now() + within;
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
@@ -58,7 +54,7 @@ impl Client {
         Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None })
     }
 
-    /// Waits for what happens next. It may be dropped at any time. After [`Event::Lost`] nothing happens any more.
+    /// Waits for the next event. Cancel safe. After [`Event::Lost`] there are no more events.
     pub async fn next(&mut self) -> Event {
         loop {
             if let Some(event) = self.session.next_event() {
@@ -81,17 +77,11 @@ impl Client {
     }
 
     /// See [`Session::publish`].
-    ///
-    /// # Errors
-    /// Nothing was sent then.
     pub fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         self.session.publish(Instant::now(), message)
     }
 
     /// See [`Session::subscribe`].
-    ///
-    /// # Errors
-    /// If a topic is none.
     pub fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
         self.session.subscribe(Instant::now(), topics)
     }
@@ -106,15 +96,16 @@ impl Client {
         self.session.room()
     }
 
-    /// Bytes that the line has not taken yet.
+    /// Number of bytes not accepted by the connection yet.
     pub fn unsent(&mut self) -> usize {
         self.session.outgoing().len()
     }
 
-    /// Says goodbye, so that the broker keeps the will to itself, and closes the connection. The caller limits how long.
+    /// Sends DISCONNECT, so that the broker does not publish the will, and closes the connection. The caller sets the
+    /// time limit.
     pub async fn close(mut self) {
         self.session.disconnect(Instant::now());
-        // A broker that has gone meanwhile needs no goodbye.
+        // If the broker is already gone, DISCONNECT is not needed.
         let _closed: io::Result<()> = poll_fn(|cx| {
             ready!(self.flush(cx))?;
             Pin::new(&mut *self.stream).poll_shutdown(cx)
@@ -122,10 +113,10 @@ impl Client {
         .await;
     }
 
-    /// Writes what is to be written, and reads.
+    /// Writes pending bytes, then reads.
     fn turn(&mut self, cx: &mut Context<'_>) -> Poll<Result<usize, Loss>> {
         if let Poll::Ready(Err(error)) = self.flush(cx) {
-            // What the broker said before it closed tells more than that it has.
+            // A last message of the broker explains more than the write error.
             return match self.read(cx) {
                 Poll::Ready(Ok(len)) => Poll::Ready(Ok(len)),
                 _ => Poll::Ready(Err(loss(&error))),
@@ -203,7 +194,7 @@ mod tests {
         };
         let now = Instant::now();
         let session = Session::new(&hello, now, now + Duration::from_secs(10)).unwrap();
-        // Room for less than CONNECT.
+        // Smaller than CONNECT.
         let (stream, mut broker) = tokio::io::duplex(8);
         let mut client =
             Client { stream: Box::new(stream), session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None };

@@ -1,4 +1,4 @@
-//! What is said between a client and a broker, whichever MQTT they speak.
+//! Messages and events between client and broker, independent of the MQTT version.
 
 use std::fmt;
 use std::time::Duration;
@@ -8,25 +8,25 @@ use thiserror::Error;
 
 use super::Loss;
 
-/// Which MQTT.
+/// MQTT version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Version {
-    /// 3.1.1.
+    /// MQTT 3.1.1.
     V3,
-    /// 5.
+    /// MQTT 5.
     V5,
 }
 
 /// A message.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Message {
-    /// Its topic.
+    /// Topic.
     pub topic: String,
-    /// What it says.
+    /// Payload.
     pub payload: Vec<u8>,
-    /// Whether the broker keeps it for those who come later.
+    /// Whether the broker keeps it for later subscribers.
     pub retain: bool,
-    /// Whether the broker acknowledges it (`QoS` 1), or not (`QoS` 0).
+    /// Whether the broker acknowledges it (`QoS` 1) or not (`QoS` 0).
     pub acknowledged: bool,
 }
 
@@ -37,27 +37,27 @@ impl fmt::Debug for Message {
     }
 }
 
-/// What a broker says for a client that is gone: a message with an acknowledgement.
+/// Message that the broker publishes when the client is gone (`QoS` 1).
 pub type Will = Message;
 
-/// What a client says of itself.
+/// Contents of CONNECT.
 #[derive(Clone)]
 pub struct Hello {
-    /// Which MQTT.
+    /// MQTT version.
     pub version: Version,
-    /// Its name, unique at the broker.
+    /// Client identifier, unique at the broker.
     pub client_id: String,
-    /// Whom the broker knows it as.
+    /// User name.
     pub user: Option<String>,
-    /// That it is.
+    /// Password.
     pub password: Option<Vec<u8>>,
-    /// Longest silence.
+    /// Keepalive interval.
     pub keep_alive: Duration,
-    /// What the broker says when it is gone.
+    /// Last will.
     pub will: Option<Will>,
 }
 
-/// Without the password.
+/// The password is omitted.
 impl fmt::Debug for Hello {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { version, client_id, user, keep_alive, will, .. } = self;
@@ -65,45 +65,45 @@ impl fmt::Debug for Hello {
     }
 }
 
-/// Why a broker does not take a client.
+/// Refusal of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// Whose codes these are.
+    /// MQTT version, which decides the meaning of the code.
     pub version: Version,
     /// The return code (3.1.1, section 3.2.2.3) or reason code (5, section 3.2.2.2).
     pub code: u8,
-    /// What it says about it.
+    /// Reason text of the broker.
     pub reason: Option<String>,
-    /// Where to go instead.
+    /// Other server that the broker names.
     pub server: Option<String>,
 }
 
-/// What happened.
+/// Event of a session.
 #[derive(Debug)]
 pub enum Event {
-    /// The broker took the client.
+    /// The broker accepted the client.
     Connected,
-    /// It did not.
+    /// The broker refused the client.
     Refused(Refusal),
-    /// The message of this number is the broker's. Or it does not take it, and this is the code.
+    /// The broker acknowledged the message with this number, or rejected it with this code.
     Acknowledged(u64, Option<u8>),
-    /// A subscription is there, or it is refused.
+    /// A subscription was accepted or refused.
     Subscribed(bool),
-    /// The broker answered the ping of this number: all that went before that has arrived.
+    /// The broker answered the ping with this number. Everything sent before it has arrived.
     Pong(u64),
-    /// A message came.
+    /// A message arrived.
     Message(Message),
-    /// The connection is at its end.
+    /// The connection is closed.
     Lost(Loss),
 }
 
-/// Why a message does not leave.
+/// Error of a message that cannot be sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum SendError {
-    /// The broker takes no packets of this size.
+    /// The broker does not accept packets of this size.
     #[error("the broker takes no message of this size")]
     TooLarge,
-    /// It cannot be said in MQTT: a topic that is none.
+    /// Not valid in MQTT, such as a wrong topic.
     #[error("it cannot be said in MQTT")]
     Invalid,
 }

@@ -1,11 +1,11 @@
-//! MQTT 3.1.1 and 5, as a client: messages out, acknowledged; messages in, bounded; nothing known of what they say.
+//! MQTT client for versions 3.1.1 and 5: acknowledged messages out, limited messages in. Payloads have no meaning here.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `message` | what is said, whichever MQTT they speak |
+//! | `message` | messages and events, independent of the version |
 //! | `session` | the protocol between CONNECT and DISCONNECT: time and bytes in, bytes and events out |
-//! | `client` | moves what the session wants moved, over TCP or TLS |
-//! | `tls` | whom to trust, who one is, and what is wrong with a certificate |
+//! | `client` | driver over TCP or TLS |
+//! | `tls` | trust, client certificates, explanation of certificate errors |
 
 mod client;
 mod message;
@@ -20,63 +20,63 @@ pub use self::session::{LARGEST, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 
-/// Packets, bytes and seconds: what a broker may send in a time, besides answers to what is sent to it.
+/// Flood limit: packets, bytes, and seconds. Answers to our own packets do not count.
 const FLOOD: (u32, u32, u64) = (1000, 4 << 20, 10);
 
-/// Why there is no connection to a broker, or none any more.
+/// Reason why there is no connection to the broker.
 #[derive(Debug, Error)]
 pub enum Loss {
-    /// It is not reached.
+    /// No TCP connection.
     #[error("{0}")]
     Connect(#[from] ConnectError),
-    /// It cannot be trusted, or does not trust this client.
+    /// The certificate check failed on one of the sides.
     #[error("{0}")]
     Tls(TlsError),
-    /// It took the connection, and does not answer.
+    /// The broker accepted the connection but did not answer.
     #[error("it takes the connection and does not answer")]
     Unanswered,
-    /// It stopped answering.
+    /// The broker stopped answering.
     #[error("it does not answer any more")]
     Silent,
-    /// It closed the connection.
+    /// The broker closed the connection.
     #[error("it closed the connection")]
     Closed,
-    /// It closed the connection, and said why.
+    /// The broker closed the connection with a reason.
     #[error("it closed the connection: {}", goodbye(*code, reason.as_deref()))]
     Goodbye {
-        /// The reason code of MQTT 5.
+        /// MQTT 5 reason code.
         code: u8,
-        /// What it says.
+        /// Reason text.
         reason: Option<String>,
     },
-    /// What it says is not MQTT, or makes no sense.
+    /// Not MQTT, or not valid.
     #[error("what it says is not MQTT ({0})")]
     Garbage(String),
-    /// It breaks the rules of MQTT.
+    /// Violation of the MQTT protocol.
     #[error("it breaks the MQTT protocol: {0}")]
     Protocol(&'static str),
-    /// It sends more than a client can want.
+    /// The broker sends too much; see the flood limit.
     #[error("it sends too much: more than {} packets or {} bytes in {} s that answer nothing", FLOOD.0, FLOOD.1, FLOOD.2)]
     Flood,
-    /// It does not take what is sent to it.
+    /// The broker does not read what is sent to it.
     #[error("it does not read what is sent to it")]
     Unread,
-    /// It sends a message that nobody here wants to hold.
+    /// The broker sent a packet above the size limit.
     #[error("it sends a packet of more than {LARGEST} bytes")]
     TooLarge,
-    /// The line.
+    /// Error of the connection.
     #[error("{0}")]
     Io(String),
 }
 
 impl Loss {
-    /// Another client with the same name took the place of this one.
+    /// Whether another client with the same identifier took over.
     pub fn is_takeover(&self) -> bool {
         matches!(self, Self::Goodbye { code: 0x8e, .. })
     }
 }
 
-/// What a reason code of a DISCONNECT means (MQTT 5, section 3.14.2.1), with what the broker adds.
+/// Text of a DISCONNECT reason code (MQTT 5, section 3.14.2.1), with the reason of the broker.
 fn goodbye(code: u8, reason: Option<&str>) -> String {
     const CODES: [(u8, &str); 16] = [
         (0x81, "malformed packet"),

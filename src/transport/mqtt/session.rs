@@ -1,4 +1,4 @@
-//! The protocol: time and bytes in, bytes and events out. The packets are those of `mqtt-protocol-core`.
+//! MQTT protocol session: time and bytes in, bytes and events out. `mqtt-protocol-core` encodes the packets.
 
 use std::collections::{HashMap, VecDeque};
 use std::time::Duration;
@@ -14,44 +14,44 @@ use tokio::time::Instant;
 use super::message::{Event, Hello, Message, Refusal, SendError, Version};
 use super::{FLOOD, Loss};
 
-/// Largest packet that is taken from a broker, in bytes: commands and states take a few hundred.
+/// Largest packet accepted from a broker, in bytes. Commands and states need a few hundred.
 pub const LARGEST: u32 = 256 * 1024;
-/// Messages with an acknowledgement that a broker may send at a time.
+/// Receive maximum: unacknowledged messages that a broker can send at a time.
 const RECEIVE_MAXIMUM: u16 = 16;
-/// How long a broker has to answer a ping.
+/// Time limit for the answer to a ping.
 const PONG_WITHIN: Duration = Duration::from_secs(10);
-/// What a broker begins with (3.1.1, section 3.2.1; 5 the same).
+/// First byte from a broker (3.1.1, section 3.2.1; the same in 5).
 const CONNACK: u8 = 0x20;
-/// Bytes that an answer of a broker has at most, as a rule: they are not counted as a flood.
+/// Usual size limit of a broker's answer. Smaller answers do not count as flood.
 const ANSWER: u32 = 256;
-/// Bytes of acknowledgements that wait for a broker which does not read them.
+/// Limit of acknowledgements, in bytes, that wait for a broker that does not read.
 const REPLIES: usize = 64 * 1024;
-/// Longest text of a broker that is passed on, in characters.
+/// Longest broker text that is reported, in characters.
 const LONGEST_TEXT: usize = 200;
 
-/// A connection, from CONNECT to its end. It is not used again.
+/// A session, from CONNECT to its end. It cannot be used again.
 pub struct Session {
     inner: Connection<role::Client>,
     version: Version,
     outgoing: Vec<u8>,
     events: VecDeque<Event>,
     timers: Vec<(TimerKind, Instant)>,
-    /// Messages under way by their packet identifiers, with numbers of their own: an identifier is used again as soon as it
-    /// is acknowledged, and events may wait to be taken.
+    /// Messages in progress: packet identifier to our own number. An identifier is free again after the
+    /// acknowledgement, but its event can still be in the queue.
     under_way: HashMap<u16, u64>,
     published: u64,
     answer_by: Option<Instant>,
-    /// How many pings have left, and were answered.
+    /// Numbers of pings sent and answered.
     pings: u64,
     pongs: u64,
     has_heard: bool,
     flood: Flood,
-    /// Bytes that were sent in reply since the line has taken all.
+    /// Bytes of replies since the connection last accepted all output.
     replies: usize,
     is_over: bool,
 }
 
-/// What a broker has sent since a moment, besides answers.
+/// Counters of unsolicited traffic since a point in time.
 #[derive(Debug)]
 struct Flood {
     since: Instant,
@@ -85,10 +85,10 @@ impl Flood {
 }
 
 impl Session {
-    /// Says hello; the broker has to answer until `answer_by`.
+    /// Queues CONNECT. The broker must answer before `answer_by`.
     ///
     /// # Errors
-    /// If what it says is none in MQTT: a name of more than 65,535 bytes, or with NUL.
+    /// A text is not valid in MQTT: longer than 65,535 bytes, or with NUL.
     pub fn new(hello: &Hello, now: Instant, answer_by: Instant) -> Result<Self, SendError> {
         let spoken = match hello.version {
             Version::V3 => Spoken::V3_1_1,
@@ -118,17 +118,17 @@ impl Session {
         Ok(session)
     }
 
-    /// What happened next.
+    /// Returns the next event.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front()
     }
 
-    /// What is to be sent; whoever has sent some of it takes that away.
+    /// Bytes to send. The caller removes what it has sent.
     pub fn outgoing(&mut self) -> &mut Vec<u8> {
         &mut self.outgoing
     }
 
-    /// When it wants to be polled next.
+    /// Time of the next [`poll`](Self::poll).
     pub fn due(&self) -> Option<Instant> {
         self.timers.iter().map(|(_, at)| *at).chain(self.answer_by).min()
     }
@@ -149,9 +149,9 @@ impl Session {
         }
     }
 
-    /// Takes bytes from the broker.
+    /// Handles bytes from the broker.
     pub fn handle(&mut self, now: Instant, bytes: &[u8]) {
-        // Whoever speaks something else is waited for in vain.
+        // A server of another protocol would never send a CONNACK, so report it now.
         if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
             && *first != CONNACK
         {
@@ -181,7 +181,7 @@ impl Session {
         }
     }
 
-    /// The connection is gone.
+    /// The connection is closed.
     pub fn lose(&mut self, loss: Loss) {
         if !std::mem::replace(&mut self.is_over, true) {
             self.timers.clear();
@@ -190,18 +190,18 @@ impl Session {
         }
     }
 
-    /// How many more messages with an acknowledgement the broker takes at present, if it has said so.
+    /// How many more unacknowledged messages the broker accepts now, if it has set a limit.
     pub fn room(&self) -> Option<u16> {
         self.inner.get_receive_maximum_vacancy_for_send()
     }
 
-    /// Sends a message; says the number that its acknowledgement will have, if it gets one.
+    /// Queues a message. Returns the number of its acknowledgement, if it gets one.
     ///
     /// # Errors
-    /// Nothing was sent then.
+    /// Nothing was sent.
     pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u64>, SendError> {
         let Message { topic, payload, retain, acknowledged } = message;
-        // The standard forbids it (section 1.5.4), and some brokers end the connection.
+        // The standard forbids it (section 1.5.4), and some brokers close the connection.
         if topic.is_empty() || topic.contains('\0') {
             return Err(SendError::Invalid);
         }
@@ -232,10 +232,7 @@ impl Session {
         }))
     }
 
-    /// Wants the messages of these topics.
-    ///
-    /// # Errors
-    /// If one is none.
+    /// Subscribes to these topics.
     pub fn subscribe(&mut self, now: Instant, topics: &[String]) -> Result<(), SendError> {
         let entry = |topic: &String| SubEntry::new(topic.as_str(), SubOpts::new().set_qos(Qos::AtLeastOnce));
         let entries = topics.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
@@ -247,24 +244,24 @@ impl Session {
         self.send(now, packet)
     }
 
-    /// Asks whether all has arrived so far; says the number of the ping.
+    /// Queues a ping, to learn when everything before it has arrived. Returns its number.
     pub fn ping(&mut self, now: Instant) -> u64 {
         let packet: Result<Packet, MqttError> = match self.version {
             Version::V3 => v3_1_1::Pingreq::builder().build().map(Into::into),
             Version::V5 => v5_0::Pingreq::builder().build().map(Into::into),
         };
-        // A ping has nothing in it that could be wrong, and what has no room is no ping.
+        // A ping has no variable content. If it does not fit, it is not counted.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.pings
     }
 
-    /// Says goodbye: the broker keeps the will to itself.
+    /// Queues DISCONNECT, so that the broker does not publish the will.
     pub fn disconnect(&mut self, now: Instant) {
         let packet: Result<Packet, MqttError> = match self.version {
             Version::V3 => v3_1_1::Disconnect::builder().build().map(Into::into),
             Version::V5 => v5_0::Disconnect::builder().build().map(Into::into),
         };
-        // As with a ping; the end of the connection follows in any case.
+        // An error does not matter: the connection is closed next in any case.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.timers.clear();
     }
@@ -302,7 +299,7 @@ impl Session {
                 connection::Event::NotifyPacketIdReleased(_) => {}
             }
         }
-        // Why comes behind it, where there is a why.
+        // The reason follows as a separate event, if there is one.
         if closes {
             self.lose(Loss::Garbage("it breaks the protocol".to_owned()));
         }
@@ -317,7 +314,7 @@ impl Session {
             Packet::V3_1_1Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
             Packet::V5_0Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => self.pongs < self.pings,
-            // The codec takes it for a subscription under way alone.
+            // The codec only accepts it for a pending subscription.
             Packet::V3_1_1Suback(_) | Packet::V5_0Suback(_) => true,
             _ => is_connack,
         });
@@ -363,7 +360,7 @@ impl Session {
                 acknowledged: publish.qos() != Qos::AtMostOnce,
             }),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => {
-                // One that answers no ping says nothing.
+                // Ignore an answer without a ping.
                 self.pongs = self.pings.min(self.pongs + 1);
                 Event::Pong(self.pongs)
             }
@@ -372,7 +369,7 @@ impl Session {
                 let reason = disconnect.props().as_ref().and_then(|props| texts(props).0);
                 return self.lose(Loss::Goodbye { code, reason });
             }
-            // Answers to what is never sent from here.
+            // Answers to packets that this client never sends.
             _ => return,
         };
         self.events.push_back(event);
@@ -382,7 +379,7 @@ impl Session {
 fn connect(hello: &Hello) -> Result<Packet, MqttError> {
     let Hello { version, client_id, user, password, keep_alive, will } = hello;
     let seconds = u16::try_from(keep_alive.as_secs()).unwrap_or(u16::MAX);
-    // Both kinds of packets have the same builder, of different types.
+    // The builders of both versions have the same methods, but different types.
     macro_rules! build {
         ($connect:path) => {{
             let mut builder =
@@ -405,7 +402,7 @@ fn connect(hello: &Hello) -> Result<Packet, MqttError> {
     })
 }
 
-/// What a broker says in words, and where it sends clients.
+/// Reason text and other server of the broker.
 fn texts(properties: &Properties) -> (Option<String>, Option<String>) {
     let mut found = (None, None);
     for property in properties {
@@ -463,7 +460,7 @@ mod tests {
 
     #[test]
     fn hello_is_as_the_standard_has_it() {
-        // MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 kept, user name and password.
+        // MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain, user name and password.
         let (mut session, _) = started(Version::V3);
         let fields = [&b"cell7"[..], b"armctl/cell7/state", b"offline", b"plant", b"secret"];
         let mut expected = vec![0x10, 0, 0, 4];
@@ -485,7 +482,7 @@ mod tests {
             let (mut session, now) = connected(version);
             let numbers = [(); 2].map(|()| session.publish(now, &message(true)).unwrap().unwrap());
             assert_eq!(session.outgoing()[0], 0x33, "PUBLISH with QoS 1, kept");
-            // Both at once; their identifiers are free again before anybody has taken the events.
+            // Two acknowledgements at once. The identifiers are free before the events are taken.
             session.handle(now, &[0x40, 2, 0, 1, 0x40, 2, 0, 2]);
             let third = session.publish(now, &message(true)).unwrap().unwrap();
             let mut acknowledged = Vec::new();
@@ -496,7 +493,7 @@ mod tests {
             assert!(!numbers.contains(&third));
             assert_eq!(session.publish(now, &message(false)), Ok(None));
         }
-        // MQTT 5 can say no: not authorized. And that nobody listens, which is no refusal.
+        // MQTT 5 can reject: not authorized. "No subscribers" is not a rejection.
         let (mut session, now) = connected(Version::V5);
         session.publish(now, &message(true)).unwrap();
         session.handle(now, &[0x40, 3, 0, 1, 0x87]);
@@ -558,7 +555,7 @@ mod tests {
         }
     }
 
-    /// How many of these packets are taken, one every `apart`, before the connection is ended.
+    /// Number of packets accepted, one every `apart`, before the session ends.
     fn taken(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
         let (mut session, now) = connected(Version::V3);
         let mut at = now;
@@ -608,7 +605,7 @@ mod tests {
     fn replies_that_are_not_read_are_bounded() {
         let (mut session, now) = connected(Version::V3);
         session.outgoing().clear();
-        // One every 100 ms: no flood. Nothing of it is taken by the line.
+        // One every 100 ms is no flood. The connection accepts no output.
         for number in 1..u16::MAX {
             let [high, low] = number.to_be_bytes();
             session.handle(now + Duration::from_millis(100) * number.into(), &[0x32, 5, 0, 1, b'a', high, low]);

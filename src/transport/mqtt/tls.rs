@@ -1,60 +1,60 @@
-//! TLS with rustls: whom to trust, who one is, and what is wrong with a certificate. Without the feature `plant-tls` there
-//! is none, and whoever wants it is told.
+//! TLS with rustls: trusted roots, client certificates, explanation of certificate errors. Without the feature
+//! `plant-tls`, TLS is not available, and a request for it is an error.
 
 use thiserror::Error;
 
-/// Whom to trust.
+/// Trusted root certificates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trust {
-    /// The roots of this machine.
+    /// The roots of the operating system.
     System,
-    /// These alone, as PEM.
+    /// Only these roots, in PEM format.
     Roots(Vec<u8>),
 }
 
-/// Who one is, as PEM.
+/// Client certificate, in PEM format.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// The certificate, with those that lead to a root.
+    /// The certificate and its chain.
     pub certificates: Vec<u8>,
-    /// Its key.
+    /// The private key.
     pub key: Vec<u8>,
 }
 
-/// What is wrong with one end's trust in the other.
+/// Error of the certificate check or the TLS handshake.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TlsError {
-    /// The broker's certificate is of nobody who is trusted.
+    /// The issuer of the broker's certificate is not trusted.
     #[error("its certificate is issued by nobody who is trusted here")]
     UnknownIssuer,
-    /// It is for another name.
+    /// The certificate is for another host name.
     #[error("its certificate is for another name")]
     WrongName,
-    /// It is over.
+    /// The certificate has expired.
     #[error("its certificate has expired")]
     Expired,
-    /// It is not yet.
+    /// The certificate is not valid yet.
     #[error("its certificate is not valid yet")]
     NotYetValid,
-    /// It was taken back.
+    /// The certificate was revoked.
     #[error("its certificate was revoked")]
     Revoked,
-    /// It is something else.
+    /// The certificate is not valid for another reason.
     #[error("its certificate is not valid: {0}")]
     Certificate(String),
-    /// Nobody speaks TLS there.
+    /// The port does not use TLS.
     #[error("it does not speak TLS on this port")]
     NoTls,
-    /// The broker does not take this client's certificate, or wants one.
+    /// The broker rejects this client's certificate, or requires one.
     #[error("it does not accept this client's certificate ({0})")]
     Rejected(String),
-    /// Both have no version or cipher in common.
+    /// The two sides have no common TLS version or cipher.
     #[error("no version or cipher of TLS is common to both ({0})")]
     NothingInCommon(String),
-    /// A certificate or key of this client is none.
+    /// A local certificate or key is not valid.
     #[error("{0}")]
     Setup(String),
-    /// Anything else.
+    /// Another TLS error.
     #[error("TLS: {0}")]
     Other(String),
 }
@@ -76,7 +76,7 @@ mod rustls_link {
 
     use super::{Identity, TlsError, Trust};
 
-    /// How a broker is trusted.
+    /// TLS settings for a broker.
     pub struct Tls {
         connector: TlsConnector,
         name: ServerName<'static>,
@@ -89,10 +89,10 @@ mod rustls_link {
     }
 
     impl Tls {
-        /// With the broker of this name or address.
+        /// Creates the settings for this host name or address.
         ///
         /// # Errors
-        /// If a certificate or a key is none, or this machine has no roots.
+        /// A certificate or key is not valid, or the system has no roots.
         pub fn new(host: &str, trust: &Trust, identity: Option<&Identity>) -> Result<Self, TlsError> {
             let name = ServerName::try_from(host.to_owned())
                 .map_err(|_| TlsError::Setup(format!("'{host}' is not a valid name of a server")))?;
@@ -156,7 +156,7 @@ mod rustls_link {
     }
 
     impl TlsError {
-        /// What rustls says, if an error is its.
+        /// Converts an error of rustls; `None` for other errors.
         pub(in super::super) fn of(error: &io::Error) -> Option<Self> {
             let error = error.get_ref()?.downcast_ref::<Error>()?;
             Some(match error {
@@ -192,15 +192,12 @@ mod rustls_link {
 
     use super::{Identity, TlsError, Trust};
 
-    /// How a broker is trusted: not at all in this build.
+    /// TLS settings; not available in this build.
     #[derive(Debug)]
     pub enum Tls {}
 
     impl Tls {
-        /// Says that there is none.
-        ///
-        /// # Errors
-        /// Always.
+        /// Reports that TLS is not available.
         pub fn new(_: &str, _: &Trust, _: Option<&Identity>) -> Result<Self, TlsError> {
             Err(TlsError::Setup("this armctl was built without TLS (feature plant-tls)".to_owned()))
         }

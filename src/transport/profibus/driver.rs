@@ -1,4 +1,4 @@
-//! A master on a thread of its own: exchanges go on whatever the rest of the program does.
+//! Driver that runs a master on its own thread, so that the data exchange does not depend on the rest of the program.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,17 +16,17 @@ use super::survey::{Found, Survey};
 use super::wire::{Piece, Stream};
 use crate::plain;
 
-/// How long a port is waited for at once, so that a wish to end is heard.
+/// Longest wait at the port, so that a close is noticed.
 const SLICE: Duration = Duration::from_millis(10);
-/// Pause before a port that is gone is opened again.
+/// Pause before the port is opened again after a loss.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// Opens the port, the first time and after it was gone.
+/// Opens the port, the first time and after a loss.
 pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Port>, ProfibusError> + Send>;
-/// Is told every telegram.
+/// Records each telegram.
 pub type Tap = Box<dyn Fn(&[u8]) + Send>;
 
-/// A link that is held. Dropping it sets the slave free.
+/// An open link. Dropping it releases the slave.
 #[derive(Debug)]
 pub struct Connection {
     shared: Arc<Shared>,
@@ -43,10 +43,11 @@ struct Shared {
 }
 
 impl Connection {
-    /// Opens the port and a link.
+    /// Opens the port and the link.
     ///
     /// # Errors
-    /// When either does not come about: nothing is tried twice. Later losses are not errors but states of the view.
+    /// The port or the link cannot be opened; there is no second attempt. A later loss is not an error but a state of
+    /// the view.
     pub async fn open(settings: Settings, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let master = Master::new(Duration::ZERO, settings)?;
         let port = opener()?;
@@ -68,7 +69,7 @@ impl Connection {
         Ok(connection)
     }
 
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         self.shared.master().view()
     }
@@ -78,10 +79,10 @@ impl Connection {
         self.shared.master().set_image(generation, image)
     }
 
-    /// Sets the slave free, and ends.
+    /// Releases the slave and closes the link.
     ///
     /// # Errors
-    /// When the slave did not say that it is free; it is so after its watchdog.
+    /// The slave did not confirm the release. It is free after its watchdog time.
     pub async fn close(mut self) -> Result<(), ProfibusError> {
         let now = self.shared.start.elapsed();
         self.shared.master().close(now);
@@ -95,7 +96,7 @@ impl Drop for Connection {
         self.shared.master().close(now);
         self.shared.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }
@@ -140,7 +141,7 @@ impl Driver {
         }
     }
 
-    /// Sends what is due, or waits for what comes.
+    /// Sends what is due, or waits for characters.
     fn turn(&mut self, port: &mut dyn Port) -> io::Result<()> {
         let (bytes, due) = {
             let mut master = self.shared.master();
@@ -160,7 +161,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Opens the port again after a while.
+    /// Opens the port again after a pause.
     fn reopen(&mut self) {
         let until = Instant::now() + AGAIN;
         while Instant::now() < until {
@@ -171,7 +172,7 @@ impl Driver {
         }
         let now = self.shared.start.elapsed();
         if self.shared.master().view().state != State::Lost {
-            // To be closed: without a port nobody can be told.
+            // Closing. Without a port, the slave cannot be released.
             self.shared.master().port_failed(now, ProfibusError::Ended);
             return;
         }
@@ -188,7 +189,7 @@ impl Driver {
     }
 }
 
-/// Whole telegrams for a tap.
+/// Splits the traffic into telegrams for a tap.
 pub(super) struct Record {
     tap: Tap,
     stream: Stream,
@@ -214,10 +215,7 @@ impl Record {
     }
 }
 
-/// Asks stations who they are; on a thread that may block.
-///
-/// # Errors
-/// When nobody can be asked.
+/// Runs a survey; blocks the thread.
 pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
     let start = Instant::now();
     let mut record = tap.map(Record::new);

@@ -1,4 +1,4 @@
-//! What can go wrong between a master and a slave: what was sent, what was said to it.
+//! Errors of PROFIBUS links: the request, and the answer or its absence.
 
 use std::time::Duration;
 
@@ -7,182 +7,182 @@ use thiserror::Error;
 use super::wire::{Diagnosis, Status};
 use crate::image::view::BusError;
 
-/// Why something did not come about.
+/// An error that prevented or ended a link.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ProfibusError {
-    /// Settings that no link can have; nothing was sent.
+    /// Invalid settings; nothing was sent.
     #[error("{0}")]
     Settings(
-        /// Why they cannot be.
+        /// The reason.
         String,
     ),
-    /// The adapter does not open, or does not do what it should.
+    /// The adapter cannot be opened, or refuses a setting.
     #[error("{port}: {text}")]
     Port {
-        /// Its name.
+        /// Name of the port.
         port: String,
-        /// What is wrong.
+        /// Reason, as text.
         text: String,
     },
-    /// The adapter was there, and is gone.
+    /// The adapter was disconnected.
     #[error("the adapter is gone: {text}")]
     Gone {
-        /// The system's reason.
+        /// Reason of the system.
         text: String,
     },
-    /// Another master is on the line. Nothing was sent since it was heard.
+    /// Another master is on the bus. Nothing was sent after it was heard.
     #[error("another master, station {master}, is on the bus ({heard})")]
     OtherMaster {
-        /// Its address.
+        /// Address of the master.
         master: u8,
-        /// What was heard of it.
+        /// The traffic that revealed it.
         heard: &'static str,
     },
-    /// Something is on the line that cannot be read. Nothing was sent.
+    /// Unreadable traffic is on the bus. Nothing was sent.
     #[error("there is traffic on the bus that cannot be read at this bit rate ({bytes} bytes)")]
     Unreadable {
-        /// How much was heard.
+        /// Number of unreadable bytes.
         bytes: usize,
     },
     /// The station did not answer.
     #[error("station {station} did not answer {asked} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
     NoAnswer {
-        /// Who was asked.
+        /// Address of the station.
         station: u8,
-        /// What.
+        /// The request.
         asked: &'static str,
-        /// How often.
+        /// Number of attempts.
         attempts: u8,
-        /// How long was waited each time.
+        /// Time waited per attempt.
         slot: Duration,
-        /// What came instead.
+        /// What was received instead.
         heard: Heard,
     },
     /// The station is a master.
     #[error("station {station} is a master, not a slave")]
     IsMaster {
-        /// Its address.
+        /// Address of the station.
         station: u8,
     },
-    /// The station said no.
+    /// The station refused.
     #[error("station {station} refused {asked}: {}", status.text())]
     Refused {
-        /// Who was asked.
+        /// Address of the station.
         station: u8,
-        /// What.
+        /// The request.
         asked: &'static str,
-        /// What it said.
+        /// Status of the answer.
         status: Status,
     },
-    /// An answer that makes no sense.
+    /// The answer cannot be decoded.
     #[error("the answer of station {station} to {asked} cannot be read: {why}")]
     Malformed {
-        /// Who was asked.
+        /// Address of the station.
         station: u8,
-        /// What.
+        /// The request.
         asked: &'static str,
-        /// What is wrong with it.
+        /// What is wrong with the answer.
         why: String,
     },
-    /// The slave is of another kind than the settings say.
+    /// The ident number of the slave is not the one in the settings.
     #[error("station {station} has ident number {found:#06x}, not {expected:#06x}")]
     Ident {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// What it says.
+        /// Ident number of the slave.
         found: u16,
-        /// What the settings say.
+        /// Ident number in the settings.
         expected: u16,
     },
-    /// The configuration adds up to other images.
+    /// The configuration has other image sizes.
     #[error(
         "the configuration {} has {input} bytes from station {station} and {output} to it, not {expected_input} and {expected_output}",
         hex(configuration)
     )]
     Size {
-        /// The slave.
+        /// Address of the station.
         station: u8,
-        /// Its identifier bytes.
+        /// Identifier bytes of the configuration.
         configuration: Vec<u8>,
         /// Bytes from the slave.
         input: usize,
         /// Bytes to the slave.
         output: usize,
-        /// Bytes that should come.
+        /// Expected bytes from the slave.
         expected_input: usize,
-        /// Bytes that should go.
+        /// Expected bytes to the slave.
         expected_output: usize,
     },
-    /// An exchange had another length.
+    /// A data exchange had a wrong length.
     #[error("station {station} sent {found} bytes of data, not {expected}")]
     Length {
-        /// The slave.
+        /// Address of the station.
         station: u8,
-        /// Bytes that came.
+        /// Bytes received.
         found: usize,
-        /// Bytes that should come.
+        /// Bytes expected.
         expected: usize,
     },
-    /// The slave wants other parameters.
+    /// The slave reports a parameter fault.
     #[error("station {station} does not take the user parameters {}", hex(sent))]
     ParameterFault {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// What it was sent.
+        /// User parameters sent.
         sent: Vec<u8>,
     },
-    /// The slave wants another configuration.
+    /// The slave reports a configuration fault.
     #[error("station {station} does not take the configuration {}; {}", hex(sent), wants(wanted.as_deref()))]
     ConfigurationFault {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// What it was sent.
+        /// Configuration sent.
         sent: Vec<u8>,
-        /// What it says that it wants.
+        /// Configuration that the slave reports (Get_Cfg).
         wanted: Option<Vec<u8>>,
     },
-    /// The slave belongs to another master.
+    /// The slave is locked by another master.
     #[error("station {station} belongs to master {}", master.map_or_else(|| "?".to_owned(), |master| master.to_string()))]
     Locked {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// Its master, as far as it says.
+        /// Address of that master, if the slave reports it.
         master: Option<u8>,
     },
-    /// The slave does not get ready.
+    /// The slave does not become ready.
     #[error("station {station} is not ready for data after {} ms: {diagnosis}", after.as_millis())]
     NotReady {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
-        /// What it says of itself.
+        /// Last diagnosis of the slave.
         diagnosis: Box<Diagnosis>,
     },
-    /// The slave has left the exchange of data.
+    /// The slave has left data exchange.
     #[error("station {station} has left data exchange: {why}")]
     Left {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// What it said.
+        /// Reason, as text.
         why: String,
     },
-    /// No exchange of the station with a master was heard. Nothing was sent.
+    /// No data exchange of the station with a master was heard. Nothing was sent.
     #[error("no exchange of station {station} with a master was heard within {} ms ({telegrams} telegrams, {noise} bytes of noise)", after.as_millis())]
     NotHeard {
-        /// Its address.
+        /// Address of the station.
         station: u8,
-        /// How long was listened.
+        /// Time spent listening.
         after: Duration,
-        /// Telegrams of others.
+        /// Telegrams of other stations.
         telegrams: u64,
-        /// Bytes that were no telegram.
+        /// Bytes that are no telegram.
         noise: u64,
     },
-    /// The image or the wish is for a connection that has ended meanwhile.
+    /// The link was lost after the caller last looked at it (an older generation).
     #[error("the connection was lost meanwhile")]
     Outdated,
-    /// The connection was closed here.
+    /// The link was closed by this program.
     #[error("the connection is closed")]
     Ended,
 }
@@ -192,12 +192,12 @@ impl BusError for ProfibusError {
     const ENDED: Self = Self::Ended;
 }
 
-/// What came while an answer was waited for.
+/// What was received instead of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Heard {
-    /// Bytes that were no telegram, or one that was damaged.
+    /// Noise or a damaged telegram.
     pub noise: bool,
-    /// The adapter hands back what is sent.
+    /// The adapter echoes what is sent.
     pub echo: bool,
 }
 
@@ -212,7 +212,7 @@ impl std::fmt::Display for Heard {
     }
 }
 
-/// Bytes as they are written in URLs.
+/// Bytes in the form of URLs.
 pub fn hex(bytes: &[u8]) -> String {
     if bytes.is_empty() { "of no bytes".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
 }

@@ -1,61 +1,61 @@
-//! The file that the maker of a slave gives with it (GSD): ident number, speeds, modules, user parameters.
+//! Parser for GSD files, the device description of a slave: ident number, bit rates, modules, user parameters.
 //!
-//! Lines of `Keyword = value`; a `\` at the end goes on with the next line, a `;` begins a comment, `Module` to `EndModule`
-//! is a block. Keywords are written in any case. What is not needed is passed over.
+//! Lines have the form `Keyword = value`. A `\` at the end continues the line, a `;` starts a comment, `Module` to
+//! `EndModule` is a block. Keywords ignore case. Unknown keywords are skipped.
 
 use thiserror::Error;
 
 use super::rates::{RATES, Rate};
 use super::wire::{Configuration, MAX_DATA, Parameters};
 
-/// Most bytes of a file, for whoever reads one: makers' files have a few hundred thousand.
+/// File size limit. Files of manufacturers have a few hundred thousand bytes.
 pub const MAX_FILE: u64 = 4 << 20;
 
-/// What a file says.
+/// Contents of a GSD file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Gsd {
-    /// Who made the slave.
+    /// Vendor name.
     pub vendor: String,
-    /// What it is called.
+    /// Model name.
     pub model: String,
-    /// Which kind it is.
+    /// Ident number.
     pub ident: u16,
-    /// What family it is of: 0 is general.
+    /// Slave family; 0 is general.
     pub family: Option<u8>,
-    /// Speeds of this program that it has.
+    /// Supported bit rates that this program also supports.
     pub rates: Vec<Rate>,
-    /// Whether modules are put together; else there is one set.
+    /// Whether the slave is modular. If not, it has one set of modules.
     pub is_modular: bool,
     /// User parameters of the slave itself.
     pub parameters: Vec<u8>,
-    /// Modules to choose from.
+    /// Available modules.
     pub modules: Vec<Module>,
 }
 
 /// A module.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Module {
-    /// What it is called.
+    /// Name of the module.
     pub name: String,
-    /// Its identifier bytes.
+    /// Identifier bytes.
     pub configuration: Vec<u8>,
-    /// Its user parameters.
+    /// User parameters of the module.
     pub parameters: Vec<u8>,
 }
 
-/// Where a file is wrong.
+/// Error in a GSD file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {line}: {keyword}: {problem}")]
 pub struct GsdError {
-    /// The line, from 1.
+    /// Line number, from 1.
     pub line: usize,
     /// The keyword.
     pub keyword: String,
-    /// What is wrong.
+    /// Description of the problem.
     pub problem: String,
 }
 
-/// A line with those that it goes on in.
+/// A logical line.
 struct Entry<'a> {
     line: usize,
     keyword: &'a str,
@@ -71,7 +71,7 @@ impl Entry<'_> {
         self.keyword.eq_ignore_ascii_case(keyword)
     }
 
-    /// `0x1F` or `31`.
+    /// Parses `0x1F` or `31`.
     fn number(&self, text: &str) -> Result<u32, GsdError> {
         let text = text.trim();
         let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
@@ -92,14 +92,14 @@ impl Entry<'_> {
         if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes are too many", bytes.len()))) } else { Ok(bytes) }
     }
 
-    /// What stands in quotation marks, and what follows.
+    /// Splits the value into the quoted text and the rest.
     fn quoted(&self) -> Result<(&str, &str), GsdError> {
         let wrong = || self.error("a name in quotation marks belongs here");
         let rest = self.value.trim().strip_prefix('"').ok_or_else(wrong)?;
         rest.split_once('"').ok_or_else(wrong)
     }
 
-    /// Bytes that belong at a place of user parameters: `(3)` behind the keyword says where.
+    /// Parses user parameter bytes. The number after the keyword, such as `(3)`, is their offset.
     fn place(&self, parameters: &mut Vec<u8>) -> Result<bool, GsdError> {
         let Some((keyword, rest)) = self.keyword.split_once('(') else { return Ok(false) };
         if !keyword.trim().eq_ignore_ascii_case("Ext_User_Prm_Data_Const") {
@@ -117,7 +117,7 @@ impl Entry<'_> {
         Ok(true)
     }
 
-    /// So many bytes of user parameters.
+    /// Parses the length of the user parameters.
     fn length(&self, parameters: &mut Vec<u8>) -> Result<(), GsdError> {
         let len = usize::try_from(self.number(self.value)?).unwrap_or(usize::MAX);
         if len > Parameters::MAX_USER {
@@ -131,10 +131,10 @@ impl Entry<'_> {
 }
 
 impl Gsd {
-    /// Reads a file; bytes beyond ASCII are read as Latin-1.
+    /// Parses a file. Bytes beyond ASCII are read as Latin-1.
     ///
     /// # Errors
-    /// [`GsdError`] names line and keyword.
+    /// [`GsdError`] names the line and the keyword.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdError> {
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         let mut gsd = Self::default();
@@ -197,7 +197,7 @@ impl Gsd {
         } else if entry.is("Modular_Station") {
             self.is_modular = entry.number(entry.value)? != 0;
         } else if entry.is("Slave_Family") {
-            // Sub-families follow an `@`.
+            // A sub-family follows after an `@`.
             self.family = Some(entry.byte(entry.value.split('@').next().unwrap_or_default())?);
         } else if entry.is("User_Prm_Data_Len") || entry.is("Max_User_Prm_Data_Len") && !self.is_modular {
             entry.length(&mut self.parameters)?;
@@ -217,10 +217,10 @@ impl Gsd {
         Ok(())
     }
 
-    /// What modules of these names make: identifier bytes, user parameters.
+    /// Combines modules by name. Returns identifier bytes and user parameters.
     ///
     /// # Errors
-    /// In words, when a name is none, or there are too many.
+    /// A text: an unknown name, or too many modules.
     pub fn assemble(&self, names: &[&str]) -> Result<(Vec<u8>, Vec<u8>), String> {
         let (mut configuration, mut parameters) = (Vec::new(), self.parameters.clone());
         for name in names {
@@ -238,7 +238,7 @@ impl Gsd {
         Ok((configuration, parameters))
     }
 
-    /// The module, or the set of all of them, that has these sizes, where there is exactly one.
+    /// The module (or set) with these sizes, if there is exactly one.
     pub fn fitting(&self, input: usize, output: usize) -> Option<&Module> {
         let mut fitting = self.modules.iter().filter(|module| {
             Configuration::parse(&module.configuration)
@@ -249,7 +249,7 @@ impl Gsd {
     }
 }
 
-/// The speed of a keyword such as `45.45_supp`.
+/// Bit rate of a keyword such as `45.45_supp`.
 fn rate(keyword: &str) -> Option<Rate> {
     let name = keyword.to_ascii_lowercase();
     let name = name.strip_suffix("_supp")?;
@@ -259,7 +259,7 @@ fn rate(keyword: &str) -> Option<Rate> {
     })
 }
 
-/// Lines without comments, put together where they go on; each with the number of its first one.
+/// Logical lines without comments, each with the number of its first line.
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines = Vec::new();
     let mut open: Option<(usize, String)> = None;
@@ -278,7 +278,7 @@ fn logical_lines(text: &str) -> Vec<(usize, String)> {
     lines
 }
 
-/// A `;` in quotation marks begins no comment.
+/// A `;` in quotation marks does not start a comment.
 fn without_comment(line: &str) -> &str {
     let mut is_quoted = false;
     for (at, character) in line.char_indices() {

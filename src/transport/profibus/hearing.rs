@@ -1,4 +1,4 @@
-//! A listener on a thread of its own.
+//! Driver that runs a listener on its own thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,10 +13,10 @@ use super::error::ProfibusError;
 use super::listener::{Heard, Listener};
 use crate::plain;
 
-/// How long a port is waited for at once, so that the wish to end is heard.
+/// Longest wait at the port, so that a close is noticed.
 const SLICE: Duration = Duration::from_millis(10);
 
-/// Hears one station until it is dropped.
+/// Listens to one station until it is dropped.
 #[derive(Debug)]
 pub struct Hearing {
     news: watch::Receiver<Result<Heard, ProfibusError>>,
@@ -28,9 +28,6 @@ pub struct Hearing {
 
 impl Hearing {
     /// Opens the port.
-    ///
-    /// # Errors
-    /// When it does not open.
     pub fn start(station: u8, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let mut port = opener()?;
         let (tell, news) = watch::channel(Ok(Heard::default()));
@@ -63,15 +60,15 @@ impl Hearing {
         Ok(Self { news, last: Heard::default(), station, is_over, thread: Some(thread) })
     }
 
-    /// What was heard so far.
+    /// What was received so far.
     pub const fn heard(&self) -> &Heard {
         &self.last
     }
 
-    /// Waits until something was heard, but not longer.
+    /// Waits until `condition` is true, at most for `longest`.
     ///
     /// # Errors
-    /// When it was not heard, or the port is gone.
+    /// The condition did not become true, or the port is gone.
     pub async fn until(
         &mut self,
         longest: Duration,
@@ -102,7 +99,7 @@ impl Drop for Hearing {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,4 @@
-//! The seam for fieldbuses over PROFIBUS: a link that commands, or one that hears what a PLC exchanges.
+//! PROFIBUS as a fieldbus of images: a link that controls the slave, or one that listens to the exchange of a PLC.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,10 +15,10 @@ use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::{Passed, Tap};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Which bytes of an image stand the other way round on the line: those of words that a board swaps.
+/// Byte swapping of an image: the words that a board sends with exchanged bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Swapped {
-    /// So many bytes from the start, in pairs.
+    /// Number of bytes, from the start, that are swapped in pairs.
     pub bytes: usize,
 }
 
@@ -37,10 +37,10 @@ impl Swapped {
     }
 }
 
-/// A link to a slave that is ours.
+/// A link that controls the slave.
 pub type Master = Cyclic<Slave>;
 
-/// The slave of one.
+/// The slave of a [`Master`].
 #[derive(Debug)]
 pub struct Slave {
     connection: Connection,
@@ -48,10 +48,7 @@ pub struct Slave {
 }
 
 impl Master {
-    /// Opens the port and the link. The resting image of the settings is one as the controller has it.
-    ///
-    /// # Errors
-    /// When either does not come about.
+    /// Opens the port and the link. The resting image in the settings has the byte order of the controller.
     pub async fn open(
         mut settings: Settings,
         swapped: Swapped,
@@ -109,7 +106,7 @@ impl Bus for Slave {
     }
 }
 
-/// What a slave shows another master. Nothing is sent.
+/// Images that a slave exchanges with another master. Nothing is sent.
 #[derive(Debug)]
 pub struct Listening {
     hearing: Hearing,
@@ -119,10 +116,7 @@ pub struct Listening {
 }
 
 impl Listening {
-    /// Hears an exchange of this slave for the first time, at most so long after the last one.
-    ///
-    /// # Errors
-    /// When none is heard in that time.
+    /// Waits for the first exchange of this slave, at most `longest`.
     pub async fn open(
         station: u8,
         size: usize,
@@ -155,7 +149,7 @@ impl Listening {
                     let cause = LinkError::from(error).cause().clone();
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
-                // Without a port there is no more to come.
+                // Without a port, nothing more can arrive.
                 Err(ProfibusError::Gone { .. }) => std::future::pending().await,
                 Ok(_) | Err(_) => {}
             }
@@ -173,7 +167,7 @@ impl ImageConnection for Listening {
     }
 }
 
-/// Telegrams for records.
+/// Converts a tap for telegrams.
 pub fn record(tap: Tap) -> Option<super::driver::Tap> {
     let record = move |bytes: &[u8]| tap.pass(|| Passed::Frame(bytes.to_vec()));
     Some(Box::new(record) as super::driver::Tap)

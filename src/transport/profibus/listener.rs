@@ -1,48 +1,48 @@
-//! Hears what a PLC and its slave exchange, and says nothing: the way to see images beside a master.
+//! Passive listener: reads the exchange of a PLC and its slave without sending. It can run next to a master.
 
 use std::sync::Arc;
 
 use super::wire::{Control, Frame, Piece, Service, Status, Stream, Telegram};
 
-/// What was heard so far.
+/// What was received so far.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Heard {
-    /// What the slave showed last.
+    /// Last input image of the slave.
     pub input: Option<Arc<[u8]>>,
-    /// What it was shown last.
+    /// Last output image of the slave.
     pub output: Option<Arc<[u8]>>,
-    /// The master that shows it.
+    /// Master that sends the output image.
     pub master: Option<u8>,
-    /// Telegrams of any kind.
+    /// Number of telegrams of any type.
     pub telegrams: u64,
-    /// Exchanges of the slave.
+    /// Number of data exchanges of the slave.
     pub exchanges: u64,
-    /// Bytes that were no telegram.
+    /// Bytes that are no telegram.
     pub noise: u64,
 }
 
-/// Hears one station.
+/// Listener for one station.
 #[derive(Debug)]
 pub struct Listener {
     station: u8,
     stream: Stream,
-    /// Who asked the station for an exchange, and what the station was shown with it.
+    /// Last request for a data exchange: its master and the output image.
     asked: Option<(u8, Vec<u8>)>,
     heard: Heard,
 }
 
 impl Listener {
-    /// Hears the slave with this address.
+    /// Creates a listener for the slave with this address.
     pub fn new(station: u8) -> Self {
         Self { station, stream: Stream::default(), asked: None, heard: Heard::default() }
     }
 
-    /// What was heard so far.
+    /// What was received so far.
     pub const fn heard(&self) -> &Heard {
         &self.heard
     }
 
-    /// Takes what was heard; whether there is a new exchange.
+    /// Handles received bytes. Returns whether they contain a new exchange.
     pub fn handle(&mut self, bytes: &[u8]) -> bool {
         let before = self.heard.exchanges;
         self.stream.push(bytes);
@@ -66,7 +66,8 @@ impl Listener {
             {
                 self.asked = Some((from, data));
             }
-            // An answer to what was asked just now; only then was it an exchange, and only then was the image taken.
+            // Only the answer to the last request makes an exchange. Before it, the slave may not have accepted the
+            // image.
             Frame {
                 to,
                 from,
@@ -101,7 +102,7 @@ mod tests {
             "68 05 05 68 02 07 08 01 02 14 16",
         ));
         let mut listener = Listener::new(5);
-        // However the pieces come.
+        // One byte at a time.
         let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
         let heard = listener.heard();
         assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
@@ -114,7 +115,7 @@ mod tests {
     #[test]
     fn an_answer_to_something_else_is_no_image() {
         let mut listener = Listener::new(5);
-        // Its request was not heard, or it was answered from another place.
+        // Its request was not heard, or another station answered.
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
         assert!(!listener.handle(&hex("68 05 05 68 05 02 7D 01 02 87 16 10 05 02 49 50 16")));
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));

@@ -1,6 +1,6 @@
-//! PROFIBUS DP: images to and from one slave, as the only master on a line of two wires.
+//! PROFIBUS DP master of one slave, as the only master on an RS-485 line, and a simulated slave.
 //!
-//! Knows bytes of images and no robot.
+//! This module knows image bytes, but no robots.
 
 use std::time::Duration;
 
@@ -22,5 +22,5 @@ pub mod survey;
 mod tests;
 pub mod wire;
 
-/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+/// A moment, as time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;

@@ -1,4 +1,4 @@
-//! Where characters go: a serial port, or a slave in this process behind a line of its own.
+//! Character ports: a serial port, or an in-process slave behind a simulated line.
 
 use std::fmt;
 use std::io;
@@ -18,23 +18,23 @@ use crate::serial::{self, Line, OpenError};
 use crate::sim::Peer;
 use crate::vanished;
 
-/// How far the speed of a port may be off, in thousandths, as the bus allows.
+/// Largest deviation of the bit rate in 1/1000 that the bus allows.
 const MOST_OFF: u32 = 3;
-/// A latency timer above this costs a slot time now and then.
+/// Largest latency timer in ms that does not exceed the slot time.
 const LATENCY: u32 = 1;
 
-/// Most characters of the file that says it.
+/// Size limit of the file with the latency timer.
 const LONGEST_TIME: u64 = 64;
 
-/// Sends and receives characters on a thread that waits for them.
+/// A port with blocking reads.
 pub trait Port: fmt::Debug + Send {
-    /// Sends characters; they may still be on their way when this returns.
+    /// Sends characters. They can still be in transit when this returns.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits for characters, but not for longer; 0 after silence.
+    /// Waits for characters, at most for `wait`; 0 after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -48,10 +48,7 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// Opens it.
-    ///
-    /// # Errors
-    /// [`ProfibusError::Port`].
+    /// Opens the port.
     pub fn open(path: &str, rate: Rate) -> Result<Self, ProfibusError> {
         let line = Line {
             path: path.to_owned(),
@@ -77,7 +74,7 @@ impl Port for Serial {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        // A wait of no time at all would be one without end to some drivers.
+        // For some drivers, a timeout of 0 means no timeout.
         self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
         match io::Read::read(&mut self.port, buffer) {
             Ok(0) => Err(vanished("its end was reached")),
@@ -95,7 +92,7 @@ impl Port for Serial {
     }
 }
 
-/// How long the driver of an adapter holds characters back, in milliseconds, if that is long and can be changed.
+/// Latency timer of a USB adapter in ms, if it is long and can be changed.
 pub fn latency_timer(path: &str) -> Option<u32> {
     let path = std::fs::canonicalize(path).ok()?;
     let name = path.file_name()?;
@@ -104,7 +101,7 @@ pub fn latency_timer(path: &str) -> Option<u32> {
     text.trim().parse().ok().filter(|time| *time > LATENCY)
 }
 
-/// A peer in this process, at the end of a line that takes its time.
+/// An in-process peer behind a simulated line.
 #[derive(Debug)]
 pub struct InProcess<P> {
     peer: P,
@@ -113,7 +110,7 @@ pub struct InProcess<P> {
 }
 
 impl<P: Peer> InProcess<P> {
-    /// A peer on a line of this speed.
+    /// Creates a peer on a line of the bit rate in the settings.
     pub fn new(peer: P, settings: &Settings, faults: Option<LineFaultSpec>) -> Self {
         Self { peer, wire: Wire::new(Some(settings.rate.pace()), faults), start: Instant::now() }
     }

@@ -1,36 +1,37 @@
-//! Listens before the first word: whoever speaks on a line that has a master disturbs what that master commands.
+//! Check for other traffic before the first telegram. On a line with a master, our telegrams would disturb its control
+//! of the slaves.
 
 use super::Now;
 use super::error::ProfibusError;
 use super::wire::{Control, Piece, Stream, Telegram};
 
-/// Characters without meaning that may be heard, as when a port is opened.
+/// Number of noise characters that are tolerated, for example when a port is opened.
 const GLITCH: usize = 2;
-/// Characters of a token.
+/// Length of a token.
 const TOKEN: usize = 3;
 
-/// Hears whether anybody speaks.
+/// The check.
 #[derive(Debug, Default)]
 pub struct Quiet {
     until: Now,
     stream: Stream,
     unreadable: usize,
-    /// Who passed a token.
+    /// Senders of tokens.
     tokens: Vec<u8>,
 }
 
 impl Quiet {
-    /// Listens up to this moment.
+    /// Listens until this time.
     pub fn until(until: Now) -> Self {
         Self { until, ..Self::default() }
     }
 
-    /// When it is over; `None` if never.
+    /// End of the check; `None` if it never ends.
     pub fn due(&self) -> Option<Now> {
         Some(self.until).filter(|until| *until < Now::MAX)
     }
 
-    /// Takes what was heard.
+    /// Handles received bytes.
     ///
     /// # Errors
     /// [`ProfibusError::OtherMaster`].
@@ -38,7 +39,7 @@ impl Quiet {
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
             let (master, heard) = match piece {
-                // Three bytes without a check sum: noise may look so.
+                // Three bytes without a checksum: noise can look the same.
                 Piece::Telegram(Telegram::Token { from, .. }, _) => {
                     self.tokens.push(from);
                     continue;
@@ -47,7 +48,7 @@ impl Quiet {
                     Control::Request(..) => (frame.from, "it sent a request"),
                     Control::Answer(..) => (frame.to, "it was answered by a station"),
                 },
-                // One byte that may be anything.
+                // One byte, which can be noise.
                 Piece::Telegram(Telegram::ShortAcknowledge, _) | Piece::Noise(..) => {
                     self.unreadable = self.unreadable.saturating_add(1);
                     continue;
@@ -58,10 +59,10 @@ impl Quiet {
         Ok(())
     }
 
-    /// Whether all was quiet, once it is over.
+    /// Result of the check, once it is complete.
     ///
     /// # Errors
-    /// [`ProfibusError::OtherMaster`], or [`ProfibusError::Unreadable`] where nobody can be understood.
+    /// [`ProfibusError::OtherMaster`], or [`ProfibusError::Unreadable`] if only noise was received.
     pub fn poll(&mut self, now: Now) -> Option<Result<(), ProfibusError>> {
         if now < self.until {
             return None;

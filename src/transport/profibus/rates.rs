@@ -1,30 +1,30 @@
-//! Speeds of the line, and the times that stations keep at each (EN 50170, volume 2, part 8, table of bus parameters).
+//! Bit rates and their bus parameters (EN 50170, volume 2, part 8, table of bus parameters).
 
 use std::time::Duration;
 
 use super::super::line::Pace;
 
-/// Bits of a character: start, eight of data, even parity, stop.
+/// Bits per character: start, 8 data, even parity, stop.
 pub const CHARACTER: u32 = 11;
 /// Idle bits before a request (TSYN).
 pub const SYNC: u32 = 33;
 /// Idle bits between an answer and the next request (TID1).
 pub const IDLE: u32 = 37;
 
-/// A speed with its times, which are counted in bits.
+/// A bit rate with its bus parameters in bit times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rate {
-    /// How it is written: `500k`.
+    /// Name in URLs: `500k`.
     pub name: &'static str,
-    /// Bits a second.
+    /// Bits per second.
     pub baud: u32,
-    /// The longest time before an answer (max TSDR).
+    /// Longest delay of an answer (max TSDR).
     pub max_tsdr: u32,
-    /// How long a master waits for the beginning of an answer (TSL).
+    /// Time limit for the start of an answer (slot time, TSL).
     pub slot: u32,
-    /// The least wait of a master beside an adapter, in milliseconds: drivers and converters hold characters back.
+    /// Minimum slot time with an adapter, in ms, because drivers and converters delay characters.
     pub adapter_ms: u64,
-    /// The usual time between two exchanges, in milliseconds.
+    /// Default time between two exchanges, in ms.
     pub cycle_ms: u64,
 }
 
@@ -32,7 +32,7 @@ const fn rate(name: &'static str, baud: u32, max_tsdr: u32, slot: u32, adapter_m
     Rate { name, baud, max_tsdr, slot, adapter_ms, cycle_ms }
 }
 
-/// All speeds that an adapter of a PC can have. The bus has three more up to 12 Mbit/s.
+/// Bit rates that a PC adapter can have. The bus has three more, up to 12 Mbit/s.
 pub const RATES: [Rate; 7] = [
     rate("9.6k", 9_600, 60, 100, 60, 200),
     rate("19.2k", 19_200, 60, 100, 30, 100),
@@ -44,29 +44,29 @@ pub const RATES: [Rate; 7] = [
 ];
 
 impl Rate {
-    /// The speed of so many bits a second.
+    /// Finds a rate by bits per second.
     pub fn from_baud(baud: u32) -> Option<Self> {
         RATES.into_iter().find(|rate| rate.baud == baud)
     }
 
-    /// The speed that is written so: `500k`, `1.5M`.
+    /// Finds a rate by name: `500k`, `1.5M`.
     pub fn from_name(name: &str) -> Option<Self> {
         RATES.into_iter().find(|rate| rate.name == name)
     }
 
-    /// How fast characters follow each other.
+    /// Character rate.
     pub fn pace(self) -> Pace {
         Pace::new(self.baud, CHARACTER)
     }
 
-    /// How long this many bits take.
+    /// Duration of this number of bits.
     pub fn bits(self, bits: u32) -> Duration {
         Duration::from_nanos((u64::from(bits) * 1_000_000_000).div_ceil(u64::from(self.baud.max(1))))
     }
 
-    /// How long an exchange takes at most: both telegrams, the pause before them, and the answer time.
+    /// Longest duration of an exchange: both telegrams, the pause before them, and the delay of the answer.
     pub fn exchange(self, output: usize, input: usize) -> Duration {
-        // Start, lengths, addresses, function code, check sum, end.
+        // Start, lengths, addresses, function code, checksum, end.
         const FRAME: usize = 9;
         self.pace().time(output + input + 2 * FRAME) + self.bits(IDLE + self.max_tsdr)
     }

@@ -1,7 +1,7 @@
-//! One request at a time, repeated until it is answered: the lower half of a master that is alone on its line.
+//! Requests of a master that is alone on its line: one at a time, repeated until answered.
 //!
-//! The frame count of each station tells a repeated request from a new one. It begins anew after a loss; else the station
-//! may answer a new request with the answer to an old one.
+//! Per station, the frame count bit identifies a repeated request. It is reset after a loss. Otherwise the station
+//! could answer a new request with an old answer.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -11,48 +11,48 @@ use super::error::Heard;
 use super::rates::{IDLE, Rate, SYNC};
 use super::wire::{Control, Frame, FrameCount, Piece, Service, Status, Stream, Telegram};
 
-/// Telegrams that are remembered, to know them when an adapter hands them back.
+/// Number of sent telegrams kept, to recognize the echo of an adapter.
 const REMEMBERED: usize = 4;
-/// Most characters of an answer.
+/// Longest answer in characters.
 const LONGEST: usize = 255;
 
-/// Result of a request, or what was heard instead.
+/// Outcome of a request, or other traffic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// It was answered.
+    /// The station answered.
     Answer(Answer),
-    /// All attempts are used up.
+    /// All attempts failed.
     NoAnswer {
-        /// How many there were.
+        /// Number of attempts.
         attempts: u8,
-        /// What came instead.
+        /// What was received instead.
         heard: Heard,
     },
-    /// Another master speaks. Its address, and what it said.
+    /// Another master is active: its address, and the traffic that revealed it.
     Foreign(u8, &'static str),
 }
 
 /// An answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// All is well, and no more.
+    /// Short acknowledgement.
     Short,
-    /// The state of a station, or data.
+    /// A frame with a status or data.
     Frame(Frame),
 }
 
-/// What was counted.
+/// Counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counted {
-    /// Requests that were sent again.
+    /// Repeated requests.
     pub repeated: u64,
-    /// Bytes that were no telegram.
+    /// Bytes that are no telegram.
     pub noise: u64,
-    /// Answers to nothing that was asked, such as late ones.
+    /// Answers without a request, for example late ones.
     pub unexpected: u64,
 }
 
-/// Asks one station after the other.
+/// Sender of requests.
 #[derive(Debug)]
 pub struct Requester {
     here: u8,
@@ -62,14 +62,14 @@ pub struct Requester {
     stream: Stream,
     counts: BTreeMap<u8, FrameCount>,
     pending: Option<Pending>,
-    /// The last telegrams that were sent.
+    /// The last telegrams sent.
     sent: VecDeque<Vec<u8>>,
     echoes: bool,
-    /// Noise came since something was sent: what follows may be the inside of a damaged telegram.
+    /// Noise was received since the last send. What follows can be the inside of a damaged telegram.
     is_spoilt: bool,
-    /// Who passed a token, and when.
+    /// Sender and time of the last token.
     token: Option<(u8, Now)>,
-    /// Nothing is sent before.
+    /// Earliest time of the next request.
     free: Now,
     counted: Counted,
 }
@@ -80,13 +80,13 @@ struct Pending {
     bytes: Vec<u8>,
     attempts: u8,
     deadline: Now,
-    /// What comes does not move the deadline beyond this.
+    /// Limit to which received characters can move the deadline.
     latest: Now,
     heard: Heard,
 }
 
 impl Requester {
-    /// A master with this address.
+    /// Creates a requester for a master with this address.
     pub fn new(here: u8, rate: Rate, slot: Duration, retries: u8) -> Self {
         Self {
             here,
@@ -105,27 +105,27 @@ impl Requester {
         }
     }
 
-    /// What was counted.
+    /// Counters.
     pub const fn counted(&self) -> Counted {
         self.counted
     }
 
-    /// Whether the adapter hands back what is sent.
+    /// Whether the adapter echoes what is sent.
     pub const fn echoes(&self) -> bool {
         self.echoes
     }
 
-    /// Whether an answer is waited for.
+    /// Whether a request waits for its answer.
     pub const fn is_busy(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// When the next request may be sent, or repeated.
+    /// Earliest time to send or repeat a request.
     pub fn due(&self) -> Now {
         self.pending.as_ref().map_or(self.free, |pending| pending.deadline)
     }
 
-    /// A request with data to a service access point of a station, or without one.
+    /// Builds a request with data, to a service access point (SAP) of a station or without one.
     pub fn request(&self, service: Service, station: u8, sap: Option<u8>, data: Vec<u8>) -> Frame {
         Frame {
             to: station,
@@ -137,10 +137,10 @@ impl Requester {
         }
     }
 
-    /// Asks; the bytes are to be sent at once.
+    /// Starts a request. The returned bytes must be sent at once.
     ///
     /// # Panics
-    /// While an answer is waited for.
+    /// If another request waits for its answer.
     pub fn ask(&mut self, now: Now, mut frame: Frame) -> Vec<u8> {
         assert!(self.pending.is_none(), "one request at a time");
         if let Control::Request(service, count) = &mut frame.control
@@ -148,7 +148,7 @@ impl Requester {
         {
             *count = *self.counts.entry(frame.to).or_insert(FrameCount::First);
         }
-        // What came before belongs to nothing any more.
+        // Earlier bytes belong to no request.
         self.stream.clear();
         let bytes = frame.emit();
         let (deadline, latest) = self.deadlines(now, bytes.len());
@@ -158,7 +158,7 @@ impl Requester {
         bytes
     }
 
-    /// Sends what nobody answers.
+    /// Encodes a telegram that has no answer.
     pub fn tell(&mut self, now: Now, telegram: &Telegram) -> Vec<u8> {
         let bytes = telegram.emit();
         self.free = now + self.rate.pace().time(bytes.len()) + self.rate.bits(IDLE);
@@ -166,18 +166,18 @@ impl Requester {
         bytes
     }
 
-    /// Begins the frame count of a station anew, and gives up what is asked of it.
+    /// Resets the frame count of a station, and cancels its pending request.
     pub fn forget(&mut self, station: u8) {
         self.counts.remove(&station);
         self.pending.take_if(|pending| pending.frame.to == station);
     }
 
-    /// Sends nothing before this moment.
+    /// Delays the next request until this time.
     pub fn wait(&mut self, until: Now) {
         self.free = self.free.max(until);
     }
 
-    /// Takes what has arrived; call it again without bytes until there is no outcome any more.
+    /// Handles received bytes. Call it again without bytes until it returns `None`.
     pub fn handle(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         self.stream.push(bytes);
         if !bytes.is_empty() {
@@ -190,14 +190,14 @@ impl Requester {
             outcome = self.take(now, piece);
         }
         if let Some(pending) = self.pending.as_mut().filter(|_| !bytes.is_empty()) {
-            // More of it comes at the speed of the line, and with the delay of the adapter.
+            // The rest arrives at the speed of the line, with the delay of the adapter.
             let rest = self.rate.pace().time(self.stream.missing()) + self.slot;
             pending.deadline = (now + rest).max(pending.deadline).min(pending.latest);
         }
         outcome
     }
 
-    /// What is to be sent again, or that nothing came.
+    /// Returns the request to repeat, or the failure of the last attempt.
     pub fn poll(&mut self, now: Now) -> Option<Result<Vec<u8>, Outcome>> {
         let pending = self.pending.as_mut().filter(|pending| now >= pending.deadline)?;
         pending.heard.noise |= !self.stream.is_empty();
@@ -221,7 +221,7 @@ impl Requester {
         Some(Ok(bytes))
     }
 
-    /// When an answer must have begun, and when it must be over.
+    /// Deadlines for the start and for the end of an answer.
     fn deadlines(&self, now: Now, len: usize) -> (Now, Now) {
         let begun = now + self.rate.pace().time(len) + self.slot;
         (begun, begun + self.rate.pace().time(LONGEST) + self.slot)
@@ -252,7 +252,7 @@ impl Requester {
             return None;
         }
         let answer = match telegram {
-            // Neither has a check sum.
+            // These two have no checksum.
             Telegram::Token { .. } | Telegram::ShortAcknowledge if self.is_spoilt => return None,
             Telegram::Token { from, .. } => return self.heard_token(now, from),
             Telegram::Frame(frame) => match frame.control {
@@ -270,7 +270,8 @@ impl Requester {
         {
             self.counts.insert(pending.frame.to, count.next());
         }
-        // The answer to an attempt before may be on its way, too: it must not answer what comes next.
+        // After a repetition, the answer to the earlier attempt can still arrive. It must not be taken for the next
+        // answer.
         let pause = if pending.attempts > 1 { self.slot } else { self.rate.bits(IDLE) };
         self.free = now + pause;
         Some(Outcome::Answer(answer))
@@ -283,13 +284,13 @@ impl Requester {
     }
 }
 
-/// Two tokens of one master within this time are no chance.
+/// Two tokens of one master within this time are not noise.
 const CHANCE: Duration = Duration::from_secs(1);
 
-/// Whether an answer fits what was asked.
+/// Whether an answer fits its request.
 fn answers(asked: &Frame, answer: &Answer) -> bool {
     match answer {
-        // Says nothing of who sent it; whoever asks for a state or for data is not content with it.
+        // A short acknowledgement has no sender. It is not valid for an FDL status request.
         Answer::Short => asked.control != Control::Request(Service::FdlStatus, FrameCount::None),
         Answer::Frame(frame) => {
             let is_from = frame.from == asked.to && frame.to == asked.from;
@@ -298,7 +299,7 @@ fn answers(asked: &Frame, answer: &Answer) -> bool {
                 Control::Answer(_, Status::NoService | Status::UserError | Status::NoResource | Status::NoData)
             );
             let saps = (frame.to_sap, frame.from_sap);
-            // Who refuses may leave the service access points away.
+            // A refusal can omit the service access points.
             is_from && (saps == (asked.from_sap, asked.to_sap) || refuses && saps == (None, None))
         }
     }

@@ -1,4 +1,4 @@
-//! What a link is to be.
+//! Link settings.
 
 use std::time::Duration;
 
@@ -6,63 +6,63 @@ use super::error::ProfibusError;
 use super::rates::Rate;
 use super::wire::{Configuration, MAX_DATA, MAX_STATION, Parameters, Watchdog};
 
-/// The address that this program has unless it is told otherwise; PLCs usually have 2, too, but no PLC is on this line.
+/// Default address of this master. PLCs usually have 2 as well, but no PLC is on this line.
 pub const MASTER: u8 = 2;
-/// Shortest watchdog that is meant by default.
+/// Minimum of the default watchdog time.
 const WATCHDOG: Duration = Duration::from_millis(500);
-/// Repetitions of a request: converters on USB lose some.
+/// Number of repetitions of a request, because USB converters lose some characters.
 const RETRIES: u8 = 3;
-/// Least cycles that the watchdog waits.
+/// Minimum watchdog time in cycles.
 const CYCLES: u32 = 5;
 /// Longest cycle and slot time.
 const LONGEST: Duration = Duration::from_secs(10);
 
-/// The slave, the line, and what is known of both. What is `None` is found out, or has a usual value.
+/// Settings of a link. `None` means a default value or automatic detection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
     /// Address of the slave.
     pub station: u8,
-    /// Our own.
+    /// Address of this master.
     pub master: u8,
-    /// Speed of the line.
+    /// Bit rate.
     pub rate: Rate,
-    /// How long to wait for the beginning of an answer.
+    /// Time limit for the start of an answer.
     pub slot: Option<Duration>,
-    /// How often a request is repeated.
+    /// Number of repetitions of a request.
     pub retries: u8,
     /// Time between two exchanges.
     pub cycle: Option<Duration>,
-    /// How long the slave waits for us.
+    /// Watchdog time of the slave.
     pub watchdog: Option<Duration>,
-    /// The kind of slave that is expected.
+    /// Expected ident number.
     pub ident: Option<u16>,
     /// Identifier bytes.
     pub configuration: Option<Vec<u8>>,
     /// User parameters.
     pub parameters: Option<Vec<u8>>,
-    /// Bytes of the image to the slave.
+    /// Size of the image to the slave in bytes.
     pub output_size: usize,
-    /// Bytes of the image from the slave.
+    /// Size of the image from the slave in bytes.
     pub input_size: usize,
-    /// The image that a connection begins with, after every loss again.
+    /// First image after every opening.
     pub resting: Vec<u8>,
 }
 
-/// The times that settings lead to.
+/// Times that result from the settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
-    /// How long to wait for the beginning of an answer.
+    /// Time limit for the start of an answer.
     pub slot: Duration,
     /// Time between two exchanges.
     pub cycle: Duration,
-    /// How long the slave waits.
+    /// Watchdog time of the slave.
     pub watchdog: Watchdog,
-    /// How long to listen before the first word.
+    /// Time to listen before the first telegram.
     pub listen: Duration,
 }
 
 impl Settings {
-    /// A slave at this address and speed, with images that rest at this.
+    /// Default settings for a slave at this address and bit rate, with this resting image.
     pub fn new(station: u8, rate: Rate, resting: Vec<u8>) -> Self {
         Self {
             station,
@@ -81,10 +81,10 @@ impl Settings {
         }
     }
 
-    /// Whether a link can be so, and its times.
+    /// Checks the settings, and computes the times.
     ///
     /// # Errors
-    /// [`ProfibusError::Settings`] names what cannot be.
+    /// [`ProfibusError::Settings`] names the problem.
     pub fn timing(&self) -> Result<Timing, ProfibusError> {
         let wrong = |text: String| Err(ProfibusError::Settings(text));
         if self.station > MAX_STATION || self.master > MAX_STATION {
@@ -128,15 +128,12 @@ impl Settings {
         let Some(watchdog) = Watchdog::at_least(wanted) else {
             return wrong("the watchdog is 650 s at most".to_owned());
         };
-        // The token is lost for longer where the address is higher (6 + 2 x address slot times).
+        // The token timeout rises with the address: 6 + 2 x address slot times.
         let listen = self.rate.bits(self.rate.slot * (6 + 2 * u32::from(self.master))).max(Duration::from_millis(100));
         Ok(Timing { slot, cycle, watchdog, listen })
     }
 
-    /// Whether images have the sizes of a configuration.
-    ///
-    /// # Errors
-    /// When they have others.
+    /// Checks that the images have the sizes of a configuration.
     pub fn fits(&self, configuration: &Configuration) -> Result<(), ProfibusError> {
         let (input, output) = (configuration.input(), configuration.output());
         if (input, output) == (self.input_size, self.output_size) {

@@ -1,5 +1,5 @@
-//! Asks stations who they are, without owning any: state, diagnosis, configuration. It changes nothing, not even for a
-//! slave that has a master; but it speaks, and so it is for lines that have none.
+//! Survey of the stations on a line: type, diagnosis, configuration. It locks no slave and changes nothing, even for a
+//! slave that has a master. But it sends, so it is only for lines without a master.
 
 use super::Now;
 use super::error::ProfibusError;
@@ -8,37 +8,37 @@ use super::request::{Answer, Outcome, Requester};
 use super::settings::Timing;
 use super::wire::{Control, Diagnosis, MAX_STATION, Service, Station, Status, sap};
 
-/// What a station said.
+/// Result for one station.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// Its address.
+    /// Address.
     pub station: u8,
-    /// What kind it is of.
+    /// Station type.
     pub kind: Station,
-    /// How a slave is doing, and which kind of slave it is.
+    /// Diagnosis of a slave.
     pub diagnosis: Result<Diagnosis, Unknown>,
-    /// The identifier bytes that it wants.
+    /// Configuration that the slave reports (identifier bytes).
     pub configuration: Result<Vec<u8>, Unknown>,
-    /// What it shows, if it exchanges data.
+    /// Input image, if the slave exchanges data.
     pub inputs: Result<Vec<u8>, Unknown>,
-    /// What it is shown, if it exchanges data.
+    /// Output image, if the slave exchanges data.
     pub outputs: Result<Vec<u8>, Unknown>,
 }
 
-/// Why something is not known.
+/// Reason for a missing value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Unknown {
-    /// It was not asked.
+    /// Not requested.
     NotAsked,
-    /// It did not answer.
+    /// No answer.
     NoAnswer,
-    /// It says no.
+    /// The station refused.
     Refused(Status),
-    /// It said something that cannot be read.
+    /// The answer cannot be decoded.
     Malformed(String),
 }
 
-/// What is asked of a station, in this order.
+/// Requests to a station, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Question {
     Kind,
@@ -70,12 +70,12 @@ impl Question {
     }
 }
 
-/// Asks one station after the other.
+/// A survey.
 #[derive(Debug)]
 pub struct Survey {
     requester: Requester,
     quiet: Option<Quiet>,
-    /// Those that are still to be asked; the last one is next.
+    /// Remaining stations in reverse order.
     stations: Vec<u8>,
     question: Question,
     found: Vec<Found>,
@@ -84,7 +84,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Asks these stations, once it has listened.
+    /// Creates a survey of these stations. It listens first.
     pub fn new(now: Now, stations: impl IntoIterator<Item = u8>, requester: Requester, timing: Timing) -> Self {
         let mut stations: Vec<u8> = stations.into_iter().filter(|station| *station <= MAX_STATION).collect();
         stations.reverse();
@@ -92,7 +92,7 @@ impl Survey {
         Self { requester, quiet, stations, question: Question::Kind, found: Vec::new(), error: None, timing }
     }
 
-    /// Who was found, or why nobody could be asked, once it is over.
+    /// Result: the stations found, or the reason for a failure. `None` until it is complete.
     pub fn result(&self) -> Option<Result<&[Found], ProfibusError>> {
         if let Some(error) = &self.error {
             return Some(Err(error.clone()));
@@ -100,17 +100,17 @@ impl Survey {
         (self.quiet.is_none() && self.stations.is_empty()).then_some(Ok(&self.found))
     }
 
-    /// How long a station is waited for that is not there.
+    /// Time limit for the answer of a station.
     pub const fn patience(&self) -> std::time::Duration {
         self.timing.slot
     }
 
-    /// When [`Survey::poll`] has something to do.
+    /// Time of the next [`Survey::poll`].
     pub fn due(&self) -> Now {
         self.quiet.as_ref().map_or_else(|| self.requester.due(), |quiet| quiet.due().unwrap_or_default())
     }
 
-    /// What is to be sent now.
+    /// Returns the bytes to send at `now`.
     pub fn poll(&mut self, now: Now) -> Option<Vec<u8>> {
         if let Some(quiet) = &mut self.quiet {
             if let Err(error) = quiet.poll(now)? {
@@ -136,7 +136,7 @@ impl Survey {
         Some(self.requester.ask(now, frame))
     }
 
-    /// Takes what has arrived.
+    /// Handles received bytes.
     pub fn handle(&mut self, now: Now, bytes: &[u8]) {
         if let Some(quiet) = &mut self.quiet {
             if let Err(error) = quiet.handle(bytes) {

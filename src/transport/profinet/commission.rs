@@ -1,6 +1,6 @@
-//! What can be asked of stations, and set at them, without a connection: who is there, names, addresses, records.
+//! Station services without a connection: discovery, names, addresses, records.
 //!
-//! Each call blocks for as long as it says.
+//! All calls block for the time that they state.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -18,36 +18,33 @@ use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
 use super::wire::{Mac, Uuid, arp};
 
-/// Over how many steps of 10 ms stations spread their answers when all are asked.
+/// Spread of the answers to a broadcast, in steps of 10 ms.
 const SPREAD: u16 = 128;
-/// How long to wait for a station that was asked alone, and how often.
+/// Time limit per attempt for a single station, and the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// After the first answer, for another station that has the same name.
+/// Wait after the first answer, to find a second station with the same name.
 const TWIN: Duration = Duration::from_millis(250);
-/// How long to wait for whoever has an address, each of the tries.
+/// Time limit of each ARP attempt.
 const ARP: Duration = Duration::from_millis(300);
-/// How often to look whether what was set is there, and for how long.
+/// Interval and time limit of the check that a setting was applied.
 const LOOK: Duration = Duration::from_millis(200);
 const SETTLE: Duration = Duration::from_secs(5);
-/// Stations that are told of; a network has a few hundred.
+/// Limit of reported stations; a network has a few hundred.
 const MOST: usize = 4096;
-/// Room for a record.
+/// Buffer size for a record.
 const ROOM: u32 = 4000;
 
-/// A station that answered. What it says of itself is untrusted.
+/// A station that answered. Its texts are untrusted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// Its card.
+    /// MAC address.
     pub mac: Mac,
-    /// What it says.
+    /// Reported data.
     pub station: Station,
 }
 
-/// All stations of a network, by name and card.
-///
-/// # Errors
-/// When the interface cannot be used.
+/// Finds all stations of a network.
 pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
     let frames = Frames::open(interface)?;
     let question = Dcp::identify_all(fastrand::u32(1..), SPREAD);
@@ -63,10 +60,10 @@ pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, Pro
     Ok(found)
 }
 
-/// A station, by its name or its card.
+/// Finds one station by name or MAC address.
 ///
 /// # Errors
-/// When the interface cannot be used, it does not answer, or two have its name.
+/// The interface cannot be used, the station does not answer, or two stations have the name.
 pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -81,7 +78,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
             };
             match &first {
                 _ if !is_it => {}
-                // There is no other one with its card.
+                // A MAC address is unique.
                 None if matches!(wanted, settings::Station::Mac(_)) => return Ok(found),
                 None => {
                     until = until.min(frames.now() + TWIN);
@@ -101,10 +98,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
-/// Another card than this that has a name, if one answers.
-///
-/// # Errors
-/// When the interface cannot be used.
+/// Finds another station with the same name, and returns its MAC address.
 pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -120,7 +114,7 @@ pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Res
     Ok(None)
 }
 
-/// The question for a station. For one with a card all are asked, as not every station has Get.
+/// DCP request for a station. For a MAC address, it asks all stations, because not every station supports Get.
 pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {
         settings::Station::Name(name) => Dcp::identify(xid, name),
@@ -128,23 +122,19 @@ pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     }
 }
 
-/// The frame of a question for stations.
+/// Frame of a DCP Identify request.
 pub fn identify(source: Mac, question: &Dcp) -> Vec<u8> {
     let payload = question.emit();
     Frame { destination: Mac::DCP_IDENTIFY, source, tag: None, id: id::DCP_IDENTIFY, payload: &payload }.emit()
 }
 
-/// The frame that sets something at a station.
+/// Frame of a DCP Set request.
 pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
     let payload = Dcp::change(xid, vec![block.clone()]).emit();
     Frame { destination, source, tag: None, id: id::DCP_GET_SET, payload: &payload }.emit()
 }
 
-/// Sets something at a station: its name, its address, that it blinks. The same goes out three times at most, which does
-/// no harm.
-///
-/// # Errors
-/// When the interface cannot be used, the station does not answer, or refuses.
+/// Sets a value at a station: name, address, blinking. The request is sent up to three times, which is harmless.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
     let frames = Frames::open(interface)?;
     let request = set(interface.mac, mac, fastrand::u32(1..), block);
@@ -171,10 +161,10 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
     Err(ProfinetError::NoAnswer { what, after: PATIENCE * TRIES })
 }
 
-/// Waits until a station says of itself what was set.
+/// Waits until the station reports the new value.
 ///
 /// # Errors
-/// When it does not within some seconds, or the interface cannot be used.
+/// The station does not report it within some seconds, or the interface cannot be used.
 pub fn settled(
     interface: &Interface,
     mac: Mac,
@@ -196,12 +186,9 @@ pub fn settled(
     Err(ProfinetError::NoAnswer { what, after: SETTLE })
 }
 
-/// The card that has an address, if one answers ARP other than this.
-///
-/// # Errors
-/// When the interface cannot be used.
+/// MAC address that answers ARP for an IP address, other than `except`.
 pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
-    // The system does not answer its own question.
+    // The system does not answer its own ARP request.
     if interface.ip.is_some_and(|own| own.address == address) {
         return Ok(Some(interface.mac));
     }
@@ -218,7 +205,7 @@ pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<O
     Ok(None)
 }
 
-/// The next station that answers a question.
+/// The next station that answers.
 fn identified(
     interface: &Interface,
     frames: &Frames,
@@ -233,19 +220,19 @@ fn identified(
     })
 }
 
-/// What a device says of itself in its records, each as far as it has it.
+/// Records of a device, each with its own result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// I&M0.
     pub im0: Result<Im0, ProfinetError>,
-    /// The modules that are there.
+    /// Real modules.
     pub modules: Result<Vec<RealModule>, ProfinetError>,
 }
 
-/// Asks a device for its records without a connection: who it is, and which modules it has.
+/// Reads the identity and module records of a device without a connection.
 ///
 /// # Errors
-/// When no socket can be had. That a record is refused or not answered stands in its place.
+/// No socket. A record that is refused or not answered is an error in its own field.
 pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;
@@ -271,7 +258,6 @@ fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> R
     Ok(record.to_vec())
 }
 
-/// Calls, and waits for what comes of it.
 fn exchange(calls: &Calls, client: &mut Client, blocks: &[u8]) -> Result<Outcome, ProfinetError> {
     calls.send(&client.call(calls.now(), operation::READ_IMPLICIT, blocks, TRIES))?;
     loop {

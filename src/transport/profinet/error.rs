@@ -1,4 +1,4 @@
-//! What can go wrong between a controller and a device.
+//! Errors of PROFINET connections.
 
 use std::fmt;
 use std::net::Ipv4Addr;
@@ -12,182 +12,182 @@ use super::wire::{Mac, WireError};
 use crate::image::view::BusError;
 use crate::local::LocalError;
 
-/// Why something did not come about.
+/// An error of a request or connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ProfinetError {
-    /// Nobody has the name or the card that was looked for.
+    /// No station has this name or MAC address.
     #[error("{station} was not found: no answer to DCP Identify within {} s", after.as_secs())]
     NotFound {
-        /// What was looked for.
+        /// The station.
         station: String,
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
-    /// Two devices have the name.
+    /// Two stations have the same name.
     #[error("{station} is there twice: {} and {}", cards.0, cards.1)]
     Duplicate {
-        /// What was looked for.
+        /// The station.
         station: String,
-        /// Two of those that have it.
+        /// MAC addresses of two of them.
         cards: (Mac, Mac),
     },
-    /// The device has no IP address, and is to be given none.
+    /// The device has no IP address, and the settings set none.
     #[error("{station} has no IP address")]
     NoAddress {
-        /// The device.
+        /// The station.
         station: String,
     },
-    /// The device is in another network than this machine.
+    /// The device is in another IP network than this computer.
     #[error("{station} has the address {device}, which is in another network than {here} of this machine")]
     OtherNetwork {
-        /// The device.
+        /// The station.
         station: String,
-        /// Its address.
+        /// IP address of the device.
         device: Ipv4Addr,
-        /// Ours.
+        /// IP address of this computer.
         here: Ipv4Addr,
     },
-    /// Another station has the same address.
+    /// Another station has the same IP address.
     #[error("{station} reports that another station has its address {address} too")]
     AddressConflict {
-        /// The device.
+        /// The station.
         station: String,
         /// The address.
         address: Ipv4Addr,
     },
-    /// A setting could not be set.
+    /// DCP refused a setting.
     #[error("{what} was refused: {}", dcp::describe_error(*error))]
     Dcp {
-        /// What was to be set.
+        /// The setting.
         what: &'static str,
-        /// The error.
+        /// DCP error code.
         error: u8,
     },
     /// No answer in time.
     #[error("{what} was not answered within {} s", after.as_secs())]
     NoAnswer {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
     /// The device refused.
     #[error("{what} was refused: {status}")]
     Refused {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// The reason.
+        /// Status of the answer.
         status: Status,
     },
-    /// The RPC of the device refused.
+    /// The RPC server rejected the call.
     #[error("{what} was rejected by the RPC server ({status:#010x})")]
     Rejected {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// The reason.
+        /// Reject status.
         status: u32,
     },
-    /// An answer that cannot be read.
+    /// The answer cannot be decoded.
     #[error("the answer to {what} cannot be read: {error}")]
     Malformed {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
         /// The field that is wrong.
         error: WireError,
     },
-    /// An answer that can be read, and makes no sense.
+    /// The answer can be decoded, but is not valid.
     #[error("the answer to {what} makes no sense: {why}")]
     Senseless {
-        /// What had been asked.
+        /// The request.
         what: &'static str,
-        /// What is wrong with it.
+        /// What is wrong with the answer.
         why: &'static str,
     },
-    /// The device has other modules than the layout says.
+    /// The modules of the device do not match the layout.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Modules(
-        /// What differs, at least one thing.
+        /// The differences; at least one.
         Vec<ModuleMismatch>,
     ),
-    /// The device took everything and never called ApplicationReady.
+    /// The device accepted everything but never called ApplicationReady.
     #[error("the device did not get ready within {} s", after.as_secs())]
     NeverReady {
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
-    /// The device is ready, and shows no data that can be used.
+    /// The device is ready, but sends no usable data.
     #[error("no usable data within {} s: {missing}", after.as_secs())]
     NoData {
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
-        /// What is missing.
+        /// Reason why the data is not usable.
         missing: Unusable,
     },
-    /// The device runs, and its data cannot be used at the moment.
+    /// The device is running, but its data is not usable now.
     #[error("the data of the device cannot be used: {0}")]
     Unusable(
-        /// Why.
+        /// The reason.
         Unusable,
     ),
-    /// The device no longer sends.
+    /// Watchdog: the device stopped sending.
     #[error("no cyclic frame came for {} ms", after.as_millis())]
     Silent {
-        /// How long was waited.
+        /// Time waited.
         after: Duration,
     },
-    /// The device ended the connection.
+    /// The device aborted the connection.
     #[error("the device ended the connection: {0}")]
     Aborted(
-        /// Its reason.
+        /// The reason.
         Status,
     ),
-    /// A module was plugged, and the device waits for parameters anew.
+    /// A module was plugged, and the device needs its parameters again.
     #[error("a module was plugged in slot {slot}")]
     Plugged {
-        /// Where.
+        /// The slot.
         slot: u16,
     },
-    /// An alarm of ours was not acknowledged.
+    /// The device did not accept the acknowledgement of an alarm.
     #[error("the acknowledgement of an alarm was not taken by the device")]
     AlarmUnanswered,
-    /// The image is for a connection that has ended meanwhile.
+    /// The connection was lost after the caller last looked at it (an older generation).
     #[error("the connection was lost meanwhile")]
     Outdated,
-    /// The connection was closed here.
+    /// The connection was closed by this program.
     #[error("the connection is closed")]
     Ended,
-    /// Raw Ethernet is not allowed.
+    /// No permission for raw Ethernet.
     #[error("PROFINET needs raw Ethernet, which this program is not allowed to open (CAP_NET_RAW)")]
     Privilege,
-    /// There is no such interface.
+    /// The network interface does not exist.
     #[error("there is no network interface '{name}' here")]
     NoInterface {
-        /// The name.
+        /// Name of the interface.
         name: String,
-        /// Those that there are.
+        /// Existing interfaces.
         present: Vec<String>,
     },
-    /// The interface is there, and cannot be used.
+    /// The network interface exists, but cannot be used.
     #[error("the network interface '{name}' {problem}")]
     Interface {
-        /// The name.
+        /// Name of the interface.
         name: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: &'static str,
     },
-    /// Another program has UDP port 34964.
+    /// Another program uses UDP port 34964.
     #[error("another program on this machine has UDP port 34964 of {address}")]
     PortTaken {
-        /// The address.
+        /// The local address.
         address: Ipv4Addr,
     },
-    /// A local socket did not work.
+    /// A local socket failed.
     #[error(transparent)]
     Local(#[from] LocalError),
-    /// Something that cannot be, such as settings that no connection can have; nothing was sent.
+    /// Invalid settings or request; nothing was sent.
     #[error("{0}")]
     Impossible(
-        /// Why it cannot be.
+        /// The reason.
         String,
     ),
 }
@@ -198,7 +198,7 @@ impl BusError for ProfinetError {
 }
 
 impl ProfinetError {
-    /// The four bytes of a refusal, if it is one.
+    /// Status of a refusal or abort.
     pub const fn status(&self) -> Option<Status> {
         match self {
             Self::Refused { status, .. } | Self::Aborted(status) => Some(*status),
@@ -207,16 +207,16 @@ impl ProfinetError {
     }
 }
 
-/// A module that is not as the layout says.
+/// A difference between the device and the layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModuleMismatch {
-    /// Its slot.
+    /// Slot.
     pub slot: u16,
-    /// The subslot, where the submodule is the one that differs.
+    /// Subslot, if the submodule is different.
     pub subslot: Option<u16>,
-    /// The kind that the device has; none for nothing.
+    /// Ident number in the device; `None` if empty.
     pub found: Option<u32>,
-    /// The kind in the layout; none where it has none.
+    /// Ident number in the layout; `None` if empty.
     pub expected: Option<u32>,
 }
 
@@ -240,16 +240,16 @@ impl fmt::Display for ModuleMismatch {
     }
 }
 
-/// Why data that came cannot be used.
+/// Reason why received data is not usable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unusable {
-    /// None came.
+    /// No data received.
     Missing,
-    /// All of it: data status and transfer status.
+    /// Data status and transfer status of the whole frame.
     Status(u8, u8),
-    /// The device says that the data of this slot and subslot is bad.
+    /// Bad provider status of this slot and subslot.
     Provider(u16, u16),
-    /// The device does not use what it is sent for this slot and subslot.
+    /// Bad consumer status of this slot and subslot.
     Consumer(u16, u16),
 }
 

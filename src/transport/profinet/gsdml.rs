@@ -1,8 +1,6 @@
-//! GSDML: the file in which a maker describes a device, as far as a controller needs it: access points, modules, data,
-//! parameters.
+//! Parser for GSDML files, the device description of a manufacturer: access points, modules, data, parameters.
 //!
-//! What stands in a file is untrusted: sizes are bounded, entities are not expanded, and a mistake names its line and
-//! its element.
+//! The content is untrusted: sizes are limited, entities are not expanded, and an error names its line and element.
 
 use std::borrow::Cow;
 
@@ -12,20 +10,20 @@ use thiserror::Error;
 use super::layout::{Direction, Layout, Submodule};
 use super::wire::record::Parameter;
 
-/// Largest file that is read.
+/// File size limit.
 pub const MOST_BYTES: u64 = 16 * 1024 * 1024;
-/// Most elements and attributes of one.
+/// Limit of elements and attributes.
 const MOST_NODES: u32 = 2_000_000;
-/// Most modules that fit an access point, and most submodules of a module.
+/// Limit of modules per access point, and of submodules per module.
 const MOST_MODULES: usize = 512;
-/// Most access points.
+/// Limit of access points.
 const MOST_HEADS: usize = 64;
-/// Most slots of a list.
+/// Limit of slots in a list.
 const MOST_SLOTS: usize = 4096;
-/// Longest record that is written at the start.
+/// Size limit of a parameter record.
 const LONGEST_RECORD: usize = 4096;
 
-/// What is wrong with a file.
+/// Error in a GSDML file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {line}, {element}: {problem}")]
 pub struct GsdmlError {
@@ -37,46 +35,46 @@ pub struct GsdmlError {
     pub problem: String,
 }
 
-/// A device as its maker describes it.
+/// Description of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Gsdml {
-    /// The vendor.
+    /// Vendor id.
     pub vendor: u16,
-    /// The device.
+    /// Device id.
     pub device: u16,
-    /// The access points, of which a device has one.
+    /// Device access points. A device uses one of them.
     pub heads: Vec<Head>,
 }
 
-/// An access point: what is in slot 0.
+/// Device access point (DAP): the module in slot 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Head {
-    /// Its name within the file.
+    /// Id in the file.
     pub id: String,
-    /// Its name for people.
+    /// Display name.
     pub name: String,
-    /// The name that a new device has.
+    /// Station name of a new device.
     pub dns_name: String,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
-    /// The instance in the object UUID.
+    /// Instance in the object UUID.
     pub instance: u16,
     /// Shortest cycle, in units of 31.25 us.
     pub shortest: u16,
-    /// Whether it can start in advanced mode, and in legacy mode.
+    /// Supported startup modes: advanced, legacy.
     pub startup: (bool, bool),
-    /// Its submodules.
+    /// Submodules of the access point.
     pub submodules: Vec<Item>,
-    /// Modules that fit.
+    /// Modules that can be used with it.
     pub modules: Vec<Fitting>,
 }
 
-/// A module that fits an access point.
+/// A module with its valid slots.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fitting {
-    /// The slots that it may be in.
+    /// Slots where it can be used.
     pub slots: Vec<u16>,
-    /// The slots that it is always in.
+    /// Slots where it is always plugged.
     pub fixed: Vec<u16>,
     /// The module.
     pub module: Module,
@@ -85,36 +83,33 @@ pub struct Fitting {
 /// A module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Module {
-    /// Its name within the file.
+    /// Id in the file.
     pub id: String,
-    /// Its name for people.
+    /// Display name.
     pub name: String,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
-    /// Its submodules.
+    /// Submodules of the module.
     pub submodules: Vec<Item>,
 }
 
 /// A submodule.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
-    /// Where it is.
+    /// Subslot.
     pub subslot: u16,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
-    /// Bytes that it sends.
+    /// Bytes of input data.
     pub input: u16,
-    /// Bytes that it takes.
+    /// Bytes of output data.
     pub output: u16,
-    /// What is to be written to it at the start: number and record.
+    /// Parameter records to write at the start: index and data.
     pub parameters: Vec<(u16, Vec<u8>)>,
 }
 
 impl Gsdml {
-    /// Reads a file, in UTF-8 or ISO 8859-1.
-    ///
-    /// # Errors
-    /// The first thing that is wrong with it.
+    /// Parses a file in UTF-8 or ISO 8859-1.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
         let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
         if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
@@ -122,12 +117,12 @@ impl Gsdml {
         }
         let text = match std::str::from_utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)) {
             Ok(text) => Cow::Borrowed(text),
-            // Each of its bytes is the character with that number.
+            // In ISO 8859-1, each byte is the character with the same number.
             Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
         };
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
-            // The end of a file that was cut has no place of its own.
+            // The error of a truncated file has no position.
             let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
             let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
             GsdmlError { line, element: "file".to_owned(), problem: format!("it is no XML: {error}") }
@@ -137,18 +132,15 @@ impl Gsdml {
 }
 
 impl Head {
-    /// The layout with these modules in these slots; those that are always there come by themselves.
+    /// Layout with these modules in these slots. Fixed modules are added automatically.
     ///
     /// # Errors
-    /// When a module does not fit its slot, or the data does not fit a frame.
+    /// A module does not fit its slot, or the data does not fit a frame.
     pub fn layout(&self, chosen: &[(u16, &Fitting)]) -> Result<Layout, String> {
         Layout::new(self.placed(chosen)?.into_iter().map(|(submodule, _)| submodule).collect())
     }
 
-    /// What is to be written at the start of that layout.
-    ///
-    /// # Errors
-    /// Likewise.
+    /// Parameter records for that layout.
     pub fn parameters(&self, chosen: &[(u16, &Fitting)]) -> Result<Vec<Parameter>, String> {
         let placed = self.placed(chosen)?;
         let parameters = placed.iter().flat_map(|(submodule, item)| {
@@ -190,8 +182,8 @@ impl Head {
         Ok(head.chain(modules).collect())
     }
 
-    /// Modules that make images of these sizes: those that are always there alone, one more, or one for each direction.
-    /// `None` where there is no such choice, or more than one.
+    /// Selects modules with these image sizes: only the fixed ones, one more, or one per direction. `None` if there is
+    /// no unique selection.
     pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &Fitting)>> {
         let fits = |chosen: &[(u16, &Fitting)]| {
             self.layout(chosen)
@@ -200,7 +192,7 @@ impl Head {
         if fits(&[]) {
             return Some(Vec::new());
         }
-        // Where a module always is there is no room for another one.
+        // A slot with a fixed module is occupied.
         let is_taken = |slot: &u16| *slot == 0 || self.modules.iter().any(|module| module.fixed.contains(slot));
         let first = |fitting: &Fitting, other: Option<u16>| {
             fitting.slots.iter().copied().find(|slot| !is_taken(slot) && Some(*slot) != other)
@@ -224,7 +216,7 @@ impl Head {
 }
 
 impl Module {
-    /// Bytes of its data.
+    /// Bytes of data in a direction.
     pub fn size(&self, direction: Direction) -> usize {
         let length = |item: &Item| if direction == Direction::Input { item.input } else { item.output };
         self.submodules.iter().map(|item| usize::from(length(item))).sum()
@@ -318,7 +310,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(Fitting { slots: allowed, fixed, module })
     }
 
-    /// The submodules of a module or an access point; those to choose from only where there is no choice.
+    /// Submodules of a module or access point. Of the referenced submodules, only those fixed in a subslot are used.
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {
@@ -381,7 +373,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// A record with what it has unless somebody sets something else.
+    /// A parameter record with its default values.
     fn record(&self, node: Node<'a, 'input>) -> GsdmlResult<(u16, Vec<u8>)> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
@@ -412,7 +404,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         bytes.ok_or_else(|| self.wrong(node, format!("'{text}' are no bytes")))
     }
 
-    /// What a value is unless somebody sets it; bits go into the byte that is there.
+    /// Default value. Bits are combined with the existing byte.
     fn value(&self, node: Node<'a, 'input>, byte: u8) -> GsdmlResult<Option<Vec<u8>>> {
         let Some(text) = node.attribute("DefaultValue") else { return Ok(None) };
         let kind = self.text(node, "DataType")?;
@@ -440,12 +432,12 @@ impl<'a, 'input> Reader<'a, 'input> {
         let value = text.parse::<i64>().ok().or_else(|| parse(text).map(i64::from)).ok_or_else(wrong)?;
         let bytes = value.to_be_bytes();
         let (upper, lower) = bytes.split_at(bytes.len().saturating_sub(size));
-        // What is cut off must be nothing but the sign.
+        // The upper bytes can only be the sign.
         let fits = upper.iter().all(|byte| *byte == 0) || upper.iter().all(|byte| *byte == 0xFF);
         if fits { Ok(Some(lower.to_vec())) } else { Err(wrong()) }
     }
 
-    /// The name of something for people, by its text.
+    /// Display name, looked up in the text list.
     fn name(&self, node: Node<'a, 'input>) -> String {
         let name = node.children().find(|item| item.has_tag_name_local("ModuleInfo"));
         let name = name.and_then(|info| info.children().find(|item| item.has_tag_name_local("Name")));
@@ -476,7 +468,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         node.attribute(name).map(|_| self.number(node, name)).transpose()
     }
 
-    /// A list of numbers and ranges, such as `0..4 7`.
+    /// Parses a list of numbers and ranges, such as `0..4 7`.
     fn slots(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<Vec<u16>> {
         let mut slots = Vec::new();
         for part in node.attribute(name).unwrap_or_default().split_whitespace() {
@@ -493,7 +485,7 @@ impl<'a, 'input> Reader<'a, 'input> {
     }
 }
 
-/// Elements by their name in whatever version of the namespace.
+/// Elements by local name, because the namespace depends on the version.
 trait LocalName {
     fn has_tag_name_local(&self, name: &str) -> bool;
 }

@@ -1,14 +1,14 @@
-//! Layouts to try on a device whose maker's file nobody has.
+//! Candidate layouts for a device without a GSDML file.
 
 use super::error::ModuleMismatch;
 use super::layout::{Layout, Submodule};
 use super::wire::record::RealModule;
 
-/// Most layouts that are tried.
+/// Limit of candidates.
 const MOST: usize = 8;
 
-/// Layouts for images of this many bytes each way, by the modules that a device says it has. Nothing tells which of them
-/// sends and which takes, nor how much; the likelier stand first.
+/// Candidate layouts for images of `size` bytes, from the real modules of a device. The real modules show neither
+/// direction nor size of the data. The likeliest candidates are first.
 pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
     let all = real.iter().flat_map(|module| module.submodules.iter().map(move |submodule| (module, *submodule)));
     let bare: Vec<Submodule> = all
@@ -21,7 +21,7 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
             output: 0,
         })
         .collect();
-    // Slot 0 is the head; its ports and those of modules have no data.
+    // Slot 0 is the access point. Interfaces and ports have no data.
     let places: Vec<usize> =
         (0..bare.len()).filter(|at| bare[*at].slot != 0 && bare[*at].subslot < FIRST_PORT).collect();
     let mut layouts = Vec::new();
@@ -43,10 +43,11 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
     layouts
 }
 
-/// Subslots from this on are interfaces and ports.
+/// First subslot of interfaces and ports.
 const FIRST_PORT: u16 = 0x8000;
 
-/// The layout with what the device has where it differs, if it said so: what it has nothing for is left away.
+/// Corrects a layout with the reported differences. Modules that the device does not have are removed. `None` if the
+/// device did not report what it has.
 pub fn adjusted(layout: &Layout, mismatches: &[ModuleMismatch]) -> Option<Layout> {
     let fitted = layout.submodules().iter().filter_map(|submodule| {
         let mut submodule = *submodule;

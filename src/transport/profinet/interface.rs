@@ -1,4 +1,4 @@
-//! Network interfaces of a Linux machine, and raw Ethernet on them.
+//! Linux network interfaces and raw Ethernet sockets.
 
 use std::io::{self, ErrorKind};
 use std::net::Ipv4Addr;
@@ -19,34 +19,30 @@ use crate::local::LocalError;
 /// An Ethernet interface.
 #[derive(Debug, Clone)]
 pub struct Interface {
-    /// Its name.
+    /// Interface name.
     pub name: String,
-    /// The address of its card.
+    /// MAC address.
     pub mac: Mac,
-    /// Its first IPv4 address and network, if it has one.
+    /// First IPv4 address and network.
     pub ip: Option<IpSuite>,
-    /// Whether it is switched on.
+    /// Whether it is up.
     pub is_up: bool,
-    /// Whether a cable with something at its other end is plugged in.
+    /// Whether it has a carrier (cable and peer).
     pub has_carrier: bool,
-    /// Who records what passes outside of connections.
+    /// Recorder of traffic outside of connections.
     pub tap: Tap,
     card: Card,
 }
 
-/// What is behind an interface.
 #[derive(Debug, Clone)]
 enum Card {
-    /// A card of this machine.
+    /// A network card.
     Real(LinkAddr),
-    /// A network in this process.
+    /// An in-process network.
     Simulated(simulated::Network),
 }
 
-/// The Ethernet interfaces of this machine.
-///
-/// # Errors
-/// When the system does not tell.
+/// Ethernet interfaces of this computer.
 pub fn all() -> io::Result<Vec<Interface>> {
     let mut found: Vec<Interface> = Vec::new();
     let entries: Vec<_> = nix::ifaddrs::getifaddrs().map_err(io::Error::from)?.collect();
@@ -77,10 +73,10 @@ pub fn all() -> io::Result<Vec<Interface>> {
 }
 
 impl Interface {
-    /// The one of this name.
+    /// Finds an interface by name.
     ///
     /// # Errors
-    /// When there is none, with those that there are.
+    /// It does not exist. The error lists the existing ones.
     pub fn find(name: &str) -> Result<Self, ProfinetError> {
         if let Some(network) = simulated::Network::find(name) {
             return Ok(network.interface());
@@ -96,7 +92,7 @@ impl Interface {
         Self { name, mac, ip, is_up: true, has_carrier: true, tap: Tap::default(), card }
     }
 
-    /// The network in this process that it leads to, if it is none of a card.
+    /// The in-process network behind it, if it has no network card.
     pub const fn network(&self) -> Option<&simulated::Network> {
         match &self.card {
             Card::Real(_) => None,
@@ -104,10 +100,7 @@ impl Interface {
         }
     }
 
-    /// Whether frames can pass.
-    ///
-    /// # Errors
-    /// What is wrong with it.
+    /// Checks that frames can pass.
     pub fn check(&self) -> Result<(), ProfinetError> {
         let problem = match (self.is_up, self.has_carrier) {
             (false, _) => "is switched off",
@@ -117,19 +110,13 @@ impl Interface {
         Err(ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// Its address, which calls need.
-    ///
-    /// # Errors
-    /// When it has none.
+    /// IP address, which RPC calls need.
     pub fn address(&self) -> Result<IpSuite, ProfinetError> {
         let problem = "has no IPv4 address, which PROFINET needs beside its frames";
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// A socket for frames of one type, which does not block.
-    ///
-    /// # Errors
-    /// When that is not allowed, or not possible.
+    /// Non-blocking socket for frames of one EtherType.
     pub fn raw_socket(&self, ether_type: u16) -> Result<Socket, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,

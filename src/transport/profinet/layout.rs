@@ -1,4 +1,4 @@
-//! Which modules a device has, and where the data of each is in cyclic frames.
+//! Module layout of a device, and the position of its data in cyclic frames.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,38 +6,38 @@ use std::str::FromStr;
 use super::error::ModuleMismatch;
 use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, Offset};
 
-/// Shortest data of a frame.
+/// Minimum data length of a frame.
 const SHORTEST: u16 = 40;
-/// Longest data of a frame.
+/// Maximum data length of a frame.
 const LONGEST: u16 = 1440;
-/// Most submodules, which bounds what is sent.
+/// Limit of submodules, which limits the size of Connect.
 const MOST: usize = 64;
 
-/// A submodule with its data.
+/// A submodule and its data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Submodule {
-    /// Its slot.
+    /// Slot.
     pub slot: u16,
-    /// Its subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// The kind of the module in the slot.
+    /// Ident number of the module in the slot.
     pub module: u32,
-    /// Its own kind.
+    /// Ident number of the submodule.
     pub ident: u32,
-    /// Bytes that it sends.
+    /// Bytes of input data.
     pub input: u16,
-    /// Bytes that it takes.
+    /// Bytes of output data.
     pub output: u16,
 }
 
-/// The submodules of a device, by slot and subslot.
+/// Submodules of a device, sorted by slot and subslot.
 ///
-/// As text: `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, one after the other with commas between them, such as
-/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. Subslot and submodule are 1 unless they are given.
+/// Text form: comma-separated `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, such as
+/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. The default for subslot and submodule is 1.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Layout(Vec<Submodule>);
 
-/// Which way data goes.
+/// Direction of data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// From the device.
@@ -46,22 +46,22 @@ pub enum Direction {
     Output,
 }
 
-/// Where things are in the frames of one direction.
+/// Positions in the frames of one direction.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FrameLayout {
-    /// Data, each followed by its provider's status: where, how many bytes, and where in the image.
+    /// Data objects with their lengths. Each is followed by its provider status.
     pub objects: Vec<(Offset, u16)>,
-    /// The statuses of consumers.
+    /// Consumer statuses.
     pub consumers: Vec<Offset>,
-    /// Bytes in all, with filling.
+    /// Total length with padding.
     pub length: u16,
 }
 
 impl Layout {
-    /// These submodules, in the order of their slots.
+    /// Creates a layout; sorts the submodules.
     ///
     /// # Errors
-    /// When two share a place, a slot has two kinds of modules, or the data does not fit a frame.
+    /// Two submodules have the same place, a slot has two modules, or the data does not fit a frame.
     pub fn new(mut submodules: Vec<Submodule>) -> Result<Self, String> {
         if submodules.is_empty() || submodules.len() > MOST {
             return Err(format!("a layout has 1 to {MOST} submodules, not {}", submodules.len()));
@@ -85,7 +85,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// The usual one: a head without data, a module that sends 48 bytes in slot 1, one that takes 48 in slot 2.
+    /// Usual layout: an access point without data, 48 bytes of input in slot 1, 48 bytes of output in slot 2.
     pub fn two_modules(input: u32, output: u32) -> Self {
         let head = |subslot, ident| Submodule { slot: 0, subslot, module: 1, ident, input: 0, output: 0 };
         Self(vec![
@@ -97,17 +97,17 @@ impl Layout {
         ])
     }
 
-    /// The submodules.
+    /// Submodules in order.
     pub fn submodules(&self) -> &[Submodule] {
         &self.0
     }
 
-    /// Bytes of the image in this direction.
+    /// Image size in bytes.
     pub fn size(&self, direction: Direction) -> usize {
         self.0.iter().map(|submodule| usize::from(submodule.length(direction))).sum()
     }
 
-    /// Where things are in the frames of this direction: all data with its status, then all statuses of consumers.
+    /// Positions in frames of a direction: all data objects with their provider status, then all consumer statuses.
     pub fn frame(&self, direction: Direction) -> FrameLayout {
         let (mut frame, end) = self.place(direction);
         frame.length = u16::try_from(end).unwrap_or(LONGEST).max(SHORTEST);
@@ -117,7 +117,7 @@ impl Layout {
     fn place(&self, direction: Direction) -> (FrameLayout, usize) {
         let mut frame = FrameLayout::default();
         let mut at = 0;
-        // What does not fit is refused when a layout is made.
+        // Cannot overflow: `new` has checked the size.
         let offset = |submodule: &Submodule, at: usize| Offset {
             slot: submodule.slot,
             subslot: submodule.subslot,
@@ -135,7 +135,7 @@ impl Layout {
         (frame, at)
     }
 
-    /// The modules as Connect names them, one block for each slot.
+    /// Expected modules of Connect, one block per slot.
     pub fn expected(&self) -> Vec<ExpectedModule> {
         let mut modules: Vec<ExpectedModule> = Vec::new();
         for submodule in &self.0 {
@@ -150,13 +150,13 @@ impl Layout {
         modules
     }
 
-    /// What of a device's answer is not as it is here. Modules that do nothing here may differ.
+    /// Differences between this layout and the answer of a device. Modules without data can differ.
     pub fn mismatches(&self, modules: &[ModuleDiff]) -> Vec<ModuleMismatch> {
         let mut mismatches = Vec::new();
         for module in modules {
             let expected = self.0.iter().find(|submodule| submodule.slot == module.slot);
             let expected = expected.map(|submodule| submodule.module);
-            // A substitute does what is asked of it, and a proper module may have submodules that do not fit.
+            // A substitute works like the expected module. A correct module can still have wrong submodules.
             if module.state < 2 {
                 let found = (module.state == 1).then_some(module.ident);
                 mismatches.push(ModuleMismatch { slot: module.slot, subslot: None, found, expected });
@@ -179,7 +179,7 @@ impl Layout {
 }
 
 impl Direction {
-    /// The other one.
+    /// The opposite direction.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -190,7 +190,7 @@ impl Direction {
 }
 
 impl Submodule {
-    /// Bytes of its data.
+    /// Bytes of data in a direction.
     pub const fn length(&self, direction: Direction) -> u16 {
         match direction {
             Direction::Input => self.input,
@@ -198,7 +198,7 @@ impl Submodule {
         }
     }
 
-    /// Whether its data, or its status where it has no data, is in frames of this direction.
+    /// Whether frames of this direction contain its data, or its status if it has no data.
     pub const fn provides(&self, direction: Direction) -> bool {
         match direction {
             Direction::Input => self.input > 0 || self.output == 0,
@@ -218,7 +218,7 @@ impl Submodule {
     }
 }
 
-/// A number as people write it, decimal or with `0x`.
+/// A number, decimal or with `0x`.
 fn number(text: &str) -> Option<u32> {
     match text.strip_prefix("0x") {
         Some(digits) if !digits.starts_with('+') => u32::from_str_radix(digits, 16).ok(),
@@ -311,7 +311,7 @@ impl fmt::Display for Submodule {
 mod tests {
     use super::*;
 
-    /// notes, worked example: the places in both blocks of cyclic data.
+    /// notes, worked example: positions in both data blocks.
     #[test]
     fn places_in_frames_are_those_of_the_example() {
         let layout = Layout::two_modules(0x101, 0x102);

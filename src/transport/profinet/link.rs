@@ -1,4 +1,4 @@
-//! The seam for fieldbuses over PROFINET: a connection as the IO controller of a device.
+//! PROFINET as a fieldbus of images: a connection as the IO controller of a device.
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
@@ -15,7 +15,7 @@ use crate::image::{Cause, Outputs, Sizes, Traffic};
 /// A connection as the IO controller of a device.
 pub type Link = Cyclic<Device>;
 
-/// The device of one.
+/// The device of a [`Link`].
 #[derive(Debug)]
 pub struct Device {
     connection: Connection,
@@ -23,7 +23,7 @@ pub struct Device {
 }
 
 impl Link {
-    /// Opens it over an interface. All of a process share the sockets of an interface.
+    /// Connects over an interface. All connections of a process share its sockets.
     pub async fn open(interface: &str, settings: Settings, tap: Tap) -> Result<Self, ProfinetError> {
         let size = |direction| settings.layout.size(direction);
         let sizes = Sizes { output: size(Direction::Output), input: size(Direction::Input) };
@@ -47,7 +47,7 @@ impl Bus for Device {
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
         let outputs = match view.trouble {
-            // It hears the resting image instead.
+            // The device receives the resting image instead.
             Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
             _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
         };

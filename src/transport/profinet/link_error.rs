@@ -1,13 +1,13 @@
-//! PROFINET errors in the terms of every fieldbus: cause, advice, the URL options that may be wrong.
+//! Conversion of PROFINET errors to [`LinkError`]: cause, advice, and URL options that can be wrong.
 
 use super::error::ProfinetError;
 use crate::image::{Cause, LinkError};
 
-/// Raw Ethernet needs this right on Linux.
+/// Advice for the Linux capability that raw Ethernet needs.
 const PRIVILEGE: &str = "run `sudo setcap cap_net_raw+ep $(command -v armctl)`, or run armctl as root";
-/// URL options that describe the modules of a device.
+/// URL options for the modules of a device.
 const MODULES: &[&str] = &["layout", "gsdml"];
-/// URL options that set the times of a connection.
+/// URL options for the times of a connection.
 const TIMES: &[&str] = &["cycle", "watchdog"];
 
 impl From<ProfinetError> for LinkError {

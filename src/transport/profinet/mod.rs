@@ -1,6 +1,6 @@
-//! PROFINET IO: images to and from a device, cyclically in Ethernet frames, and calls to it over UDP.
+//! PROFINET IO controller and simulated device: cyclic images in Ethernet frames, RPC calls over UDP.
 //!
-//! Knows bytes of submodules and no robot.
+//! This module knows submodules and bytes, but no robots.
 
 use std::time::Duration;
 
@@ -30,5 +30,5 @@ mod sockets;
 mod tests;
 pub mod wire;
 
-/// A moment, as time passed since an origin of the driver's choice. It never runs backwards.
+/// A moment, as time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;

@@ -1,7 +1,7 @@
-//! Connections to any number of devices on one interface: one raw socket, one UDP socket, one thread.
+//! Driver for any number of connections on one interface: one raw socket, one UDP socket, one thread.
 //!
-//! Frames go out on time whatever the rest of the program does, so they have a thread of their own: a prompt that waits
-//! for a person must not make a robot stop. It waits for sockets and clock at once, to a fraction of a millisecond.
+//! Image exchange does not depend on the rest of the program: a prompt that waits for input must not stop a robot. The
+//! thread waits for sockets and clock at once, with a resolution below 1 ms.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddrV4;
@@ -27,7 +27,7 @@ use super::wire::rpc;
 use crate::image::tap::{Passed, Tap};
 use crate::local::LocalError;
 
-/// Holds connections over one interface. It is cheap to clone; its thread ends with the last clone and the last
+/// Owner of connections on one interface. Clones are cheap. Its thread stops with the last clone and the last
 /// connection.
 #[derive(Debug, Clone)]
 pub struct Network {
@@ -52,7 +52,7 @@ struct Inner {
     is_over: AtomicBool,
 }
 
-/// A connection and what belongs to it.
+/// A connection with its driver state.
 #[derive(Debug)]
 struct Slot {
     core: Controller,
@@ -61,10 +61,7 @@ struct Slot {
 }
 
 impl Network {
-    /// The one of this process on an interface, which is started when there is none.
-    ///
-    /// # Errors
-    /// When there is no such interface, it cannot be used, or its sockets cannot be had.
+    /// The shared network of this process on an interface.
     pub fn shared(interface: &str) -> Result<Self, ProfinetError> {
         static SHARED: Mutex<Vec<Weak<Owner>>> = Mutex::new(Vec::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -95,10 +92,10 @@ impl Network {
         Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
     }
 
-    /// Opens a connection, and holds it until it is closed or dropped.
+    /// Opens a connection. It stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// When the device is not there, does not answer, or refuses. Later losses are not errors but states of the view.
+    /// The device is not found, does not answer or refuses. A later loss is not an error but a state of the view.
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
         let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
@@ -117,13 +114,13 @@ impl Drop for Owner {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }
 }
 
-/// A connection that is held. Dropping it closes it, as long as the process lives to do so.
+/// An open connection. Dropping it closes it, if the process lives long enough.
 #[derive(Debug)]
 pub struct Connection {
     owner: Arc<Owner>,
@@ -132,17 +129,17 @@ pub struct Connection {
 }
 
 impl Connection {
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         self.views.now()
     }
 
-    /// What was counted until now; a view has it as of the last change.
+    /// Current counters. The view has those of its last change.
     pub fn statistics(&self) -> Statistics {
         self.with(|core, _| core.statistics()).unwrap_or_else(|| self.view().statistics)
     }
 
-    /// Waits until the view is so, or the connection is closed.
+    /// Waits until `condition` is true, or until the connection is closed.
     pub async fn until(&mut self, condition: impl FnMut(&View) -> bool) -> View {
         self.views.until(condition).await
     }
@@ -152,12 +149,12 @@ impl Connection {
         self.with(|core, _| core.set_image(generation, image)).unwrap_or(Err(ProfinetError::Ended))
     }
 
-    /// An alarm that came, each once.
+    /// Returns the next alarm.
     pub fn take_alarm(&self) -> Option<Notification> {
         self.with(|core, _| core.take_alarm()).flatten()
     }
 
-    /// Ends it; frames go on until the device has answered the release. Says if it did not.
+    /// Closes the connection. Frames continue until the device answers the release. Fails without an answer.
     pub async fn close(mut self) -> Result<(), ProfinetError> {
         let before = self.view().trouble;
         self.with(Controller::close);
@@ -189,7 +186,7 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does what is due, and waits for the next moment, frame or datagram, until all has ended.
+    /// Thread body: does what is due, then waits for the next time, frame or datagram.
     fn run(&self) {
         let mut buffer = vec![0; BUFFER];
         loop {
@@ -202,7 +199,7 @@ impl Inner {
         }
     }
 
-    /// Does what is due by the clock, and says when to do so again.
+    /// Does what is due. Returns the time of the next call.
     fn turn(&self) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -213,7 +210,7 @@ impl Inner {
         slots.values().filter_map(|slot| slot.core.wake()).min()
     }
 
-    /// Does what a connection wants done, and shows what came of it.
+    /// Executes the actions of a connection, and publishes its view.
     fn follow(&self, slot: &mut Slot, now: Now) {
         while let Some(action) = slot.core.poll(now) {
             match action {
@@ -261,14 +258,14 @@ impl Inner {
     }
 }
 
-/// A datagram in the frame that carries it, as records have it: who reads one finds a connection's frames by its cards.
+/// Wraps a datagram into its Ethernet frame for a recording. The reader identifies connections by MAC address.
 pub(super) fn in_frame(source: Mac, destination: Mac, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) -> Vec<u8> {
     const HOPS: u8 = 64;
     let headers = PacketBuilder::ethernet2(source.0, destination.0)
         .ipv4(from.ip().octets(), to.ip().octets(), HOPS)
         .udp(from.port(), to.port());
     let mut frame = Vec::with_capacity(headers.size(bytes.len()));
-    // No datagram is longer than a packet.
+    // A datagram always fits a packet.
     let _ = headers.write(&mut frame, bytes);
     frame
 }

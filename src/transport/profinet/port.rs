@@ -1,4 +1,4 @@
-//! Frames and calls outside of connections: through a card, or to a simulated device.
+//! Frames and RPC calls outside of connections: through a network card, or to a simulated device.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
@@ -17,17 +17,17 @@ use super::{Now, simulated};
 use crate::image::tap::{Passed, Tap};
 use crate::local::LocalError;
 
-/// Room for a frame or a datagram.
+/// Buffer for a frame or datagram.
 const BUFFER: usize = 65_536;
 
-/// Sends and hears frames.
+/// Sends and receives frames.
 #[derive(Debug)]
 pub(super) struct Frames {
     end: End<Socket>,
     tap: Tap,
 }
 
-/// Sends and hears datagrams of one device.
+/// Exchanges datagrams with one device.
 #[derive(Debug)]
 pub(super) struct Calls {
     end: End<UdpSocket>,
@@ -52,12 +52,11 @@ impl<S> End<S> {
 }
 
 impl Frames {
-    /// Of an interface that can be used.
     pub(super) fn open(interface: &Interface) -> Result<Self, ProfinetError> {
         Self::of(interface, frame::ETHER_TYPE)
     }
 
-    /// Likewise, frames of ARP.
+    /// Opens a socket for ARP frames.
     pub(super) fn of_arp(interface: &Interface) -> Result<Self, ProfinetError> {
         Self::of(interface, arp::ETHER_TYPE)
     }
@@ -87,7 +86,7 @@ impl Frames {
         Ok(())
     }
 
-    /// Hands on each frame that comes until something is made of one, or time is over.
+    /// Passes received frames to `take` until it returns a value, or until a timeout.
     pub(super) fn hear<T>(
         &self,
         until: Now,
@@ -101,7 +100,7 @@ impl Frames {
         Ok(None)
     }
 
-    /// The next frame that comes until then.
+    /// Returns the next frame before `until`.
     pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let came = self.take(until)?;
         if let Some(bytes) = &came {
@@ -122,7 +121,7 @@ impl Frames {
                 return Ok(None);
             }
             let wait = Timespec::try_from(left).ok();
-            // An interruption is like a time that was shorter.
+            // A signal ends the wait early, like a shorter timeout.
             let _ = poll(&mut [PollFd::new(source, PollFlags::IN)], wait.as_ref());
             match source.read(&mut buffer) {
                 Ok(length) => {
@@ -137,7 +136,7 @@ impl Frames {
 }
 
 impl Calls {
-    /// To the device with this card and address.
+    /// Opens a socket to the device with this MAC and IP address.
     pub(super) fn open(interface: &Interface, mac: Mac, target: SocketAddrV4) -> Result<Self, ProfinetError> {
         let end = if let Some(network) = interface.network() {
             End::Simulated(network.clone())
@@ -165,7 +164,7 @@ impl Calls {
         Ok(())
     }
 
-    /// The next datagram of the device that comes until then.
+    /// Returns the next datagram of the device before `until`.
     pub(super) fn hear(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (bytes, from) = match &self.end {
             End::Simulated(network) => match network.hear_datagram(until) {
@@ -177,7 +176,7 @@ impl Calls {
                 let timed = socket.set_read_timeout(Some(wait));
                 timed.map_err(|error| LocalError::new("calling the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
-                // Nothing, or an interruption: the clock goes on.
+                // A timeout or a signal; the caller checks the time.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };
                 buffer.truncate(length);
                 (buffer, from)

@@ -1,4 +1,4 @@
-//! What a connection is to be.
+//! Connection settings.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,19 +9,19 @@ use super::wire::Mac;
 use super::wire::dcp::{self, IpSuite};
 use super::wire::record::Parameter;
 
-/// Send clock of 1 ms in units of 31.25 us, which every device has.
+/// Send clock of 1 ms in units of 31.25 us; every device supports it.
 pub const SEND_CLOCK: u16 = 32;
-/// Longest that a watchdog may be.
+/// Longest watchdog time.
 pub const LONGEST_WATCHDOG: Duration = Duration::from_millis(1920);
-/// Fewest cycles of a watchdog: a single lost frame must not end a connection.
+/// Minimum watchdog in cycles: a single lost frame must not end a connection.
 const FEWEST_CYCLES: u128 = 3;
 
-/// Which device.
+/// Identification of a device.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Station {
-    /// The one of this name.
+    /// By station name.
     Name(String),
-    /// The one with this card.
+    /// By MAC address.
     Mac(Mac),
 }
 
@@ -34,43 +34,43 @@ impl fmt::Display for Station {
     }
 }
 
-/// How a connection starts.
+/// Startup mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Startup {
-    /// As in devices since 2010.
+    /// Advanced, in devices since 2010.
     #[default]
     Advanced,
-    /// As before.
+    /// Legacy, in older devices.
     Legacy,
 }
 
-/// Device, modules, times and manners of a connection.
+/// Settings of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
-    /// Which device.
+    /// The device.
     pub station: Station,
-    /// The address it is to be given, if it has another one.
+    /// IP address to assign, if the device has another one.
     pub ip: Option<IpSuite>,
-    /// Its modules.
+    /// Module layout.
     pub layout: Layout,
-    /// How it starts.
+    /// Startup mode.
     pub startup: Startup,
-    /// Time between frames, both ways: 1, 2, 4 and so on to 512 ms.
+    /// Cycle time in both directions: 1, 2, 4 and so on to 512 ms.
     pub cycle: Duration,
-    /// After how long without a frame the connection is lost, both ways.
+    /// Time without a frame after which the connection is lost, in both directions.
     pub watchdog: Duration,
-    /// What is written to the device before it starts.
+    /// Parameter records to write at the start.
     pub parameters: Vec<Parameter>,
-    /// The image that a connection begins with, and after every loss again.
+    /// First image after every opening.
     pub resting: Vec<u8>,
-    /// As many bytes at the start of both images are pairs in the other order on the wire.
+    /// Number of bytes at the start of both images that have swapped byte pairs on the network.
     pub swapped: usize,
-    /// The name of this controller.
+    /// Name of this controller.
     pub name: String,
 }
 
 impl Settings {
-    /// A connection to this device with a resting image of zeros: every 16 ms, lost after 320 ms.
+    /// Default settings: resting image of zeros, 16 ms cycle, 320 ms watchdog.
     pub fn new(station: Station, layout: Layout) -> Self {
         let resting = vec![0; layout.size(Direction::Output)];
         Self {
@@ -87,7 +87,7 @@ impl Settings {
         }
     }
 
-    /// Whether a connection can be so.
+    /// Checks the settings.
     pub fn check(&self) -> Result<(), ProfinetError> {
         let wrong = |text: String| Err(ProfinetError::Impossible(text));
         if let Station::Name(name) = &self.station
@@ -130,14 +130,14 @@ impl Settings {
         Ok(())
     }
 
-    /// The cycle in send clocks.
+    /// Cycle time in send clocks (reduction ratio).
     pub fn ratio(&self) -> Option<u16> {
         let millis = u16::try_from(self.cycle.as_millis()).ok()?;
         let is_whole = self.cycle == Duration::from_millis(millis.into());
         (is_whole && millis.is_power_of_two() && millis <= 512).then_some(millis)
     }
 
-    /// The watchdog in cycles, rounded up as far as it may be.
+    /// Watchdog in cycles, rounded up within the limit.
     pub fn watchdog_factor(&self) -> u16 {
         let cycle = self.cycle.as_nanos().max(1);
         let up = self.watchdog.as_nanos().div_ceil(cycle);
@@ -145,13 +145,13 @@ impl Settings {
         u16::try_from(up.min(most)).unwrap_or(u16::MAX)
     }
 
-    /// How long the watchdog really is.
+    /// Actual watchdog time.
     pub fn watchdog_time(&self) -> Duration {
         self.cycle * u32::from(self.watchdog_factor())
     }
 }
 
-/// Turns pairs of bytes round at the start of an image.
+/// Swaps byte pairs at the start of an image.
 pub fn swap(image: &mut [u8], count: usize) {
     let count = count.min(image.len());
     for pair in image[..count].chunks_exact_mut(2) {

@@ -1,5 +1,5 @@
-//! A network in this process: one device, this machine, and a clock of its own that never waits. What is asked of the
-//! device is answered at once; a connection that is open keeps to the clock of the program.
+//! In-process network with one device, this computer, and its own virtual clock. Requests to the device are answered at
+//! once. An open connection follows the clock of the program.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
@@ -23,26 +23,26 @@ use crate::fault::{FaultSpec, Faults};
 use crate::image::ImagePeer;
 use crate::image::view::State;
 
-/// This machine on it.
+/// Addresses of this computer.
 pub(super) const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
-/// The device on it.
+/// Addresses of the device.
 const THERE: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
-/// How long opening or closing may take at most, by its own clock.
+/// Limit of virtual time for opening or closing.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Addresses that no network has (RFC 5737).
+/// Documentation addresses, which no real network has (RFC 5737).
 const fn suite(host: u8) -> IpSuite {
     let address = Ipv4Addr::new(192, 0, 2, host);
     IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: Ipv4Addr::UNSPECIFIED }
 }
 
-/// What is at the other end of the cable.
+/// The device at the other end of the cable.
 trait Station: Send {
     fn frame(&mut self, now: Now, bytes: &[u8]);
     fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]);
     fn poll(&mut self, now: Now) -> Option<Action>;
     fn wake(&self) -> Option<Now>;
-    /// Where it answers from, where that is not where it is called.
+    /// Sender address of its answers, if different.
     fn answers_from(&self) -> Option<Ipv4Addr>;
 }
 
@@ -68,7 +68,7 @@ impl<A: Application + Send> Station for Device<A> {
     }
 }
 
-/// A network that lives as long as this.
+/// An in-process network. It exists while a clone exists.
 #[derive(Debug, Clone)]
 pub struct Network {
     name: String,
@@ -78,20 +78,20 @@ pub struct Network {
 struct Inner {
     now: Now,
     station: Box<dyn Station>,
-    /// What came from the station and was not taken yet.
+    /// Frames from the station that were not read yet.
     frames: VecDeque<Vec<u8>>,
     datagrams: VecDeque<(SocketAddrV4, Vec<u8>)>,
-    /// What goes wrong on the way to the station, and on the way back.
+    /// Fault injection: to the station, from the station.
     faults: Option<(Faults, Faults)>,
-    /// What is on its way, by when it arrives and how much was sent before.
+    /// Items in transit, by arrival time and sequence.
     on_the_way: BTreeMap<(Now, u64), (Way, Vec<u8>)>,
     sent: u64,
 }
 
-/// Most that is on its way.
+/// Limit of items in transit.
 const MOST_ON_THE_WAY: usize = 10_000;
 
-/// From one end of the cable to the other.
+/// Type and direction of an item.
 #[derive(Debug, Clone, Copy)]
 enum Way {
     FrameThere,
@@ -106,7 +106,7 @@ impl fmt::Debug for Inner {
     }
 }
 
-/// All of this process, by the names of their interfaces.
+/// All networks of this process, by interface name.
 static ALL: Mutex<Vec<(String, Weak<Mutex<Inner>>)>> = Mutex::new(Vec::new());
 
 fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
@@ -114,13 +114,13 @@ fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
 }
 
 impl Network {
-    /// One with this device, which has its card and address there, and with what goes wrong on the way to it and back.
+    /// Creates a network with a device, which gets its MAC and IP address, and with faults in both directions.
     pub fn new<A: Application + Send + 'static>(
         device: impl FnOnce(Mac, IpSuite) -> Device<A>,
         faults: Option<FaultSpec>,
     ) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(1);
-        // No interface of Linux has a colon in its name.
+        // Linux interface names contain no colon.
         let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let station = Box::new(device(THERE.0, THERE.1));
         let inner = Inner {
@@ -139,21 +139,18 @@ impl Network {
         Self { name, inner }
     }
 
-    /// The one whose interface has this name.
+    /// Finds a network by interface name.
     pub fn find(name: &str) -> Option<Self> {
         let inner = all().iter().find(|(other, _)| other == name).and_then(|(_, inner)| inner.upgrade())?;
         Some(Self { name: name.to_owned(), inner })
     }
 
-    /// The interface of this machine that leads to it.
+    /// The interface of this computer.
     pub fn interface(&self) -> Interface {
         Interface::simulated(self.name.clone(), HERE, self.clone())
     }
 
     /// Opens a connection.
-    ///
-    /// # Errors
-    /// When the device is not there, does not answer, or refuses.
     pub fn open(&self, settings: Settings) -> Result<Link, ProfinetError> {
         let controller = Controller::new(HERE, settings, Arc::new(Numbers::random()))?;
         let mut link = Link { controller, network: self.clone(), start: Now::ZERO };
@@ -187,19 +184,19 @@ impl Network {
         }
     }
 
-    /// The next frame that comes until then.
+    /// Returns the next frame before `until`.
     pub(super) fn hear_frame(&self, until: Now) -> Option<Vec<u8>> {
         self.inner().hear(until, |inner| inner.frames.pop_front())
     }
 
-    /// The next datagram that comes until then.
+    /// Returns the next datagram before `until`.
     pub(super) fn hear_datagram(&self, until: Now) -> Option<(SocketAddrV4, Vec<u8>)> {
         self.inner().hear(until, |inner| inner.datagrams.pop_front())
     }
 }
 
 impl Inner {
-    /// Sends something, which may get lost, come late or twice.
+    /// Sends an item with fault injection.
     fn send(&mut self, way: Way, bytes: &[u8]) {
         let Some((there, back)) = &mut self.faults else { return self.arrive(way, bytes) };
         let faults = if matches!(way, Way::FrameThere | Way::DatagramThere) { there } else { back };
@@ -220,7 +217,7 @@ impl Inner {
         }
     }
 
-    /// Lets everything arrive that is due, and the station do all that it has to do now.
+    /// Delivers all due items, and lets the station do its work.
     fn settle(&mut self) {
         loop {
             if let Some(first) = self.on_the_way.first_entry().filter(|first| first.key().0 <= self.now) {
@@ -240,7 +237,7 @@ impl Inner {
         }
     }
 
-    /// When something happens next.
+    /// Time of the next event.
     fn wake(&self) -> Option<Now> {
         let arrival = self.on_the_way.first_key_value().map(|((at, _), _)| *at);
         arrival.into_iter().chain(self.station.wake()).min()
@@ -266,12 +263,12 @@ impl Inner {
 pub struct Link {
     controller: Controller,
     network: Network,
-    /// Its time at the beginning of the program's.
+    /// Virtual time at the start of the program's clock.
     start: Now,
 }
 
 impl Link {
-    /// Does what is due, and says when to do so again.
+    /// Does what is due. Returns the time of the next call.
     fn settle(&mut self, inner: &mut Inner) -> Option<Now> {
         let controller = &mut self.controller;
         loop {
@@ -294,7 +291,7 @@ impl Link {
         }
     }
 
-    /// Goes on until then, or until the condition holds.
+    /// Runs until `until`, or until the condition is true.
     fn run(&mut self, until: Now, is_enough: impl Fn(&Controller) -> bool) {
         let network = self.network.clone();
         let mut inner = network.inner();
@@ -326,9 +323,9 @@ impl ImagePeer for Link {
         };
         self.run(self.start + now, |_| false);
         let generation = self.controller.view().generation;
-        // What is meant for the time before a loss is not shown.
+        // An image from before a loss is not sent.
         if let Ok(change) = self.controller.set_image(generation, image) {
-            // It has left when this returns, so its clock may be a cycle ahead.
+            // The image was sent when this returns, so the virtual clock can be a cycle ahead.
             let (before, until) = (self.network.now(), self.network.now() + self.controller.settings().watchdog);
             self.run(until, |controller| controller.view().sent >= change || controller.view().state != State::Open);
             self.start += self.network.now().saturating_sub(before);

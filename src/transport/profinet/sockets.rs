@@ -1,4 +1,4 @@
-//! The sockets of one interface, for a thread that waits for frames, datagrams and its clock at once.
+//! Sockets of one interface, for a thread that waits for frames, datagrams and a timeout.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
@@ -15,25 +15,22 @@ use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
 use crate::local::LocalError;
 
-/// Frames or datagrams taken at once before the clock is looked at.
+/// Limit of frames or datagrams handled before the clock is checked.
 const AT_ONCE: usize = 64;
-/// Room that it wants for the longest datagram.
+/// Required buffer size for the longest datagram.
 pub(super) const BUFFER: usize = 65_536;
 
 #[derive(Debug)]
 pub(super) struct Sockets {
     raw: Socket,
     udp: UdpSocket,
-    /// A byte in it wakes the thread.
+    /// A byte written here wakes the thread.
     bell: UnixStream,
     heard: UnixStream,
 }
 
 impl Sockets {
-    /// Those of an interface, with its address.
-    ///
-    /// # Errors
-    /// When it cannot be used, or they cannot be had.
+    /// Opens the sockets of an interface. Also returns its IP address.
     pub fn open(interface: &Interface) -> Result<(Self, IpSuite), ProfinetError> {
         let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
@@ -61,11 +58,11 @@ impl Sockets {
 
     /// Wakes the thread.
     pub fn ring(&self) {
-        // Where the buffer is full it is awake.
+        // If the buffer is full, the thread is awake already.
         let _ = (&self.bell).write(&[0]);
     }
 
-    /// Waits for the bell, a frame or a datagram, at most so long.
+    /// Waits for a wake-up, frame or datagram, at most for `most`.
     pub fn wait(&self, most: Option<Duration>) {
         let most = most.map(|most| Timespec::try_from(most).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
         let mut sources = [
@@ -74,14 +71,14 @@ impl Sockets {
             PollFd::new(&self.heard, PollFlags::IN),
         ];
         if poll(&mut sources, most.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
-            // Nothing else would slow it down.
+            // Avoids a busy loop.
             std::thread::park_timeout(Duration::from_millis(1));
         }
         let mut rings = [0; 64];
         while (&self.heard).read(&mut rings).is_ok_and(|read| read > 0) {}
     }
 
-    /// Takes what came, as far as it came at once.
+    /// Reads all available frames and datagrams, up to the limit.
     pub fn hear(&self, buffer: &mut [u8], mut frame: impl FnMut(&[u8]), mut datagram: impl FnMut(SocketAddrV4, &[u8])) {
         for _ in 0..AT_ONCE {
             let Ok(length) = (&self.raw).read(buffer) else { break };
@@ -91,7 +88,7 @@ impl Sockets {
             match self.udp.recv_from(buffer) {
                 Ok((length, SocketAddr::V4(from))) => datagram(from, &buffer[..length]),
                 Ok(_) => {}
-                // What a host says of an earlier call (port unreachable) is nothing to the others.
+                // The error concerns one host ("port unreachable" after an earlier call). The others are not affected.
                 Err(error) if error.kind() == ErrorKind::ConnectionRefused => {}
                 Err(_) => break,
             }

@@ -1,4 +1,4 @@
-//! The client's end: finds the session of a device, and talks through it.
+//! Session client: finds the session of a device, and uses its connection.
 
 use std::collections::VecDeque;
 use std::io;
@@ -15,28 +15,28 @@ use super::wire::{
     Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, short,
 };
 
-/// Why a session is gone whose holder has said nothing: it was killed, or has crashed.
+/// Reason for the end of a session without a message: its process was killed or crashed.
 const HOLDER_GONE: &str = "the session's holder has ended";
 
-/// How long a host may take to answer what it knows without asking the device.
+/// Time limit for answers that the host gives without asking the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
 
-/// Why a session that is there is not used.
+/// Reason why an existing session cannot be used.
 #[derive(Debug, Error)]
 pub enum AttachError {
-    /// Its folder or socket is not to be trusted, or cannot be read.
+    /// Its folder or socket is not safe, or cannot be read.
     #[error("{0}")]
     Place(#[from] PlaceError),
-    /// It does not answer.
+    /// The session does not answer.
     #[error("the session does not answer")]
     Silent,
-    /// It says no.
+    /// The session refuses this client.
     #[error("{0}")]
     Refused(String),
-    /// What answers is no session, or one of another version.
+    /// The answer is not that of a session of this version.
     #[error("what answers is not a session of this version of armctl")]
     Foreign,
-    /// The socket has failed.
+    /// The socket failed.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
@@ -50,45 +50,45 @@ impl From<WireError> for AttachError {
     }
 }
 
-/// What is found where a session may be.
+/// Result of looking for a session.
 #[derive(Debug)]
 pub enum Found {
-    /// Nothing.
+    /// No session.
     Nothing,
-    /// The socket of a session that has died.
+    /// The socket of a dead session.
     Dead,
-    /// A session.
+    /// A session, which this client is now attached to.
     Session(Box<Attached>),
 }
 
-/// Why something cannot be done now.
+/// Reason why something is not possible now.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SessionBusy {
-    /// The session has ended, and why.
+    /// The session has ended, with the reason.
     #[error("{0}")]
     Ended(String),
-    /// Somebody else has the line, and has not given it back in time.
+    /// Another client has the line, and did not release it in time.
     #[error("the line is in use by another client")]
     Busy(Option<Peer>),
-    /// Somebody else moves the robot.
+    /// Another client moves the robot.
     #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
-    /// The session passes only reads and stops.
+    /// The robot is read-only, so the session passes only reads and stops.
     #[error("the robot is read-only, and its session passed nothing on")]
     ReadOnly,
 }
 
 impl SessionBusy {
-    /// The kind of errors that stand for a refusal by the host: no socket and no port has it.
+    /// Error kind that marks a refusal by the host. No socket or port uses it.
     pub(super) const DENIED: io::ErrorKind = io::ErrorKind::ReadOnlyFilesystem;
 
-    /// What an error of a session's link means, if it is a refusal by the host.
+    /// Converts an I/O error of a session link; `None` if it is not a refusal by the host.
     pub fn of(error: &io::Error) -> Option<Self> {
         (error.kind() == Self::DENIED).then_some(Self::ReadOnly)
     }
 }
 
-/// Looks for the session of this key, and says hello to it.
+/// Finds the session of this key, and attaches to it.
 pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
     match Place::find()? {
         Some(place) => attach_at(&place.spot(key), key, command, purpose).await,
@@ -96,7 +96,7 @@ pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<Found,
     }
 }
 
-/// The same, where the spot is known.
+/// Attaches to a session at a known location.
 pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) -> Result<Found, AttachError> {
     let Some(mut end) = End::connect(spot).await? else {
         return Ok(if spot.check()? { Found::Dead } else { Found::Nothing });
@@ -110,7 +110,7 @@ pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) 
         }
         Control::Refused(why) => Err(AttachError::Refused(why)),
         Control::Ended(_) => {
-            // Its socket closes behind the link: whoever opens that next finds it free.
+            // The session closes its socket after the link. Wait for it, so that the link is free for the next one.
             let closed = async { while let Ok(Some(_)) = end.reader.next().await {} };
             timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
             Ok(Found::Nothing)
@@ -119,22 +119,22 @@ pub async fn attach_at(spot: &Spot, key: &str, command: &str, purpose: Purpose) 
     }
 }
 
-/// How the session at a spot stands; `None` if none lives there.
+/// Status of the session at a location; `None` if there is none.
 pub async fn status(spot: &Spot) -> Result<Option<Status>, AttachError> {
     let Some(mut end) = End::connect(spot).await? else { return Ok(None) };
     end.post(Control::Ask);
     match end.answer().await? {
         Control::Status(status) => Ok(Some(*status)),
-        // It was just about to.
+        // The session is closing.
         Control::Ended(_) => Ok(None),
         _ => Err(AttachError::Foreign),
     }
 }
 
-/// Has the session at a spot end, and waits until it is gone; `false` if none lived there.
+/// Closes the session at a location, and waits for it; `false` if there is none.
 ///
 /// # Errors
-/// [`AttachError::Refused`] if something moves, unless `force`.
+/// [`AttachError::Refused`] during a motion, unless `force`.
 pub async fn close(spot: &Spot, force: bool) -> Result<bool, AttachError> {
     let Some(mut end) = End::connect(spot).await? else { return Ok(false) };
     end.post(Control::Close { force });
@@ -143,7 +143,7 @@ pub async fn close(spot: &Spot, force: bool) -> Result<bool, AttachError> {
         Control::Refused(why) => return Err(AttachError::Refused(why)),
         _ => return Err(AttachError::Foreign),
     }
-    // The connection ends when all is closed. Whatever comes before that says nothing new.
+    // The host closes the connection last. Earlier frames do not matter.
     while let Ok(Some(_)) = end.reader.next().await {}
     Ok(true)
 }
@@ -165,14 +165,14 @@ impl End {
         Ok(ends.map(|(read, write)| Self { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
     }
 
-    /// Sends a frame at once, or as soon as the socket takes it.
+    /// Queues a frame, and sends as much as the socket accepts now.
     fn post(&mut self, control: Control) {
         self.put(&Frame::Control(control));
     }
 
     fn put(&mut self, frame: &Frame) {
         frame.emit(&mut self.unsent);
-        // A socket that has failed fails again when it is read from.
+        // The next read reports a failed socket.
         if let Ok(sent) = self.writer.try_write(&self.unsent) {
             self.unsent.drain(..sent);
         }
@@ -190,13 +190,13 @@ impl End {
         Ok(())
     }
 
-    /// The next frame; `None` once the host is gone. The future may be dropped.
+    /// Waits for the next frame; `None` after the host has closed. Cancel safe.
     async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         self.flush().await?;
         self.reader.next().await
     }
 
-    /// What the host says, which it does at once.
+    /// Waits for the immediate answer of the host.
     async fn answer(&mut self) -> Result<Control, AttachError> {
         match timeout_at(Instant::now() + ANSWERS_WITHIN, self.next()).await {
             Err(_) => Err(AttachError::Silent),
@@ -209,7 +209,7 @@ impl End {
     }
 }
 
-/// Whether an error says that nobody is at the other end of the socket any more.
+/// Whether the error means that the other end of the socket is closed.
 fn is_gone(error: &WireError) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset, NotConnected, UnexpectedEof};
 
@@ -217,29 +217,29 @@ fn is_gone(error: &WireError) -> bool {
     matches!(error, WireError::Io(error) if gone.contains(&error.kind()))
 }
 
-/// A client of a session.
+/// A client attached to a session.
 #[derive(Debug)]
 pub struct Attached {
     end: End,
-    /// What came while something else was waited for.
+    /// Frames that arrived while another one was expected.
     early: VecDeque<Frame>,
-    /// Bytes of a piece that were not received yet.
+    /// Bytes of a frame that were not received yet.
     rest: Vec<u8>,
     line: Line,
     takes: u32,
     may_move: bool,
     ended: Option<String>,
-    /// Whether [`Event::Lost`] has told that it has ended.
+    /// Whether [`Event::Lost`] has reported the end of the session.
     told: bool,
-    /// How things were at the beginning.
+    /// State of the session when this client attached.
     pub welcome: Welcome,
 }
 
-/// Whose the line is.
+/// Ownership of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Line {
     Free,
-    /// It was asked for.
+    /// Requested.
     Asked,
     Mine,
 }
@@ -252,22 +252,22 @@ impl Attached {
         Self { end, early, rest, line, takes: 0, may_move: false, ended: None, told: false, welcome }
     }
 
-    /// Why the session has ended, once that is known.
+    /// Reason for the end of the session, if it has ended.
     pub fn ended(&self) -> Option<&str> {
         self.ended.as_deref()
     }
 
-    /// Whether the line is this client's.
+    /// Whether this client has the line.
     pub fn has_line(&self) -> bool {
         self.line == Line::Mine
     }
 
-    /// Waits for the line until then. The future may be dropped.
+    /// Waits for the line until `until`. Cancel safe.
     pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         self.take_for(0, until).await
     }
 
-    /// Waits until a channel of the line is this client's: others may have other channels at the same time.
+    /// Waits for one channel of the line. Other clients can have other channels at the same time.
     pub async fn take_for(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
         if self.line == Line::Mine {
             return Ok(());
@@ -290,14 +290,14 @@ impl Attached {
             }
         }
         if self.images().is_none() {
-            // What came before is about earlier turns.
+            // Earlier frames belong to earlier exchanges.
             self.early.clear();
             self.rest.clear();
         }
         Ok(())
     }
 
-    /// Gives the line back.
+    /// Releases the line.
     pub fn over(&mut self) {
         if self.line != Line::Free {
             self.end.post(Control::Over);
@@ -305,7 +305,7 @@ impl Attached {
         }
     }
 
-    /// Becomes the one who moves the robot.
+    /// Claims the right to move the robot.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         if self.may_move {
             return Ok(());
@@ -324,13 +324,13 @@ impl Attached {
         Ok(())
     }
 
-    /// Leaves as one should.
+    /// Detaches from the session.
     pub async fn leave(mut self) {
-        // A host that is gone needs no farewell.
+        // If the host is gone, no message is needed.
         let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.end.flush()).await;
     }
 
-    /// Sends a datagram, or a piece of a stream. Without the line nothing is sent: the host would not pass it on.
+    /// Sends a datagram or bytes of a stream. Without the line, nothing is sent, because the host would drop it.
     pub async fn send(&mut self, channel: u8, bytes: &[u8]) -> io::Result<()> {
         if let Some(why) = &self.ended {
             return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone()));
@@ -345,7 +345,7 @@ impl Attached {
         Ok(())
     }
 
-    /// The socket has ended, or failed: so has the session.
+    /// Marks the session as ended after its socket was closed or failed.
     fn end_with(&mut self, error: Option<WireError>) -> String {
         let why = match error {
             Some(error) if !is_gone(&error) => format!("the session is gone: {error}"),
@@ -355,12 +355,12 @@ impl Attached {
         why
     }
 
-    /// Has the host open a new socket for a channel.
+    /// Lets the host open a new socket for a channel.
     pub fn renew(&mut self, channel: u8) {
         self.end.post(Control::Renew(channel));
     }
 
-    /// Waits for a datagram of a channel, but not longer than `until`; what does not fit the buffer is cut.
+    /// Waits for a datagram of a channel, at most until `until`. Bytes beyond the buffer are dropped.
     pub async fn receive(&mut self, wanted: u8, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         loop {
             match self.data(until).await? {
@@ -371,7 +371,7 @@ impl Attached {
         }
     }
 
-    /// Waits for bytes of a stream, but not longer than `until`; what does not fit the buffer comes next time.
+    /// Waits for bytes of a stream, at most until `until`. Bytes beyond the buffer are returned by the next call.
     pub async fn read(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         if self.rest.is_empty() {
             let Some((_, bytes)) = self.data(until).await? else { return Ok(None) };
@@ -402,7 +402,7 @@ impl Attached {
         }
     }
 
-    /// The next frame; `None` if none came until then, or the session has ended.
+    /// Next frame; `None` after a timeout or the end of the session.
     async fn next(&mut self, until: Instant) -> Option<Frame> {
         match self.early.pop_front() {
             Some(frame) => Some(frame),
@@ -410,7 +410,7 @@ impl Attached {
         }
     }
 
-    /// The next frame from the socket; `None` if none came until then.
+    /// Next frame from the socket; `None` after a timeout.
     async fn arrived(&mut self, until: Instant) -> Result<Option<Frame>, SessionBusy> {
         if let Some(why) = &self.ended {
             return Err(SessionBusy::Ended(why.clone()));
@@ -418,7 +418,7 @@ impl Attached {
         let next = if Instant::now() < until {
             timeout_at(until, self.end.next()).await.ok()
         } else {
-            // A timer takes a millisecond to tell that it is late; what is there already is there at once.
+            // An expired timer takes a millisecond to fire. Frames that have already arrived are returned without it.
             yield_now().await;
             self.end.next().now_or_never()
         };
@@ -436,7 +436,7 @@ impl Attached {
     }
 }
 
-/// Whoever goes as he should says so; who is killed does not.
+/// A normal exit sends Bye; a killed process does not.
 impl Drop for Attached {
     fn drop(&mut self) {
         self.end.post(Control::Bye);
@@ -449,38 +449,38 @@ fn copy(bytes: &[u8], buffer: &mut [u8]) -> usize {
     length
 }
 
-/// What happens on an image link of a session.
+/// Event of an image session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// What was shown last has left.
+    /// The last shown image was sent.
     Sent,
-    /// The device shows something new.
+    /// A new image of the device.
     Image(Vec<u8>),
-    /// Somebody else has changed what the device is shown.
+    /// Another client has changed the image to the device.
     Shown(Change),
-    /// The robot is read-only, and what was shown last is not; [`Attached::shown`] is what the device is shown.
+    /// The robot is read-only, and the last image was refused. [`Attached::shown`] is the current image to the device.
     Denied,
-    /// The link went down, and why.
+    /// The link was lost, with the reason.
     Lost(String),
-    /// It is up again; [`Attached::shown`] is what the device is shown now.
+    /// The link is open again. [`Attached::shown`] is the current image to the device.
     Reopened,
-    /// Nothing until then.
+    /// No event before the deadline.
     Timeout,
 }
 
 impl Attached {
-    /// How the images are, where they are what the session carries.
+    /// Image state; `None` if the session has no images.
     fn images(&self) -> Option<&Images> {
         self.welcome.images.as_ref()
     }
 
-    /// What the device is shown, as far as this client knows.
+    /// Current image to the device, as far as this client knows.
     pub fn shown(&self) -> Option<&[u8]> {
         self.images().map(|images| &images.shown[..])
     }
 
-    /// Has the device shown this image, as far as it differs from what it is shown. Without the line the exclusive part
-    /// stays as it is.
+    /// Sends the bits of this image that differ from the current one. Without the line, the exclusive part is not
+    /// changed.
     pub fn show(&mut self, image: &[u8]) {
         let has_line = self.has_line();
         let Some(images) = &mut self.welcome.images else { return };
@@ -494,8 +494,8 @@ impl Attached {
         self.end.put(&Frame::Show(change));
     }
 
-    /// Has the device shown these bits, mask and value, if this process dies; or no more. It counts from the next image
-    /// that is shown on.
+    /// Sets the last will: bits (mask and value) that the host sends if this process dies; or removes it. It is valid
+    /// from the next shown image on.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         let Some(images) = &self.welcome.images else { return };
         let generation = images.generation;
@@ -503,7 +503,7 @@ impl Attached {
         self.end.post(Control::Will(will));
     }
 
-    /// Waits for the next thing to happen, but not longer than `until`. The future may be dropped.
+    /// Waits for the next event, at most until `until`. Cancel safe.
     pub async fn event(&mut self, until: Instant) -> Event {
         loop {
             match self.next(until).await {
@@ -532,7 +532,7 @@ impl Attached {
                 None => {
                     match self.ended.clone() {
                         Some(why) if !std::mem::replace(&mut self.told, true) => return Event::Lost(why),
-                        // Nothing comes any more.
+                        // The session has ended, so no more events.
                         Some(_) => sleep_until(until).await,
                         None => {}
                     }

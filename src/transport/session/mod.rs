@@ -1,17 +1,17 @@
-//! A link that outlives commands: one process, the host, holds it, and others reach the device through that process
-//! over a socket on this machine.
+//! Sessions: a link that outlives commands. One process, the host, holds it. Other processes reach the device through a
+//! local socket of the host.
 //!
-//! What is said on the socket is in `wire`: frames of this program's own, no protocol of a controller. The host passes on
-//! what clients send, and decides only who is next:
+//! `wire` defines the frames on the socket; they are our own, not those of a controller. The host passes on what
+//! clients send, and only decides whose turn it is:
 //!
-//! - the line belongs to one client at a time, for one exchange: it takes it, talks, and gives it back, so that a stop
-//!   gets through between two questions of somebody else;
-//! - of an image, the exclusive part (such as a remote command) is changed by the holder of the line alone; the rest is
-//!   switched bit by bit by whoever wants to, so that a stop needs no turn;
-//! - one client at a time moves the robot.
+//! - The line belongs to one client at a time, for one exchange: take it, transact, release it. So a stop can pass
+//!   between two requests of another client.
+//! - Only the owner of the line can change the exclusive part of an image, such as a remote command. Any client can
+//!   switch the other bits, so a stop needs no turn.
+//! - One client at a time moves the robot.
 //!
-//! A client that dies gives back what it holds. What it was moving is stopped, unless it said that it leaves its motion: then
-//! what it left on the image stays there.
+//! If a client dies, all it has is released. Its motion is stopped, unless the client has declared that it leaves the
+//! motion running. In that case its changes of the image stay.
 
 pub mod client;
 pub mod host;
@@ -25,7 +25,7 @@ pub mod wire;
 
 pub use socket::{Detached, detach, leave_terminal, terminate};
 
-/// This process, as sessions know it.
+/// Id of this process.
 pub fn process() -> u32 {
     std::process::id()
 }

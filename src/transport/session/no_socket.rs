@@ -1,4 +1,4 @@
-//! Sessions where the system has no sockets of a user's alone: there are none, and to open one fails with that reason.
+//! Replacement for systems without private local sockets: opening a session is an error.
 
 use std::ffi::OsString;
 use std::io;
@@ -6,109 +6,109 @@ use std::path::{Path, PathBuf};
 
 use tokio::io::DuplexStream;
 
-/// The half that is read from.
+/// Read half of a socket.
 pub type ReadHalf = DuplexStream;
 
 fn absent<T>() -> io::Result<T> {
     Err(io::Error::new(io::ErrorKind::Unsupported, "sessions need Unix sockets, which this system has not"))
 }
 
-/// The half that is written to; there is none.
+/// Write half of a socket; never exists.
 #[derive(Debug)]
 pub enum WriteHalf {}
 
 impl WriteHalf {
-    /// As of a socket.
+    /// As in `socket`.
     pub fn try_write(&self, _bytes: &[u8]) -> io::Result<usize> {
         match *self {}
     }
 
-    /// As of a socket.
+    /// As in `socket`.
     #[expect(clippy::unused_async, reason = "as of a socket")]
     pub async fn writable(&self) -> io::Result<()> {
         match *self {}
     }
 }
 
-/// Where sockets would be.
+/// Folder of the sockets.
 pub fn folder() -> PathBuf {
     std::env::temp_dir().join("armctl")
 }
 
-/// Says that there are no sessions.
+/// Not supported.
 pub fn make_private(_folder: &Path) -> io::Result<()> {
     absent()
 }
 
-/// There are no sockets.
+/// Always `false`.
 pub fn answers(_path: &Path) -> bool {
     false
 }
 
-/// Nothing is there.
+/// Always `NotFound`.
 pub fn check_private(_path: &Path, _is_folder: bool) -> io::Result<Result<(), &'static str>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-/// A file that one process at a time would have.
+/// A lock file; never exists.
 #[derive(Debug)]
 pub enum Lock {}
 
 impl Lock {
-    /// Says that there are no sessions.
+    /// Not supported.
     pub fn take(_path: &Path, _text: &[u8]) -> io::Result<Option<Self>> {
         absent()
     }
 }
 
-/// Where clients would come in.
+/// A listener; never exists.
 #[derive(Debug)]
 pub enum Listener {}
 
 impl Listener {
-    /// Says that there are no sessions.
+    /// Not supported.
     pub fn bind(_path: &Path) -> io::Result<Self> {
         absent()
     }
 
-    /// Nobody comes.
+    /// As in `socket`.
     #[expect(clippy::unused_async, reason = "as of a socket")]
     pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         match *self {}
     }
 }
 
-/// Nobody listens.
+/// Always `None`.
 #[expect(clippy::unused_async, reason = "as of a socket")]
 pub async fn connect(_path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
     Ok(None)
 }
 
-/// This program again, in the background; never.
+/// A background process; never exists.
 #[derive(Debug)]
 pub enum Detached {}
 
-/// Says that there are no sessions.
+/// Not supported.
 pub fn detach(_arguments: impl Iterator<Item = OsString>, _log: &Path) -> io::Result<Detached> {
     absent()
 }
 
 impl Detached {
-    /// The process.
+    /// Process id.
     pub fn pid(&self) -> u32 {
         match *self {}
     }
 
-    /// What it would print.
+    /// Next line of its output.
     pub fn line(&mut self) -> io::Result<String> {
         match *self {}
     }
 }
 
-/// There is no such process.
+/// Does nothing.
 pub fn terminate(_pid: u32) {}
 
-/// Says that there are no sessions.
+/// Not supported.
 pub fn leave_terminal() -> io::Result<()> {
     absent()
 }

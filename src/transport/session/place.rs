@@ -1,4 +1,4 @@
-//! Where the sockets of sessions are, and whose they are.
+//! Locations of sessions: sockets, lock files, and their owners.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,26 +12,26 @@ use super::socket::{self, Lock};
 use super::wire::Info;
 use armctl_files as files;
 
-/// Most that a lock file says about its owner.
+/// Size limit of a lock file.
 const LONGEST_LOCK: u64 = 1 << 16;
 
-/// Why there is no place for sessions.
+/// Error of a session location.
 #[derive(Debug, Error)]
 pub enum PlaceError {
-    /// Somebody else could be behind it.
+    /// Another user could be behind it.
     #[error("{path} is not to be trusted: {why}")]
     Unsafe {
-        /// What.
+        /// Path of the folder or socket.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         why: &'static str,
     },
-    /// Anything else.
+    /// Another error.
     #[error("{path}: {error}")]
     Io {
-        /// What.
+        /// Path of the folder or socket.
         path: PathBuf,
-        /// Why not.
+        /// I/O error.
         error: io::Error,
     },
 }
@@ -40,20 +40,20 @@ fn failed(path: &Path) -> impl FnOnce(io::Error) -> PlaceError {
     move |error| PlaceError::Io { path: path.to_owned(), error }
 }
 
-/// What a session is named by: the same for everybody who means this device.
+/// Key of a session, the same for all names of a device.
 pub fn key(family: &str, target: &str) -> String {
     let digest = Sha256::digest(format!("{family} {target}"));
     digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The folder with the sockets of this user's sessions.
+/// Folder with the session sockets of this user.
 #[derive(Debug)]
 pub struct Place {
     folder: PathBuf,
 }
 
 impl Place {
-    /// The folder if it is there, and this user's alone.
+    /// Finds the folder if it exists. It must be private to this user.
     pub fn find() -> Result<Option<Self>, PlaceError> {
         let folder = socket::folder();
         match socket::check_private(&folder, true) {
@@ -64,19 +64,19 @@ impl Place {
         }
     }
 
-    /// The folder, made if it is not there.
+    /// Finds or creates the folder.
     pub fn make() -> Result<Self, PlaceError> {
         let folder = socket::folder();
         socket::make_private(&folder).map_err(failed(&folder))?;
         Self::find()?.ok_or_else(|| failed(&folder)(io::ErrorKind::NotFound.into()))
     }
 
-    /// Where the session of this key is.
+    /// Location of the session with this key.
     pub fn spot(&self, key: &str) -> Spot {
         Spot { stem: self.folder.join(key) }
     }
 
-    /// Where sessions are, or were.
+    /// Locations of all sessions, alive or dead.
     pub fn spots(&self) -> Result<Vec<Spot>, PlaceError> {
         let entries = std::fs::read_dir(&self.folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
         let entries = entries.map_err(failed(&self.folder))?;
@@ -90,34 +90,34 @@ impl Place {
 
 const SOCKET: &str = "sock";
 
-/// Where one session is: its socket, its lock, its log.
+/// Location of one session: socket, lock file, log file.
 #[derive(Debug, Clone)]
 pub struct Spot {
     stem: PathBuf,
 }
 
 impl Spot {
-    /// Somewhere of one's own: the socket, lock and log begin with this path.
+    /// A custom location; socket, lock and log file start with this path.
     pub fn at(stem: PathBuf) -> Self {
         Self { stem }
     }
 
-    /// Where clients connect.
+    /// Path of the socket.
     pub fn socket(&self) -> PathBuf {
         self.stem.with_extension(SOCKET)
     }
 
-    /// What the session is named by.
+    /// Key of the session.
     pub fn key(&self) -> String {
         self.stem.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether somebody listens there, and nobody but this user can.
+    /// Whether a session listens there, and the socket is private to this user.
     pub fn is_open(&self) -> bool {
         self.check().is_ok_and(|is_there| is_there && socket::answers(&self.socket()))
     }
 
-    /// Where a host in the background writes what happens.
+    /// Path of the log file of a background host.
     pub fn log(&self) -> PathBuf {
         self.stem.with_extension("log")
     }
@@ -126,7 +126,7 @@ impl Spot {
         self.stem.with_extension("lock")
     }
 
-    /// Makes the spot this process's own; `None` if a living process has it. What a dead one left is removed.
+    /// Locks the location for this process; `None` if a living process has it. Leftovers of a dead process are removed.
     pub fn claim(&self, info: &Info) -> Result<Option<Claim>, PlaceError> {
         let text = serde_json::to_vec(info).unwrap_or_default();
         let Some(lock) = Lock::take(&self.lock(), &text).map_err(failed(&self.lock()))? else { return Ok(None) };
@@ -134,14 +134,14 @@ impl Spot {
         Ok(Some(Claim { spot: self.clone(), _lock: lock }))
     }
 
-    /// Makes the spot this process's own as soon as whoever has it gives it back, who is not waited for long.
+    /// Locks the location as soon as its owner releases it, within a short time.
     pub async fn turn(&self, info: &Info) -> Result<Turn, PlaceError> {
         let until = Instant::now() + TURN_WITHIN;
         loop {
             if let Some(claim) = self.claim(info)? {
                 return Ok(Turn::Mine(claim));
             }
-            // Whoever has it may be a command, which ends, or a session that is just being opened.
+            // The owner can be a short command, or a session that is just opening.
             if self.is_open() {
                 return Ok(Turn::Session);
             }
@@ -152,12 +152,12 @@ impl Spot {
         }
     }
 
-    /// Who has it, or had it.
+    /// Current or last owner.
     pub fn owner(&self) -> Option<Info> {
         serde_json::from_slice(&files::read(&self.lock(), LONGEST_LOCK).ok()?).ok()
     }
 
-    /// Removes what a dead session left; nothing if a living process has it.
+    /// Removes leftovers of a dead session, unless a living process has the location.
     pub fn clear(&self) -> Result<(), PlaceError> {
         match self.owner() {
             Some(info) => self.claim(&info).map(|_| ()),
@@ -172,7 +172,7 @@ impl Spot {
         }
     }
 
-    /// Whether a socket of this user's alone is there.
+    /// Whether a private socket exists there.
     pub(super) fn check(&self) -> Result<bool, PlaceError> {
         let path = self.socket();
         match socket::check_private(&path, false) {
@@ -184,22 +184,22 @@ impl Spot {
     }
 }
 
-/// How long a spot is waited for, and from look to look.
+/// Time limit and interval of the attempts to lock a location.
 const TURN_WITHIN: Duration = Duration::from_secs(3);
 const TURN_EVERY: Duration = Duration::from_millis(10);
 
-/// Whose a spot is.
+/// Result of an attempt to lock a location.
 #[derive(Debug)]
 pub enum Turn {
-    /// This process's.
+    /// Locked by this process.
     Mine(Claim),
-    /// That of a session, which lets clients in.
+    /// A session, which accepts clients.
     Session,
-    /// That of a process which has not given it back in time.
+    /// Another process did not release it in time.
     Taken,
 }
 
-/// A spot that is this process's own, until it is dropped.
+/// A locked location; dropping it releases the lock.
 #[derive(Debug)]
 pub struct Claim {
     spot: Spot,
@@ -207,7 +207,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Where it is.
+    /// The location.
     pub fn spot(&self) -> &Spot {
         &self.spot
     }
@@ -217,9 +217,9 @@ impl Claim {
         socket::Listener::bind(&self.spot.socket())
     }
 
-    /// Removes the socket, so that nobody new comes.
+    /// Removes the socket, so that no new client connects.
     pub(super) fn hide(&self) {
-        // What cannot be removed is stale from now on, and found to be.
+        // If this fails, later clients find the socket dead.
         let _ = self.spot.remove_socket();
     }
 }
@@ -258,7 +258,7 @@ mod tests {
         assert!(spot.owner().is_none());
         let claim = spot.claim(&info()).unwrap().unwrap();
         assert!(spot.owner() == Some(info()));
-        // Locks are of open files: the second one of this process is as another's.
+        // Locks belong to open files, so a second one in the same process conflicts as well.
         assert!(spot.claim(&info()).unwrap().is_none());
         drop(claim);
         assert!(spot.claim(&info()).unwrap().is_some());

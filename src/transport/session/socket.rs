@@ -1,4 +1,4 @@
-//! What of sessions is the system's: a socket of this user's alone, a lock, a process without a terminal.
+//! System functions for sessions: private sockets, lock files, background processes.
 
 use std::fs::{DirBuilder, File, OpenOptions, Permissions};
 use std::io::{self, BufRead as _, BufReader};
@@ -12,12 +12,12 @@ use rustix::fs::{FlockOperation, flock};
 use rustix::process::{Pid, Signal, geteuid, kill_process, setsid};
 use tokio::net::{UnixListener, UnixStream, unix};
 
-/// The half that is read from.
+/// Read half of a socket.
 pub type ReadHalf = unix::OwnedReadHalf;
-/// The half that is written to.
+/// Write half of a socket.
 pub type WriteHalf = unix::OwnedWriteHalf;
 
-/// Where sockets are: the user's runtime folder, or a folder of his own beside the temporary files.
+/// Folder of the sockets: in the user's runtime folder, or a private folder in the temporary folder.
 pub fn folder() -> PathBuf {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     match runtime.filter(|folder| folder.is_absolute() && folder.is_dir()) {
@@ -26,7 +26,7 @@ pub fn folder() -> PathBuf {
     }
 }
 
-/// Makes a folder for this user alone, unless it is there.
+/// Creates a private folder, unless it exists.
 pub fn make_private(folder: &Path) -> io::Result<()> {
     match DirBuilder::new().mode(0o700).create(folder) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
@@ -34,10 +34,10 @@ pub fn make_private(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether what is there is this user's alone: a folder, or a socket. What is wrong with it otherwise.
+/// Checks that a folder or socket is private to this user. The inner error is the reason.
 ///
 /// # Errors
-/// `NotFound` if nothing is there.
+/// `NotFound` if it does not exist.
 pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'static str>> {
     let found = path.symlink_metadata()?;
     let fits = if is_folder { found.is_dir() } else { found.file_type().is_socket() };
@@ -52,14 +52,14 @@ pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'st
     })
 }
 
-/// A file that one process at a time has; the lock goes with the process.
+/// A lock file for one process at a time. The lock ends with the process.
 #[derive(Debug)]
 pub struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// Takes the lock, and puts this text into the file; `None` if another process has it.
+    /// Takes the lock, and writes this text into the file; `None` if another process has it.
     pub fn take(path: &Path, text: &[u8]) -> io::Result<Option<Self>> {
         use io::{Seek as _, Write as _};
 
@@ -76,28 +76,28 @@ impl Lock {
     }
 }
 
-/// Whether somebody listens there.
+/// Whether a process listens on the socket.
 pub fn answers(path: &Path) -> bool {
     std::os::unix::net::UnixStream::connect(path).is_ok()
 }
 
-/// Where clients come in.
+/// Accepts clients.
 #[derive(Debug)]
 pub struct Listener(UnixListener);
 
 impl Listener {
-    /// Listens on a path where nothing is.
+    /// Binds a path that does not exist yet.
     pub fn bind(path: &Path) -> io::Result<Self> {
         let listener = UnixListener::bind(path)?;
         std::fs::set_permissions(path, Permissions::from_mode(0o600))?;
         Ok(Self(listener))
     }
 
-    /// The next client of this user's, with the number of its process where the system tells. The future may be dropped.
+    /// Waits for the next client of the same user. Also returns its process id, if the system reports it. Cancel safe.
     pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         loop {
             let (stream, _) = self.0.accept().await?;
-            // Someone who is gone already needs no answer.
+            // The client is already gone.
             let Ok(peer) = stream.peer_cred() else { continue };
             if peer.uid() == geteuid().as_raw() {
                 let (read, write) = stream.into_split();
@@ -107,7 +107,7 @@ impl Listener {
     }
 }
 
-/// Connects to a socket; `None` if nobody listens there any more.
+/// Connects to a socket; `None` if no process listens there.
 pub async fn connect(path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
     match UnixStream::connect(path).await {
         Ok(stream) => Ok(Some(stream.into_split())),
@@ -116,14 +116,14 @@ pub async fn connect(path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
     }
 }
 
-/// This program again, in the background.
+/// A background process of this program.
 #[derive(Debug)]
 pub struct Detached {
     pid: u32,
     stdout: BufReader<ChildStdout>,
 }
 
-/// Starts this program again with other arguments; what it says on stderr goes to the end of a file of this user's alone.
+/// Starts this program in the background with other arguments. Its stderr is appended to a private log file.
 pub fn detach(arguments: impl Iterator<Item = std::ffi::OsString>, log: &Path) -> io::Result<Detached> {
     let log = OpenOptions::new().append(true).create(true).mode(0o600).open(log)?;
     let mut child = Command::new(crate::this_program()?)
@@ -137,12 +137,12 @@ pub fn detach(arguments: impl Iterator<Item = std::ffi::OsString>, log: &Path) -
 }
 
 impl Detached {
-    /// The process.
+    /// Process id.
     pub fn pid(&self) -> u32 {
         self.pid
     }
 
-    /// Waits for the next line that it prints; empty at its end.
+    /// Waits for the next line of its output; empty at the end.
     pub fn line(&mut self) -> io::Result<String> {
         let mut line = String::new();
         self.stdout.read_line(&mut line)?;
@@ -150,15 +150,15 @@ impl Detached {
     }
 }
 
-/// Asks a process to end.
+/// Terminates a process.
 pub fn terminate(pid: u32) {
-    // One that has ended already is as good.
+    // It can have ended already.
     if let Some(pid) = i32::try_from(pid).ok().and_then(Pid::from_raw) {
         let _ = kill_process(pid, Signal::TERM);
     }
 }
 
-/// Leaves the terminal and everybody who is asked to end with it.
+/// Detaches from the terminal and its process group (new session).
 pub fn leave_terminal() -> io::Result<()> {
     setsid().map(|_| ()).map_err(io::Error::from)
 }

@@ -1,7 +1,7 @@
-//! What host and clients say to each other: frames of a length, a kind and a content.
+//! Frames between session host and clients.
 //!
-//! Four bytes of length, low byte first, count all that follows: a byte that tells the kind, and the content. Control
-//! frames are JSON; what passes often is bytes.
+//! A frame is a 4-byte length (little-endian, of all that follows), a type byte, and the content. Control frames are
+//! JSON; frequent frames are binary.
 
 use std::io;
 
@@ -11,46 +11,47 @@ use tokio::io::AsyncReadExt as _;
 
 use super::socket::ReadHalf;
 
-/// What both sides must speak alike.
+/// Protocol version; must be equal on both sides.
 pub const VERSION: u32 = 3;
 
-/// Longest frame: more than a datagram or an image can have.
+/// Longest frame; longer than any datagram or image.
 const LONGEST: usize = 1 << 17;
 const HEAD: usize = 4;
-/// Longest text that one side says about itself.
+/// Longest text about a client or host.
 pub const LONGEST_TEXT: usize = 300;
 
 /// One frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Frame {
-    /// Everything that is rare.
+    /// A control message; these are rare.
     Control(Control),
-    /// The image that the device shows.
+    /// Image from the device.
     Image(Vec<u8>),
-    /// A change of what the device is shown: to the host, what a client wants; from it, what another one has done.
+    /// Change of the image to the device: a request of a client, or a report of another client's change.
     Show(Change),
-    /// A datagram, or a piece of a stream.
+    /// A datagram, or bytes of a stream.
     Data {
-        /// Which port of the device.
+        /// Channel of the device.
         channel: u8,
         /// Content.
         bytes: Vec<u8>,
     },
 }
 
-/// A change of an image: bits under the mask become those of the value.
+/// Change of an image: the bits in `mask` get the values in `value`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// The opening of the link that it is meant for: what was meant for the time before a loss is not done after it.
+    /// Generation of the link. A change for an older generation is dropped, so that nothing from before a loss is done
+    /// after it.
     pub generation: u32,
-    /// Which bits.
+    /// Bits to change.
     pub mask: Vec<u8>,
-    /// What they become; as long as the mask.
+    /// New values; as long as the mask.
     pub value: Vec<u8>,
 }
 
 impl Change {
-    /// Changes an image, as far as the change reaches.
+    /// Applies the change to an image.
     pub fn apply(&self, image: &mut [u8]) {
         for ((byte, mask), value) in image.iter_mut().zip(&self.mask).zip(&self.value) {
             *byte = (*byte & !mask) | (value & mask);
@@ -58,180 +59,180 @@ impl Change {
     }
 }
 
-/// A frame that is rare.
+/// A control message.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Control {
-    /// Client: who I am, and which device I mean.
+    /// Client: identification of the client and the device.
     Hello(Hello),
-    /// Client: how do you stand?
+    /// Client: request for the status.
     Ask,
-    /// Client: end, even if something moves.
+    /// Client: request to end the session.
     Close {
-        /// Although a motion is under way.
+        /// Even during a motion.
         force: bool,
     },
-    /// Client: I want the line.
+    /// Client: request for the line.
     Take {
-        /// Comes back with the line.
+        /// Returned with the line.
         number: u32,
-        /// Which port of the device it is for.
+        /// Channel of the device.
         channel: u8,
     },
-    /// Client: I do not want the line any more.
+    /// Client: release of the line, or of its place in the queue.
     Over,
-    /// Client: I am going to move the robot.
+    /// Client: request to move the robot.
     Motion,
-    /// Client: a new socket for this channel, please.
+    /// Client: request for a new socket of this channel.
     Renew(u8),
-    /// Client: have the device shown this if I die; or no more.
+    /// Client: sets or removes the last will.
     Will(Option<Change>),
-    /// Client: I leave as I should.
+    /// Client: normal detach.
     Bye,
 
-    /// Host: who I am, and how things are.
+    /// Host: state of the session for a new client.
     Welcome(Box<Welcome>),
-    /// Host: how I stand.
+    /// Host: status of the session.
     Status(Box<Status>),
-    /// Host: no, and why.
+    /// Host: refusal with the reason.
     Refused(String),
-    /// Host: I end.
+    /// Host: the session ends.
     Closing,
-    /// Host: the line is yours.
+    /// Host: the client has the line.
     Taken(u32),
-    /// Host: the line is somebody else's; you are in the queue.
+    /// Host: another client has the line; this one is in the queue.
     Queued(Peer),
-    /// Host: move the robot.
+    /// Host: the client can move the robot.
     Granted,
-    /// Host: somebody else moves the robot.
+    /// Host: another client moves the robot.
     Held(Peer),
-    /// Host: what you showed last has left.
+    /// Host: the last image of the client was sent.
     Sent,
-    /// Host: the link is down, and why.
+    /// Host: the link was lost, with the reason.
     Lost(String),
-    /// Host: the link is up again.
+    /// Host: the link is open again.
     Reopened {
-        /// The opening.
+        /// Generation of the link.
         generation: u32,
-        /// What the device is shown since then.
+        /// Current image to the device.
         shown: Vec<u8>,
     },
-    /// Host: sending or receiving failed.
+    /// Host: a send or receive failed.
     Broken(Broken),
-    /// Host: the robot is read-only, and what the client sent is not passed on.
+    /// Host: a frame was refused, because the robot is read-only.
     Denied {
-        /// What the device is shown, where the link carries images.
+        /// Current image to the device, on an image link.
         shown: Option<Vec<u8>>,
     },
-    /// Host: the session ends, and why.
+    /// Host: the session has ended, with the reason.
     Ended(String),
 }
 
-/// What a client says of itself.
+/// Identification of a client.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hello {
-    /// See [`VERSION`].
+    /// Protocol version; see [`VERSION`].
     pub version: u32,
-    /// What the session is named by.
+    /// Key of the session.
     pub key: String,
-    /// Process.
+    /// Process id.
     pub pid: u32,
-    /// Its command line.
+    /// Command line.
     pub command: String,
-    /// What it comes for.
+    /// Purpose of the connection.
     pub purpose: Purpose,
 }
 
-/// What a client comes for, as far as the host must know.
+/// Purpose of a connection, as far as it concerns the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Purpose {
-    /// Anything; what it moves is stopped if it dies.
+    /// Any command; its motion is stopped if the client dies.
     #[default]
     Any,
-    /// What it moves moves on if it dies.
+    /// A command whose motion continues if the client dies.
     LeavesMotion,
-    /// To stop the robot, which waits behind nobody.
+    /// Stop the robot, before all other clients.
     Stop,
 }
 
-/// A client, to others.
+/// Description of a client for other clients.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Peer {
-    /// Process.
+    /// Process id.
     pub pid: u32,
-    /// Its command line.
+    /// Command line.
     pub command: String,
-    /// How long it has had what this is about.
+    /// Time since it has the line or moves the robot, in ms.
     pub for_ms: u64,
 }
 
-/// What a host says of itself to a client.
+/// State of the session for a new client.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Welcome {
-    /// See [`VERSION`].
+    /// Protocol version; see [`VERSION`].
     pub version: u32,
-    /// Process.
+    /// Process id of the host.
     pub pid: u32,
-    /// How long it has been there.
+    /// Age of the session in ms.
     pub for_ms: u64,
-    /// Why the link is down; `None` while it is up.
+    /// Reason why the link is down; `None` while it is up.
     pub down: Option<String>,
-    /// What the last one left under way.
+    /// Command that an earlier client left active.
     pub leftover: Option<Leftover>,
-    /// For images: what the device is shown, and shows.
+    /// Images of an image link.
     pub images: Option<Images>,
 }
 
-/// An image link as a client finds it.
+/// State of an image link for a new client.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Images {
-    /// The opening of the link.
+    /// Generation of the link.
     pub generation: u32,
-    /// How many bytes of the output, from the first, the holder of the line alone changes.
+    /// Size of the exclusive part: bytes from the start that only the owner of the line can change.
     pub exclusive: usize,
-    /// What the device is shown.
+    /// Image to the device.
     pub shown: Vec<u8>,
-    /// What it shows.
+    /// Image from the device.
     pub seen: Option<Vec<u8>>,
 }
 
-/// What a client left on the exclusive part of an image.
+/// Active command that a client left in the exclusive part of the image.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leftover {
-    /// Who; since then it is gone.
+    /// The former client.
     pub by: Peer,
-    /// Whether it went without a word: killed, or broken down.
+    /// Whether it ended without a detach: killed or crashed.
     pub died: bool,
 }
 
-/// How a session stands.
+/// Status of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// See [`VERSION`]; 0 from a host that does not tell.
+    /// Protocol version; see [`VERSION`]. 0 from an old host without this field.
     #[serde(default)]
     pub version: u32,
-    /// Whom it is for.
+    /// Device and host process.
     pub info: Info,
-    /// How long it has been there.
+    /// Age of the session in ms.
     pub for_ms: u64,
-    /// Why the link is down; `None` while it is up.
+    /// Reason why the link is down; `None` while it is up.
     pub down: Option<String>,
-    /// How often the link was opened again.
+    /// Number of times that the link was opened again.
     pub reopenings: u32,
-    /// Who uses it now.
+    /// Current clients.
     pub clients: Vec<Peer>,
-    /// Who moves the robot.
+    /// Client that moves the robot.
     pub motion: Option<Peer>,
-    /// What the last one left under way.
+    /// Command that an earlier client left active.
     pub leftover: Option<Leftover>,
-    /// Whether the device shows that something moves.
+    /// Whether the robot moves.
     pub under_way: bool,
 }
 
-/// Whom a session, or a command that has the link to itself, is for; also what its lock file says.
+/// Device and process of a session, or of a command with its own link. The lock file contains it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Info {
-    /// Process.
+    /// Process id.
     pub pid: u32,
     /// Name of the robot.
     pub robot: String,
@@ -239,43 +240,43 @@ pub struct Info {
     pub family: String,
     /// Target URL.
     pub target: String,
-    /// Command line of the process; empty where an older one does not tell.
+    /// Command line of the process; empty from an old version without this field.
     #[serde(default)]
     pub command: String,
 }
 
 impl Info {
-    /// That of this process, which runs this command.
+    /// Info of this process with this command.
     pub fn own(robot: &str, family: &str, target: &str, command: &str) -> Self {
         let (robot, family, target) = (robot.to_owned(), family.to_owned(), target.to_owned());
         Self { pid: super::process(), robot, family, target, command: short(command) }
     }
 }
 
-/// A failed operation of the host's, in a form that can be passed on.
+/// A failed operation of the host.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Broken {
-    /// Which kind, as far as clients tell them apart.
+    /// Kind of the error.
     pub kind: BrokenKind,
-    /// In words.
+    /// Text of the error.
     pub text: String,
 }
 
-/// Kinds of errors that clients tell apart.
+/// Error kinds that clients distinguish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BrokenKind {
-    /// The other end is gone.
+    /// The connection is closed.
     NotConnected,
-    /// Nobody listens on the port.
+    /// No program listens on the port.
     ConnectionRefused,
-    /// No way to the host.
+    /// The host is unreachable.
     HostUnreachable,
-    /// No way to its network.
+    /// The network is unreachable.
     NetworkUnreachable,
-    /// It took no bytes.
+    /// Timeout of a send.
     TimedOut,
-    /// Anything else.
+    /// Another error.
     Other,
 }
 
@@ -301,16 +302,16 @@ impl From<Broken> for io::Error {
     }
 }
 
-/// What came is no frame.
+/// Error of a received frame.
 #[derive(Debug, Error)]
 pub enum WireError {
-    /// Longer than any.
+    /// The frame is too long.
     #[error("a frame of {0} bytes")]
     TooLong(usize),
-    /// A kind that is not known, or a content that does not fit it.
+    /// Unknown type, or invalid content.
     #[error("a frame that makes no sense")]
     Senseless,
-    /// The socket has failed.
+    /// The socket failed.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
@@ -321,8 +322,8 @@ const SHOW: u8 = b's';
 const DATA: u8 = b'd';
 
 impl Frame {
-    /// Appends the frame as it goes over the socket. Nobody sends a frame that is too long: images and datagrams have
-    /// 65535 bytes at most, texts are cut.
+    /// Appends the encoded frame. It is never too long: images and datagrams have at most 65535 bytes, and texts are
+    /// cut.
     pub fn emit(&self, out: &mut Vec<u8>) {
         let start = out.len();
         out.extend([0; HEAD]);
@@ -350,7 +351,7 @@ impl Frame {
         out[start..start + HEAD].copy_from_slice(&length.to_le_bytes());
     }
 
-    /// The first frame of what came, and how many bytes it has; `None` while it is not whole.
+    /// Decodes the first frame of a buffer, and returns its length; `None` if it is incomplete.
     fn parse(bytes: &[u8]) -> Result<Option<(Self, usize)>, WireError> {
         let Some((head, rest)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
         let length = usize::try_from(u32::from_le_bytes(*head)).unwrap_or(usize::MAX);
@@ -377,7 +378,7 @@ impl Frame {
     }
 }
 
-/// Frames from a socket.
+/// Reader of frames from a socket.
 #[derive(Debug)]
 pub struct Reader {
     socket: ReadHalf,
@@ -385,12 +386,12 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Reads from this half.
+    /// Creates a reader.
     pub fn new(socket: ReadHalf) -> Self {
         Self { socket, arrived: Vec::new() }
     }
 
-    /// The next frame; `None` once the other side is gone. The future may be dropped.
+    /// Waits for the next frame; `None` after the other side has closed. Cancel safe.
     pub async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         loop {
             if let Some((frame, length)) = Frame::parse(&self.arrived)? {
@@ -404,7 +405,7 @@ impl Reader {
     }
 }
 
-/// A text without control characters, and not too long.
+/// Replaces control characters, and limits the length.
 pub fn short(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(LONGEST_TEXT).collect()
 }

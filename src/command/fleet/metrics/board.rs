@@ -1,4 +1,4 @@
-//! What is known of the robots, for whoever reads it as metrics: the latest look at each, and counts since it appeared.
+//! Data behind the metrics: the newest sample of each robot, and counters since it appeared.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,52 +10,52 @@ use crate::command::face::sample::{Axis, Traffic};
 use crate::command::fleet::poll::{Event, Look, RobotId};
 use crate::command::fleet::service::kind;
 
-/// The upper ends of the ranges that poll times are counted in, in seconds. One that is longer is in none of them.
+/// Upper limits of the histogram buckets for poll times, in seconds. Longer times are only in the last bucket (`+Inf`).
 const RANGES: [f64; 9] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5];
 
-/// All that is known.
+/// Data of all robots.
 #[derive(Debug, Default)]
 pub struct Board {
-    /// Those that are looked at, by name.
+    /// Polled robots by id.
     pub robots: BTreeMap<RobotId, Seen>,
-    /// Whether the inventory could be read when it had changed last.
+    /// Whether the last changed inventory could not be read.
     pub is_inventory_broken: bool,
 }
 
-/// What is known of a robot.
+/// Data of one robot.
 #[derive(Debug, Default)]
 pub struct Seen {
-    /// Its labels, as a page has them.
+    /// Encoded labels.
     pub labels: String,
-    /// The latest look, as long as it answers.
+    /// Newest sample, while the robot answers.
     pub look: Option<Arc<Look>>,
-    /// Whether anything is known of it yet.
+    /// Whether the robot has been polled yet.
     pub is_known: bool,
-    /// When it answered last: seconds since 1970.
+    /// Time of the last answer, in seconds since 1970.
     pub answered: Option<f64>,
-    /// Looks that were begun.
+    /// Number of polls.
     pub polls: u64,
-    /// Those that failed, by the class of the failure.
+    /// Failed polls by kind of failure.
     pub failures: BTreeMap<String, u64>,
-    /// Those that were left out, because the one before took too long.
+    /// Polls omitted because the previous one took too long.
     pub missed: u64,
-    /// How often a pause was made longer.
+    /// Number of times that the backoff became longer.
     pub backoffs: u64,
-    /// How long it is left alone; nothing while it answers.
+    /// Current backoff; `None` while the robot answers.
     pub pause: Option<Duration>,
-    /// How long looks took.
+    /// Histogram of poll times.
     pub times: Times,
-    /// What went over its link.
+    /// Traffic on the link.
     pub traffic: Traffic,
 }
 
-/// Counts of times, by range.
+/// Histogram of times.
 #[derive(Debug, Default)]
 pub struct Times {
     counts: [u64; RANGES.len()],
-    /// All times together, in seconds.
+    /// Sum of all times in seconds.
     pub sum: f64,
-    /// How many.
+    /// Number of times.
     pub count: u64,
 }
 
@@ -69,14 +69,14 @@ impl Times {
         self.count += 1;
     }
 
-    /// How many were no longer than each of some times.
+    /// Cumulative counts with their upper limits.
     pub fn buckets(&self) -> Vec<(f64, u64)> {
         RANGES.into_iter().zip(self.counts).collect()
     }
 }
 
 impl Board {
-    /// Takes what was told at a moment: seconds since 1970.
+    /// Applies an event; `now` is in seconds since 1970.
     pub fn take(&mut self, event: &Event, now: f64) {
         match event {
             Event::Appeared(robot) => {
@@ -113,18 +113,18 @@ impl Board {
 }
 
 impl Seen {
-    /// The line of the latest look, if it is there and tells how the robot is.
+    /// Overview of the newest sample, if the robot is reachable.
     pub fn line(&self) -> Option<&OverviewReport> {
         self.look.as_ref().map(|look| &look.sample.line).filter(|line| line.state.reachable)
     }
 
-    /// The axes of the latest look that are measured in `unit`, each with a label that no other one has.
+    /// Axes measured in `unit`, each with a unique label.
     pub fn axes(&self, unit: &str) -> Vec<(String, &Axis)> {
         let whole = self.look.as_ref().and_then(|look| look.sample.whole.as_ref());
         let mut named: Vec<(String, &Axis)> = Vec::new();
         for axis in whole.into_iter().flat_map(|whole| &whole.axes).filter(|axis| axis.unit == unit) {
             let mut name = axis.name.clone();
-            // A controller names its axes as somebody has set it: twice the same would spoil the whole page.
+            // Axis names come from the controller. A duplicate label would make the whole page invalid.
             while named.iter().any(|(known, _)| *known == name) {
                 name.push('\'');
             }

@@ -1,5 +1,5 @@
-//! The metrics: name, kind, unit, what they say, and where that is found. There is no second list;
-//! `docs/monitoring/README.md` explains each, and a test compares both.
+//! Catalogue of the metrics: name, type, unit, help text, source of the value. `docs/monitoring/README.md` explains
+//! each; a test compares both.
 
 use super::board::{Board, Seen};
 use super::page::{Form, Kind, Page, Samples, labels};
@@ -7,15 +7,15 @@ use crate::controller::units::{DEGREE, MILLIMETRE, PULSE};
 
 /// A metric.
 pub struct Metric {
-    /// Its name, without `_total` and `_info`.
+    /// Name without `_total` or `_info`.
     pub name: &'static str,
-    /// What it is.
+    /// Metric type.
     pub kind: Kind,
-    /// The ending of its name that is its unit; empty where it has none.
+    /// Unit suffix of the name; empty without a unit.
     pub unit: &'static str,
-    /// In a sentence.
+    /// Help text.
     pub help: &'static str,
-    /// Writes its samples.
+    /// Writes the samples.
     read: fn(&Board, &mut Samples<'_>),
 }
 
@@ -31,7 +31,7 @@ const fn metric(
 
 use Kind::{Counter, Gauge, Histogram, Info};
 
-/// All of them, in the order of a page.
+/// All metrics in the order of the page.
 #[rustfmt::skip]
 pub const METRICS: &[Metric] = &[
     metric("armctl_build", Info, "", "The armctl that serves this.", |_, samples| {
@@ -58,7 +58,7 @@ pub const METRICS: &[Metric] = &[
         faults),
     metric("armctl_robot_mode", Info, "", "Who moves the robot: manual or automatic.", modes),
     metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
-        // As divided, and not as multiplied by 0.001: 0.1025 stays what it is.
+        // Divide instead of multiplying by 0.001, so that 0.1025 is not rounded.
         |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
     metric("armctl_axis_position_degrees", Gauge, "degrees", "Position of a rotation.",
         |board, samples| axes(board, samples, DEGREE.symbol, 1.0)),
@@ -92,7 +92,7 @@ pub const METRICS: &[Metric] = &[
         |board, samples| each(board, samples, |seen| Some(seen.traffic.disturbances))),
 ];
 
-/// All metrics as text.
+/// Page with all metrics.
 pub fn page(board: &Board, form: Form) -> String {
     let mut page = Page::new(form);
     for Metric { name, kind, unit, help, read } in METRICS {
@@ -105,7 +105,7 @@ fn flag(is_so: Option<bool>) -> Option<u8> {
     is_so.map(u8::from)
 }
 
-/// A sample of each robot of which the value is known.
+/// Writes a sample for each robot with a known value.
 fn each<V: std::fmt::Display>(board: &Board, samples: &mut Samples<'_>, value: impl Fn(&Seen) -> Option<V>) {
     for seen in board.robots.values() {
         if let Some(value) = value(seen) {

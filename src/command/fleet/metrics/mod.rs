@@ -1,10 +1,10 @@
-//! `armctl serve metrics`: what is known of the robots, for Prometheus and whatever else reads its text.
+//! `armctl serve metrics`: exporter for Prometheus and compatible readers.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
 //! | `catalogue` | the metrics |
-//! | `board` | what is known of the robots |
-//! | `page` | metrics as text, in two forms |
+//! | `board` | data of the robots |
+//! | `page` | text in both exposition formats |
 
 mod board;
 mod catalogue;
@@ -49,9 +49,9 @@ pub struct Metrics {
     listen: SocketAddr,
 }
 
-/// Where exporters of this kind are looked for.
+/// Default address. The port is one of the usual exporter ports.
 const USUAL: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9464);
-/// Time from look to look, unless it is told; and the least one.
+/// Default and minimum polling interval.
 const EVERY: Duration = Duration::from_secs(1);
 const LEAST: Duration = Duration::from_millis(50);
 
@@ -74,12 +74,12 @@ impl Report for Listening {
 }
 
 impl Metrics {
-    /// Does it.
+    /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
         let service = Service::begin(run.screen)?;
-        // What links have to say is told where it is news, and not by each of them.
+        // Links do not print their own messages; the service reports changes.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let robots = poll.robots().len();
         let server = Server::bind(self.listen).await.map_err(|error| cannot_listen(self.listen, &error))?;
@@ -112,12 +112,12 @@ impl Metrics {
         let _in_time = timeout(END, polled).await;
         match ended {
             Ok(ended) => Ok(ended?),
-            // This is how one ends a server.
+            // Ctrl-C or SIGTERM is the normal end of a server.
             Err(_) => Ok(()),
         }
     }
 
-    /// Says what a port means that others reach.
+    /// Warns if the address is reachable from the network.
     fn warn(&self, service: &Service) {
         if !self.listen.ip().is_loopback() {
             let text = "others on the network can read where these robots are and what is wrong with them; there is no \
@@ -127,7 +127,7 @@ impl Metrics {
     }
 }
 
-/// Takes what is told of the robots.
+/// Applies the events of the poller.
 async fn listen(events: &mut Subscription, service: &Service, board: &RefCell<Board>) {
     while let Some(event) = events.next().await {
         service.note(&event);
@@ -151,7 +151,7 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
     }
 }
 
-/// Refuses what has no meaning here.
+/// Rejects options that make no sense here.
 fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
@@ -166,7 +166,7 @@ fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     Ok(())
 }
 
-/// An address with a port, or without one.
+/// Parses an address with or without a port.
 fn address(text: &str) -> Result<SocketAddr, String> {
     let address = text.parse().or_else(|_| text.parse::<IpAddr>().map(|ip| SocketAddr::new(ip, USUAL.port())));
     address.map_err(|_| format!("'{text}' is not a valid address, such as {USUAL}"))

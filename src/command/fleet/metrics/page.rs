@@ -1,36 +1,36 @@
-//! Metrics as text, in either of the forms that are read: OpenMetrics 1.0.0 and the older one of Prometheus, 0.0.4.
+//! Encoder for both exposition formats: OpenMetrics 1.0.0, and the Prometheus text format 0.0.4.
 
 use std::fmt::{Display, Write as _};
 
 use crate::output::escape;
 
-/// A form of the text.
+/// Exposition format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// OpenMetrics 1.0.0.
     OpenMetrics,
-    /// The text format of Prometheus, 0.0.4.
+    /// Prometheus text format 0.0.4.
     Text,
 }
 
-/// What a metric is.
+/// Metric type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Goes up and down.
+    /// A value that can rise and fall.
     Gauge,
-    /// Only goes up; its samples end in `_total`.
+    /// A value that only rises; its samples end in `_total`.
     Counter,
-    /// Is 1, and says something in its labels; its samples end in `_info`.
+    /// Constant 1 with information in labels; its samples end in `_info`.
     Info,
-    /// How often a value was in each of some ranges.
+    /// A histogram.
     Histogram,
 }
 
-/// Longest value of a label, in characters.
+/// Longest label value, in characters.
 const LONGEST: usize = 120;
 
 impl Form {
-    /// The one that a reader wants who sends this `Accept`; the older one where he does not say.
+    /// Selects the format for an `Accept` header; the text format by default.
     pub fn wanted(accept: Option<&str>) -> Self {
         let mut best = [0.0_f64; 2];
         for wanted in accept.unwrap_or_default().split(',') {
@@ -52,7 +52,7 @@ impl Form {
         if open > 0.0 && open >= text { Self::OpenMetrics } else { Self::Text }
     }
 
-    /// As an answer says which it is.
+    /// `Content-Type` of the format.
     pub fn content_type(self) -> &'static str {
         match self {
             Self::OpenMetrics => "application/openmetrics-text; version=1.0.0; charset=utf-8",
@@ -61,7 +61,7 @@ impl Form {
     }
 }
 
-/// The text, as far as it is written.
+/// Text of a page.
 #[derive(Debug)]
 pub struct Page {
     form: Form,
@@ -69,12 +69,12 @@ pub struct Page {
 }
 
 impl Page {
-    /// An empty one.
+    /// An empty page.
     pub fn new(form: Form) -> Self {
         Self { form, text: String::new() }
     }
 
-    /// Writes a metric with its samples; nothing of one that has none. `name` has no ending but that of its unit.
+    /// Writes a metric with its samples, or nothing if it has none. `name` has only its unit suffix.
     pub fn metric(&mut self, name: &str, kind: Kind, unit: &str, help: &str, samples: impl FnOnce(&mut Samples<'_>)) {
         let ending = match kind {
             Kind::Counter => "_total",
@@ -102,7 +102,7 @@ impl Page {
         }
     }
 
-    /// The whole text.
+    /// Completes the text.
     pub fn end(mut self) -> String {
         if self.form == Form::OpenMetrics {
             self.text.push_str("# EOF\n");
@@ -111,12 +111,12 @@ impl Page {
     }
 
     fn line(&mut self, line: impl Display) {
-        // A text in memory takes all that is written.
+        // Writing to a string cannot fail.
         let _never_fails = writeln!(self.text, "{line}");
     }
 }
 
-/// The samples of a metric, as far as they are written.
+/// Writer for the samples of a metric.
 #[derive(Debug)]
 pub struct Samples<'a> {
     page: &'a mut Page,
@@ -125,18 +125,18 @@ pub struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// A sample; `labels` are as [`labels`] writes them.
+    /// Writes a sample; `labels` are encoded by [`labels`].
     pub fn put(&mut self, labels: &str, value: impl Display) {
         let (name, ending) = (self.name, self.ending);
         self.page.line(format_args!("{name}{ending}{} {value}", braced(labels)));
     }
 
-    /// A histogram: up to which value, how often altogether up to there; the sum of all values, and their number.
+    /// Writes a histogram: cumulative counts with upper limits, sum of all values, number of values.
     pub fn histogram(&mut self, labels: &str, buckets: &[(f64, u64)], sum: f64, count: u64) {
         let name = self.name;
         let comma = if labels.is_empty() { "" } else { "," };
         for (up_to, count) in buckets {
-            // Both forms read `1.0`, and OpenMetrics nothing else.
+            // Both formats accept `1.0`, and OpenMetrics requires it.
             self.page.line(format_args!("{name}_bucket{{{labels}{comma}le=\"{up_to:?}\"}} {count}"));
         }
         self.page.line(format_args!("{name}_bucket{{{labels}{comma}le=\"+Inf\"}} {count}"));
@@ -149,7 +149,7 @@ fn braced(labels: &str) -> String {
     if labels.is_empty() { String::new() } else { format!("{{{labels}}}") }
 }
 
-/// Labels as they stand between braces; `first` are some that are written already.
+/// Encodes labels; `first` are already encoded labels.
 pub fn labels(first: &str, more: &[(&str, &str)]) -> String {
     let mut all = first.to_owned();
     for (name, value) in more {
@@ -159,7 +159,7 @@ pub fn labels(first: &str, more: &[(&str, &str)]) -> String {
     all
 }
 
-/// The value of a label: harmless, bounded, and with what the form escapes.
+/// Escapes and shortens a label value.
 fn escaped(value: &str) -> String {
     let value: String = value.chars().take(LONGEST).collect();
     escape::line(&value).replace('\\', "\\\\").replace('"', "\\\"")
@@ -180,7 +180,7 @@ mod tests {
             (Some("application/openmetrics-text; version=0.0.1"), Form::Text),
             (Some("application/openmetrics-text;version=1.0.0;q=0"), Form::Text),
             (Some("text/plain;version=0.0.4;q=0.9,application/openmetrics-text;q=0.3"), Form::Text),
-            // Prometheus 2 and 3.
+            // The headers of Prometheus 2 and 3.
             (
                 Some(
                     "application/openmetrics-text;version=1.0.0,application/openmetrics-text;version=0.0.1;q=0.75,\

@@ -1,4 +1,4 @@
-//! What a board makes of what it is told.
+//! Tests of the metrics, from events to the page.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -36,7 +36,7 @@ fn told(events: &[Event]) -> Board {
     board
 }
 
-/// The samples of a metric, by the beginning of their lines.
+/// Samples of a metric, by the start of their lines.
 fn samples(board: &Board, name: &str) -> Vec<String> {
     let page = page(board, Form::Text);
     let is_of = |line: &&str| line.strip_prefix(name).is_some_and(|rest| rest.starts_with(['{', ' ']));
@@ -146,7 +146,7 @@ fn an_inventory_that_is_broken_is_told() {
     assert_eq!(samples(&mended, "armctl_inventory_last_reload_successful"), [" 1"]);
 }
 
-/// What `docs/monitoring/README.md` promises.
+/// The limit that `docs/monitoring/README.md` states.
 #[test]
 fn a_robot_has_no_more_series_than_is_promised() {
     let robots = robots(3);

@@ -1,4 +1,4 @@
-//! Command lines that only read, asked along with the looks at the robots of their family: `yerc var get B0..B9`.
+//! Extra read commands of consumers, which run with each poll of a robot: `yerc var get B0..B9`.
 
 use std::any::TypeId;
 use std::fmt;
@@ -18,27 +18,26 @@ use crate::failure::Failure;
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
-/// Such a line. Two with the same text are the same.
+/// An extra command. Two with the same text are the same.
 pub struct Extra {
     text: Arc<str>,
     family: Family,
-    /// With any addresses in place of names, where there are some in it.
+    /// Parsed command. If the text contains names, they have placeholder addresses here.
     command: Box<dyn AnyCommand>,
-    /// Whether names stand for addresses in it: each robot has its own.
+    /// Whether the text contains names. Names stand for different addresses on each robot.
     is_named: bool,
 }
 
-/// The command that a line is, or why it is none.
+/// A parsed command, or the error.
 pub type Read = Result<Box<dyn AnyCommand>, Failure>;
 
-/// What gives an idea of a line that is none.
 const EXAMPLE: &str = "such as 'yerc var get B0..B9' or 'toyo counter get'";
 
 impl Extra {
-    /// Reads a line; its first word is the family.
+    /// Parses a command; its first word is the family.
     ///
     /// # Errors
-    /// It is no command, or one that does more than read, or none that has an end.
+    /// The text is not a command, does more than read, or does not end by itself.
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let wrong = |why: &str, hint: &str| Err(wrong(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has a quote without an end", EXAMPLE) };
@@ -65,23 +64,23 @@ impl Extra {
         Ok(Self { text: text.into(), family, command, is_named })
     }
 
-    /// What it is for one robot, where names in it stand for addresses; nothing where it is the same for all.
+    /// The command for one robot if it contains names; `None` if it is the same for all robots.
     pub fn of(&self, robot: &Robot) -> Option<Read> {
         let words = shlex::split(&self.text).filter(|_| self.is_named)?;
         Some(names::known(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
     }
 
-    /// As it was typed.
+    /// The text, as typed.
     pub fn text(&self) -> &Arc<str> {
         &self.text
     }
 
-    /// The family whose robots are asked.
+    /// Family of the robots.
     pub fn family(&self) -> Family {
         self.family
     }
 
-    /// What it is, without its type.
+    /// The command.
     pub fn command(&self) -> &dyn AnyCommand {
         &*self.command
     }
@@ -95,7 +94,7 @@ fn takes_files(text: &str) -> Failure {
     wrong(text, "is about a file or folder of this machine", "choose a command that reads the robot alone")
 }
 
-/// The command that words are, the first of them its family.
+/// Parses words into a command; the first word is the family.
 fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
@@ -126,8 +125,8 @@ impl fmt::Debug for Extra {
     }
 }
 
-/// Whether a path was given to the command, or to one below it, or one is meant where none is given: a file would be read or
-/// written again and again.
+/// Whether the command or one of its subcommands uses a path, typed or by default. A file would be read or written
+/// again and again.
 fn takes_file(command: &clap::Command, matches: &ArgMatches) -> bool {
     let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
     let is_given = |arg: &Arg| {
@@ -170,7 +169,7 @@ mod tests {
             ("yrcx diff", "is about a file or folder"),
             ("yerc file get A.JBI", "is about a file or folder"),
             ("yrcx backup x", "is about a file or folder"),
-            ("toyo point list --csv x.csv", "is about a file or folder"),
+            ("toyo point dump x.csv", "is about a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

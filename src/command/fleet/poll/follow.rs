@@ -1,4 +1,4 @@
-//! Looks at one robot again and again, at its own pace.
+//! Polling loop of one robot.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -21,35 +21,35 @@ use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Who looks at a robot.
+/// Polling task of one robot.
 pub(super) struct Follower {
     pub robot: Arc<Robot>,
     pub screen: Screen,
-    /// How much later than others it begins.
+    /// Start delay, to spread the robots over the interval.
     pub delay: Duration,
     pub wants: watch::Receiver<Wants>,
     pub stopped: watch::Receiver<bool>,
     pub tell: Teller,
-    /// What is asked along with looks, as it is for this robot: by its text.
+    /// Extra commands of this robot by their text.
     pub asked: HashMap<Arc<str>, Option<Read>>,
 }
 
-/// How long a robot that failed is left alone at first, unless looks are further apart.
+/// First backoff after a failure, unless the interval is longer.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Time between two looks for a session that was opened meanwhile.
+/// Interval of the check for a new session.
 const SESSIONS: Duration = Duration::from_secs(5);
 
-/// Why looks through a link have ended.
+/// Reason for the end of polling through a link.
 enum Ended {
-    /// It is over.
+    /// The task is stopped.
     Over,
-    /// A session holds the link to the robot by now, and the looks shall go through it; or it does no more.
+    /// A session has opened and must be used, or a used session has closed.
     Session,
-    /// No answer, or none that makes sense.
+    /// The robot does not answer, or its answer is not valid.
     Failed(Failure, Traffic),
 }
 
-/// Looks at a robot until it is over.
+/// Polls a robot until it is stopped.
 pub(super) async fn follow(mut follower: Follower) {
     let mut start = Instant::now() + follower.delay;
     let mut pauses = Pauses::default();
@@ -73,7 +73,7 @@ pub(super) async fn follow(mut follower: Follower) {
             Err(failure) => Ended::Failed(failure, Traffic::default()),
             Ok(mut link) => {
                 let ended = follower.look_on(&mut link, &mut pauses).await;
-                // Nothing was changed: how the end of it went is nobody's concern.
+                // Polling changes nothing, so an error of the close does not matter.
                 let _closed = timeout(LEAVE_WITHIN, link.watch.close(&follower.screen)).await;
                 ended
             }
@@ -95,16 +95,16 @@ pub(super) async fn follow(mut follower: Follower) {
     }
 }
 
-/// A link to a robot, and whether it is that of a session.
+/// A link to a robot, directly or through a session.
 struct Link {
     watch: Box<dyn Watch>,
     is_shared: bool,
-    /// What was told of what was counted on it.
+    /// Counters that were already reported.
     counted: Traffic,
 }
 
 impl Link {
-    /// What was counted since this was asked last.
+    /// Traffic since the last call.
     fn traffic(&mut self) -> Traffic {
         let now = self.watch.traffic();
         now.since(std::mem::replace(&mut self.counted, now))
@@ -112,7 +112,7 @@ impl Link {
 }
 
 impl Follower {
-    /// Looks until something fails, or it is over.
+    /// Polls until a failure or until it is stopped.
     async fn look_on(&mut self, link: &mut Link, pauses: &mut Pauses) -> Ended {
         let id = RobotId::of(&self.robot);
         let mut stopped = self.stopped.clone();
@@ -133,7 +133,7 @@ impl Follower {
                     let look = Look { took: began.elapsed(), missed, traffic: link.traffic(), ..look };
                     self.tell.tell(Event::Looked(Arc::new(look))).await;
                 }
-                // Whoever held the link has ended, which says nothing of the robot.
+                // The session has closed, which is not a failure of the robot.
                 Err(_) if link.is_shared && !is_held(&self.robot) => return Ended::Session,
                 Err(failure) => return Ended::Failed(failure, link.traffic()),
             }
@@ -145,9 +145,9 @@ impl Follower {
                 }
             }
             let mut next = ticks.next(now);
-            // The look was late from one moment to the next: how many of them it has taken.
+            // The poll took longer than the interval: count the missed ticks.
             missed = ticks.between(began, next);
-            // Waits for the next look; one that is wanted in greater detail comes at once.
+            // Waits for the next tick. A new wish for more detail is served at once.
             loop {
                 tokio::select! {
                     biased;
@@ -173,7 +173,7 @@ impl Follower {
         }
     }
 
-    /// Looks once, and asks what is asked along with it.
+    /// Polls once, and runs the extra commands.
     async fn look(&mut self, link: &mut Link, id: &RobotId, wants: &Wants) -> Result<Look, Failure> {
         let robot = Arc::clone(&self.robot);
         let mut sample = link.watch.look(wants.detail(id)).await?;
@@ -181,7 +181,7 @@ impl Follower {
         let mut extras = Vec::new();
         for extra in wants.extras(id) {
             match self.ask(link, extra).await {
-                // The line has failed, and not what was asked.
+                // The link has failed, not the command.
                 Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
                 told => extras.push((Arc::clone(extra.text()), told)),
             }
@@ -190,7 +190,7 @@ impl Follower {
         Ok(Look { through_session, extras, unexplained, ..Look::new(robot, sample) })
     }
 
-    /// Asks what a command line asks, unless that takes a connection which the controller would miss.
+    /// Runs an extra command, unless it needs a connection whose end would affect the controller.
     async fn ask(&mut self, link: &mut Link, extra: &Extra) -> Result<Value, Failure> {
         let own = self.asked.entry(Arc::clone(extra.text())).or_insert_with(|| extra.of(&self.robot));
         let command = match own {
@@ -208,7 +208,7 @@ impl Follower {
     }
 }
 
-/// How long a robot that fails is left alone: twice as long each time, up to a bound.
+/// Backoff of a robot that fails; doubles each time up to a limit.
 #[derive(Debug, Default)]
 struct Pauses {
     last: Option<Duration>,
@@ -226,7 +226,7 @@ impl Pauses {
     }
 }
 
-/// Moments at equal distances from the first one, whatever happens between them.
+/// Ticks at a fixed interval without drift.
 #[derive(Debug)]
 struct Ticks {
     first: Instant,
@@ -238,7 +238,7 @@ impl Ticks {
         Self { first, every }
     }
 
-    /// The next one after `now`; those that were missed are left out.
+    /// Next tick after `now`; missed ticks are omitted.
     fn next(&mut self, now: Instant) -> Instant {
         let since = now.saturating_duration_since(self.first);
         let every = self.every.as_nanos().max(1);
@@ -246,7 +246,7 @@ impl Ticks {
         now + Duration::from_nanos(u64::try_from(rest).unwrap_or(u64::MAX))
     }
 
-    /// How many there are between two moments, neither of them counted.
+    /// Number of ticks between two times, both excluded.
     fn between(&self, from: Instant, to: Instant) -> u64 {
         let every = self.every.as_nanos().max(1);
         let whole = |moment: Instant| moment.saturating_duration_since(self.first).as_nanos() / every;

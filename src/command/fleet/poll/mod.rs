@@ -1,18 +1,17 @@
-//! The one poller: looks at robots of any family again and again, and tells whoever wants to know.
+//! The poller: polls robots of any family, and sends events to its consumers.
 //!
-//! [`Poll`] is told by its consumers what they want ([`Wish`]) and hands out a stream of [`Event`]s to each. A robot is
-//! asked once per interval, however many consumers there are, with all that any of them wants. Robots are followed side
-//! by side, each at its own pace: one that is slow or gone holds up no other.
+//! Consumers declare what they need with a [`Wish`], and receive a stream of [`Event`]s. A robot is polled once per
+//! interval for all consumers together. Each robot has its own task, so a slow robot does not delay the others.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `follow` | looks at one robot: its moments, its pauses while it fails, its session |
-//! | `roster` | which robots there are, as the inventory changes |
-//! | `wish` | what consumers want, and what all of them want together |
-//! | `extra` | command lines that only read, asked along with a look |
+//! | `follow` | polling loop of one robot: ticks, backoff, session |
+//! | `roster` | list of robots, updated from the inventory |
+//! | `wish` | needs of the consumers, and their sum |
+//! | `extra` | extra read commands with each poll |
 //!
-//! Only reads leave, through connections that look ([`ConnectMode::Monitor`](crate::command::ConnectMode)): to a YRCX no
-//! connection is opened that commands, and where a session holds the link the looks go through it.
+//! The poller only reads, through links in [`ConnectMode::Monitor`](crate::command::ConnectMode). It opens no control
+//! connection to a YRCX. If a session has the link, it polls through the session.
 
 mod extra;
 mod follow;
@@ -46,71 +45,72 @@ use crate::output::Screen;
 use crate::settings::target::Family;
 use crate::settings::{Robot, Sources};
 
-/// What tells a robot from all others that are polled: the simulators of several families share a name.
+/// Unique id of a polled robot. The name is not enough: simulators of several families have the same name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RobotId {
-    /// Its name in the inventory, or a short form of its target.
+    /// Name in the inventory, or a short form of the target.
     pub name: String,
-    /// Its family.
+    /// Family.
     pub family: Family,
 }
 
 impl RobotId {
-    /// That of a robot.
+    /// Id of a robot.
     pub fn of(robot: &Robot) -> Self {
         Self { name: robot.name.clone(), family: robot.family }
     }
 }
 
-/// What a consumer is told.
+/// Event for consumers.
 #[derive(Debug, Clone)]
 pub enum Event {
-    /// A robot is looked at from now on. Comes before all else about it; again, after [`Event::Gone`], when its entry has
-    /// changed.
+    /// Polling of a robot starts. It is the first event of the robot. After a change of its entry, it comes again,
+    /// following [`Event::Gone`].
     Appeared(Arc<Robot>),
-    /// It was looked at.
+    /// A poll succeeded.
     Looked(Arc<Look>),
-    /// It did not answer, or not as it should.
+    /// A poll failed: no answer, or an invalid one.
     Failed {
-        /// Which.
+        /// The robot.
         robot: Arc<Robot>,
-        /// Why.
+        /// The failure.
         failure: Failure,
-        /// How long it is left alone now.
+        /// Backoff until the next poll.
         pause: Duration,
-        /// What was counted on its link since it was told of last.
+        /// Traffic on the link since the last event.
         traffic: Traffic,
     },
-    /// It is looked at no more: the inventory has it no more, or has it changed. Nothing follows about it.
+    /// Polling of a robot has ended, because its inventory entry was removed or changed. It is the last event of the
+    /// robot.
     Gone(Arc<Robot>),
-    /// The inventory has changed, and counts; or it cannot be read, and what it said before goes on to count. Each change
-    /// is told once.
+    /// The inventory has changed and is in use; or it cannot be read, and the previous one stays in use. Each change is
+    /// reported once.
     Inventory(Result<(), Failure>),
 }
 
-/// What a look came to.
+/// Result of a successful poll.
 #[derive(Debug)]
 pub struct Look {
-    /// At which robot.
+    /// The robot.
     pub robot: Arc<Robot>,
-    /// What was found.
+    /// The data.
     pub sample: Sample,
-    /// How long it took, from the first question to the last answer.
+    /// Duration from the first request to the last answer.
     pub took: Duration,
-    /// Looks that were left out since the last one, because that took longer than an interval.
+    /// Polls omitted before this one, because the previous one took longer than the interval.
     pub missed: u64,
     /// Whether it went through a session.
     pub through_session: bool,
-    /// What was counted on its link since it was told of last.
+    /// Traffic on the link since the last event.
     pub traffic: Traffic,
-    /// What the command lines that were wished for this family told, with each its text as it was wished.
+    /// Results of the extra commands, each with its text.
     pub extras: Vec<(Arc<str>, Result<Value, Failure>)>,
-    /// Why the fault could not be explained with `alarms.toml`, where that is so.
+    /// Error of `alarms.toml`, if the fault could not be explained because of it.
     pub unexplained: Option<Failure>,
 }
 
 impl Look {
-    /// One that found this, and nothing besides.
+    /// A result with this data only.
     pub fn new(robot: Arc<Robot>, sample: Sample) -> Self {
         Self {
             robot,
@@ -125,7 +125,7 @@ impl Look {
     }
 }
 
-/// What a consumer holds of a [`Poll`]. When all of them are dropped, the poll ends.
+/// Subscription of a consumer. The poller stops when all are dropped.
 #[derive(Debug)]
 pub struct Subscription {
     events: mpsc::Receiver<Event>,
@@ -133,12 +133,12 @@ pub struct Subscription {
 }
 
 impl Subscription {
-    /// The next event; `None` when the poll is no longer run. May be dropped while it waits.
+    /// Waits for the next event; `None` after the poller has stopped. Cancel safe.
     pub async fn next(&mut self) -> Option<Event> {
         self.events.recv().await
     }
 
-    /// Wants something else from now on.
+    /// Replaces the wish.
     pub fn wish(&self, wish: Wish) {
         self.wish.send_if_modified(|last| {
             let is_new = *last != wish;
@@ -148,37 +148,38 @@ impl Subscription {
     }
 }
 
-/// Events that wait to be taken by one consumer; further ones wait with their robots.
+/// Queue size per consumer. When it is full, the polling tasks wait.
 const EVENTS: usize = 64;
-/// How long links may take to close.
+/// Time limit for closing links.
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
-/// Robots that are looked at again and again while [`Poll::run`] is awaited.
+/// The poller. It runs while [`Poll::run`] is awaited.
 #[derive(Debug)]
 pub struct Poll {
     roster: Roster,
-    /// What links have to say while they are opened, where anybody wants to hear that.
+    /// Screen for messages of links while they open.
     screen: Screen,
     consumers: Vec<(watch::Receiver<Wish>, mpsc::Sender<Event>)>,
 }
 
 impl Poll {
-    /// The robots that flags, environment and inventory name, at least one; those of the inventory as it changes.
+    /// Creates a poller for the robots that flags, environment and inventory select; at least one. It follows changes
+    /// of the inventory.
     pub fn new(sources: &Sources, screen: Screen) -> Result<Self, Failure> {
         Ok(Self { roster: Roster::new(sources.clone())?, screen, consumers: Vec::new() })
     }
 
-    /// This robot alone, as it is.
+    /// Creates a poller for one fixed robot.
     pub fn of(robot: Robot, screen: Screen) -> Self {
         Self { roster: Roster::fixed(vec![robot]), screen, consumers: Vec::new() }
     }
 
-    /// The robots that it begins with.
+    /// The robots at the start.
     pub fn robots(&self) -> &[Robot] {
         self.roster.robots()
     }
 
-    /// One more who wants to know.
+    /// Adds a consumer.
     pub fn subscribe(&mut self, wish: Wish) -> Subscription {
         let (wish, wishes) = watch::channel(wish);
         let (tell, events) = mpsc::channel(EVENTS);
@@ -186,7 +187,7 @@ impl Poll {
         Subscription { events, wish }
     }
 
-    /// Looks, until every [`Subscription`] is dropped; then leaves the links properly, for which nobody waits long.
+    /// Polls until every [`Subscription`] is dropped; then closes the links, within a time limit.
     pub async fn run(self) {
         let Self { roster, screen, consumers } = self;
         let (mut wishes, tellers): (Vec<_>, Vec<_>) = consumers.into_iter().unzip();
@@ -219,20 +220,20 @@ impl Poll {
     }
 }
 
-/// Tells all consumers.
+/// Sends events to all consumers.
 #[derive(Debug, Clone)]
 struct Teller(Rc<[mpsc::Sender<Event>]>);
 
 impl Teller {
     async fn tell(&self, event: Event) {
         for consumer in &*self.0 {
-            // One that is gone wants to know no more; when all are, the poll ends.
+            // A consumer can be gone. When all are gone, the poller stops.
             let _gone = consumer.send(event.clone()).await;
         }
     }
 }
 
-/// Waits until a wish has changed; those of consumers that are gone go, too.
+/// Waits for a changed wish. Removes the wishes of consumers that are gone.
 async fn changed(wishes: &mut Vec<watch::Receiver<Wish>>) {
     if wishes.is_empty() {
         return;
@@ -243,7 +244,7 @@ async fn changed(wishes: &mut Vec<watch::Receiver<Wish>>) {
     }
 }
 
-/// The robots that are looked at, and who looks.
+/// The polled robots with their tasks.
 struct Fleet {
     roster: Roster,
     screen: Screen,
@@ -253,18 +254,17 @@ struct Fleet {
     followers: FuturesUnordered<LocalBoxFuture<'static, RobotId>>,
 }
 
-/// A robot that is looked at.
 struct Active {
-    /// As the inventory has it.
+    /// The robot of the inventory.
     given: Robot,
     robot: Arc<Robot>,
-    /// Says when it is over; nothing once that was said.
+    /// Stops the task; `None` after the stop.
     stop: Option<watch::Sender<bool>>,
 }
 
 impl Fleet {
-    /// Has those looked at that are on the roster, and no others. A robot that is new waits until those that go have let
-    /// go of their links: it may be the same controller under another name.
+    /// Starts and stops tasks to match the roster. A new robot waits until the removed ones have closed their links,
+    /// because it can be the same controller with another name.
     async fn settle(&mut self, is_start: bool) {
         let wanted: BTreeMap<RobotId, &Robot> =
             self.roster.robots().iter().map(|robot| (RobotId::of(robot), robot)).collect();
@@ -285,7 +285,7 @@ impl Fleet {
             .filter(|robot| !self.active.contains_key(&RobotId::of(robot)))
             .cloned()
             .collect();
-        // Not all at the same moment; as each keeps to its own moments from then on, it stays so.
+        // Spread the robots over the interval. Ticks have no drift, so they stay spread.
         let share = self.wants.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
         for (at, given) in (0_u32..).zip(new) {
             let id = RobotId::of(&given);
@@ -312,7 +312,6 @@ impl Fleet {
         }
     }
 
-    /// One is looked at no more.
     async fn ended(&mut self, id: &RobotId) {
         if let Some(active) = self.active.remove(id) {
             self.tell.tell(Event::Gone(active.robot)).await;
@@ -331,10 +330,10 @@ impl Fleet {
     }
 }
 
-/// Ends when somebody says that it is over, or nobody can say so any more.
+/// Waits until the task is stopped.
 async fn over(stopped: &mut watch::Receiver<bool>) {
     if stopped.wait_for(|is_over| *is_over).await.is_err() {
-        // Whoever waits here is dropped with who could have said so.
+        // The sender was dropped, so this task is dropped as well.
         pending::<()>().await;
     }
 }

@@ -1,4 +1,4 @@
-//! Which robots there are: those that were named, as the inventory says them now.
+//! Roster: the selected robots, updated from the inventory.
 
 use std::future::pending;
 use std::path::{Path, PathBuf};
@@ -12,27 +12,26 @@ use crate::failure::Failure;
 use crate::settings::inventory::{Inventory, Location};
 use crate::settings::{Robot, Sources};
 
-/// Time between two looks at the file. One that has changed is read when it was the same twice: then nobody is still
-/// writing it.
+/// Interval of the file check. A changed file is read after two equal checks, so that it is complete.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// The robots, and where they come from.
+/// Robots to poll: fixed, or read again when their inventory file changes.
 #[derive(Debug)]
 pub(super) struct Roster {
     robots: Vec<Robot>,
     sources: Option<Sources>,
-    /// The inventory that is followed; nothing where the robots stay as they are.
+    /// Inventory file to follow; `None` if the robots are fixed.
     file: Option<PathBuf>,
-    /// How the file was when it was read, and when it was looked at last.
+    /// File state at the last read and at the last check.
     read: Option<Stamp>,
     seen: Option<Stamp>,
     next: Instant,
 }
 
 impl Roster {
-    /// Those that are named, at least one.
+    /// The selected robots; at least one.
     pub fn new(sources: Sources) -> Result<Self, Failure> {
-        // Before it is read, so that no change is missed.
+        // Before the file is read, so that no change is missed.
         let file = sources.inventory.path.as_deref().filter(|_| sources.follows_inventory());
         let file = file.map(Path::to_owned);
         let stamp = file.as_deref().and_then(Stamp::of);
@@ -40,28 +39,27 @@ impl Roster {
         Ok(Self { sources: Some(sources), file, read: stamp.clone(), seen: stamp, ..Self::fixed(robots) })
     }
 
-    /// These, whatever files say.
+    /// A fixed list of robots.
     pub fn fixed(robots: Vec<Robot>) -> Self {
         Self { robots, sources: None, file: None, read: None, seen: None, next: Instant::now() + LOOK }
     }
 
-    /// The robots now.
+    /// Current robots.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
     }
 
-    /// A robot with its other addresses, where a session may have been opened with one of them.
+    /// Adds other addresses of the robot, because a session can use one of them.
     pub fn identified(&self, robot: &Robot) -> Robot {
         let mut robot = robot.clone();
         if let Some(sources) = &self.sources {
-            // One that does not answer is looked at, and found to be silent, as it is.
+            // A robot that does not answer is polled without them, and the poll reports the failure.
             let _ = identify(sources, families::of(robot.family).driver(), &mut robot, false);
         }
         robot
     }
 
-    /// Waits until the file has changed, and reads it. When it cannot be read, the robots stay as they are. May be
-    /// dropped while it waits.
+    /// Waits until the file has changed, and reads it. After an error the robots stay the same. Cancel safe.
     pub async fn changed(&mut self) -> Result<(), Failure> {
         loop {
             let Some(path) = self.file.clone() else { return pending().await };
@@ -90,7 +88,7 @@ impl Roster {
     }
 }
 
-/// What tells that a file is not the one that was read.
+/// File state, to detect changes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Stamp {
     modified: Option<SystemTime>,
@@ -99,7 +97,7 @@ struct Stamp {
 }
 
 impl Stamp {
-    /// That of a file; nothing where there is none.
+    /// State of a file; `None` if it does not exist.
     fn of(path: &Path) -> Option<Self> {
         let found = std::fs::metadata(path).ok()?;
         #[cfg(unix)]

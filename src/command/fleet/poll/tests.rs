@@ -1,4 +1,4 @@
-//! The poller against simulators in this process, in virtual time.
+//! Tests of the poller with in-process simulators, in virtual time.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::settings::{Selection, Sources};
 
 const EVERY: Duration = Duration::from_millis(100);
 
-/// An inventory in a folder of its own.
+/// An inventory in a temporary folder.
 struct Plant {
     folder: TempDir,
 }
@@ -35,7 +35,7 @@ impl Plant {
         self.folder.path().join("robots.toml")
     }
 
-    /// Name, family and target of each robot. One that does not answer is asked once.
+    /// Writes name, family and target of each robot, without retries.
     fn write(&self, robots: &[(&str, &str, &str)]) {
         let entry = |(name, family, target): &(&str, &str, &str)| {
             format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\nretries = 0\n")
@@ -61,7 +61,7 @@ fn fleet() -> Plant {
     Plant::new(&[("a", "yerc", "sim:"), ("b", "yrcx", "sim:"), ("c", "toyo", "sim:")])
 }
 
-/// Runs a poll for one consumer, until `consume` has seen enough.
+/// Runs a poller for one consumer until `consume` returns.
 async fn watched<T>(mut poll: Poll, wish: Wish, consume: impl AsyncFnOnce(&mut Subscription) -> T) -> T {
     let mut events = poll.subscribe(wish);
     let consumed = async {
@@ -72,7 +72,7 @@ async fn watched<T>(mut poll: Poll, wish: Wish, consume: impl AsyncFnOnce(&mut S
     join(poll.run(), consumed).await.1
 }
 
-/// The names of what happens until `count` events are there, in order; looks only where they are wanted.
+/// Names of the next `count` events, with or without polls.
 async fn told(events: &mut Subscription, count: usize, looks: bool) -> Vec<String> {
     let mut all = Vec::new();
     while all.len() < count {
@@ -133,7 +133,7 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
         ("a", "yerc", "sim:"),
         ("b", "yrcx", "sim:"),
         ("c", "toyo", "sim:"),
-        // All that is sent to it is lost.
+        // All traffic to it is lost.
         ("d", "yerc", "sim:?fault=drop%3D100%25"),
     ]);
     let began = Instant::now();
@@ -143,7 +143,7 @@ async fn a_robot_that_is_gone_holds_up_no_other() {
             match events.next().await.expect("it goes on") {
                 Event::Looked(look) => {
                     *counts.entry(look.robot.name.clone()).or_insert(0_u128) += 1;
-                    // A YRCX in this process has no network.
+                    // An in-process YRCX has no network.
                     let Traffic { sent, received, disturbances } = look.traffic;
                     assert!((sent > 0 && sent == received) || look.robot.name == "b", "{look:?}");
                     assert_eq!(disturbances, 0, "{look:?}");
@@ -217,7 +217,7 @@ async fn who_wants_to_know_is_told_of_the_same_look_and_the_shortest_interval_co
         }
         let ten_looks = began.elapsed();
         assert!(ten_looks >= 9 * EVERY && ten_looks <= 11 * EVERY, "{ten_looks:?}");
-        // One goes, and the wish of the other one is left.
+        // One consumer is dropped, so only the other wish counts.
         drop(other);
         let mut last = BTreeMap::new();
         for _ in 0..12 {
@@ -289,10 +289,10 @@ async fn robots_come_and_go_as_the_inventory_says() {
     let plant = fleet();
     let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
         let mut all = told(events, 3, false).await;
-        // One goes, one comes, one is another one from now on.
+        // One robot is removed, one is added, one has changed.
         plant.write(&[("a", "yerc", "sim:"), ("c", "yerc", "sim:"), ("d", "toyo", "sim:")]);
         all.extend(told(events, 5, false).await);
-        // What cannot be read changes nothing, and is told once.
+        // A file that cannot be read changes nothing, and is reported once.
         plant.write_text("[[robot]]\nname = ");
         all.extend(told(events, 1, false).await);
         let later = Instant::now() + Duration::from_secs(10);
@@ -313,11 +313,11 @@ async fn robots_come_and_go_as_the_inventory_says() {
     let expected = "appeared a, appeared b, appeared c, inventory, gone c, gone b, appeared c, appeared d, \
                     inventory Usage, inventory, gone d, gone c, gone a, appeared a, inventory Usage, inventory, gone a, \
                     inventory, appeared e";
-    // Those that go do so side by side: in which order is no matter.
+    // Removals run in parallel, so their order varies.
     assert_eq!(sorted_runs(&told.join(", ")), sorted_runs(expected));
 }
 
-/// A list of what happened, in which what happened at once stands in the order of the letters.
+/// List of events in which simultaneous events are sorted.
 fn sorted_runs(told: &str) -> Vec<String> {
     let mut runs: Vec<Vec<&str>> = Vec::new();
     for event in told.split(", ").map(str::trim) {
@@ -338,7 +338,7 @@ async fn a_file_that_is_being_written_is_not_read() {
     let plant = fleet();
     let told = watched(plant.all(), Wish::every(EVERY), async |events: &mut Subscription| {
         let mut all = told(events, 3, false).await;
-        // Growing from one look at it to the next, as under an editor that is slow.
+        // The file grows between two checks, as with a slow editor.
         let mut text = String::new();
         for number in 0..10 {
             text += &format!("[[robot]]\nname = \"r{number}\"\nfamily = \"toyo\"\ntarget = \"sim:\"\n");

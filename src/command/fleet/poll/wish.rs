@@ -1,4 +1,4 @@
-//! What consumers want to know, and what has to be asked for all of them.
+//! Needs of the consumers, and their sum.
 
 use std::rc::Rc;
 use std::time::Duration;
@@ -8,24 +8,24 @@ use tokio::sync::watch;
 use super::{Extra, RobotId};
 use crate::command::face::sample::Detail;
 
-/// What a consumer wants to know, of all robots.
+/// Needs of one consumer, for all robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wish {
-    /// Time from look to look.
+    /// Polling interval.
     pub every: Duration,
-    /// How much of each robot.
+    /// Level of detail.
     pub detail: Detail,
-    /// The robot of which all is wanted, whatever `detail` says.
+    /// Robot that needs full detail, independent of `detail`.
     pub whole: Option<RobotId>,
-    /// Command lines that are asked along with each look.
+    /// Extra commands with each poll.
     pub extras: Rc<[Rc<Extra>]>,
-    /// The longest that a robot is left alone that does not answer. It begins with a second, or with `every` where that
-    /// is longer, and doubles.
+    /// Longest backoff of a robot that does not answer. The backoff starts with one second, or with `every` if that is
+    /// longer, and doubles.
     pub longest_pause: Duration,
 }
 
 impl Wish {
-    /// A line of each robot, so often.
+    /// Summary of each robot at this interval.
     pub fn every(every: Duration) -> Self {
         Self {
             every,
@@ -37,10 +37,10 @@ impl Wish {
     }
 }
 
-/// What has to be asked, so that all wishes are met.
+/// Sum of all wishes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Wants {
-    /// Time from look to look.
+    /// Polling interval.
     pub every: Duration,
     /// See [`Wish::longest_pause`].
     pub longest_pause: Duration,
@@ -49,11 +49,11 @@ pub(super) struct Wants {
     extras: Vec<Rc<Extra>>,
 }
 
-/// Time from look to look where nobody wants to know anything: a moment later all is over.
+/// Interval without a consumer; the poller is about to stop.
 const IDLE: Duration = Duration::from_secs(1);
 
 impl Wants {
-    /// What all of these want together.
+    /// Combines all wishes.
     pub fn of(wishes: &[watch::Receiver<Wish>]) -> Self {
         let idle =
             Self { every: IDLE, longest_pause: IDLE, detail: Detail::Summary, whole: Vec::new(), extras: Vec::new() };
@@ -71,12 +71,12 @@ impl Wants {
         self
     }
 
-    /// How much is wanted of a robot.
+    /// Level of detail for a robot.
     pub fn detail(&self, robot: &RobotId) -> Detail {
         if self.whole.contains(robot) { Detail::Full } else { self.detail }
     }
 
-    /// What is asked of it along with a look.
+    /// Extra commands for a robot.
     pub fn extras<'a>(&'a self, robot: &'a RobotId) -> impl Iterator<Item = &'a Rc<Extra>> {
         self.extras.iter().filter(|extra| extra.family() == robot.family)
     }

@@ -1,4 +1,4 @@
-//! Command lines whose answers are told, too: `yerc var get B0..B9`, or `parts=yerc var get B0..B9`.
+//! Extra commands of `--also`, whose results are published: `yerc var get B0..B9`, or `parts=yerc var get B0..B9`.
 
 use std::rc::Rc;
 
@@ -8,7 +8,7 @@ use crate::command::fleet::poll::Extra;
 use crate::failure::Failure;
 use crate::settings::target::Family;
 
-/// Such a line, and the level of the topics that it is told in.
+/// An extra command and its topic level.
 #[derive(Debug)]
 pub struct Also {
     level: String,
@@ -16,7 +16,7 @@ pub struct Also {
 }
 
 impl Also {
-    /// All lines. Each must read and nothing else, and have a level of its own.
+    /// Parses all lines. Each must only read, and have a unique level.
     pub fn all(lines: &[String]) -> Result<Rc<[Self]>, Failure> {
         let mut all: Vec<Self> = Vec::with_capacity(lines.len());
         for line in lines {
@@ -54,27 +54,27 @@ impl Also {
         Ok(Self { level, extra: Rc::new(extra) })
     }
 
-    /// The level of a topic, or the beginning of the names of metrics.
+    /// Topic level, or prefix of the metric names.
     pub fn level(&self) -> &str {
         &self.level
     }
 
-    /// The line, as the poller knows it.
+    /// Text of the command, as the poller uses it.
     pub fn text(&self) -> &str {
         self.extra.text()
     }
 
-    /// The id of the command.
+    /// Id of the command.
     pub fn id(&self) -> &'static str {
         self.extra.command().id()
     }
 
-    /// Whose robots are asked.
+    /// Family of the robots.
     pub fn family(&self) -> Family {
         self.extra.family()
     }
 
-    /// As the poller wants it.
+    /// The command for the poller.
     pub fn extra(&self) -> Rc<Extra> {
         Rc::clone(&self.extra)
     }

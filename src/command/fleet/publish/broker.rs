@@ -1,4 +1,4 @@
-//! Where the broker is, and as whom one comes: from the words of the command line, files and the environment.
+//! Address and credentials of the broker, from the command line, files and the environment.
 
 use std::env;
 use std::fmt;
@@ -15,21 +15,21 @@ use super::words;
 use crate::failure::Failure;
 use crate::files;
 
-/// Longest silence between this program and a broker.
+/// Keepalive interval of the connection.
 const KEEP_ALIVE: Duration = Duration::from_secs(30);
-/// Largest password and certificate file, in bytes.
+/// Size limit of password and certificate files, in bytes.
 const LARGEST_FILE: u64 = 1 << 20;
-/// Holds the password, where no file does.
+/// Environment variable with the password.
 const PASSWORD: &str = "ARMCTL_MQTT_PASSWORD";
 
-/// The URL of a broker.
+/// URL of a broker.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Url {
-    /// Name or address.
+    /// Host name or address.
     pub host: String,
-    /// Its port.
+    /// TCP port.
     pub port: u16,
-    /// Whether it is talked to over TLS.
+    /// Whether it uses TLS.
     pub is_secure: bool,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Url {
 impl FromStr for Url {
     type Err = String;
 
-    /// What is wrong is said without the text itself: somebody may have typed a password into it.
+    /// The error does not contain the text, because it can include a password.
     fn from_str(text: &str) -> Result<Self, String> {
         const FORM: &str = "write mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS";
         let Some((scheme, rest)) = text.split_once("://") else { return Err(FORM.to_owned()) };
@@ -124,21 +124,21 @@ pub struct Login {
     protocol: Protocol,
 }
 
-/// Where a broker is, and as whom one comes; the will is not said yet.
+/// Connection settings of a broker, without the last will.
 #[derive(Debug)]
 pub struct Broker {
-    /// As it is shown.
+    /// URL for messages.
     pub url: Url,
-    /// Where.
+    /// Address.
     pub endpoint: Endpoint,
-    /// What is wrong with how secrets are kept and sent; empty if nothing is.
+    /// Warnings about the storage and transmission of secrets.
     pub warnings: Vec<String>,
     version: Version,
     user: Option<String>,
     password: Secret,
 }
 
-/// What nobody is shown.
+/// A value that is never printed.
 struct Secret(Option<Vec<u8>>);
 
 impl fmt::Debug for Secret {
@@ -149,9 +149,6 @@ impl fmt::Debug for Secret {
 
 impl Broker {
     /// Reads files and environment.
-    ///
-    /// # Errors
-    /// Something of it cannot be meant, or not be read.
     pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && !url.is_secure {
@@ -201,7 +198,7 @@ impl Broker {
         })
     }
 
-    /// What is said to it first.
+    /// CONNECT contents with this last will.
     pub fn hello(&self, client_id: String, will: Will) -> Hello {
         Hello {
             version: self.version,
@@ -214,12 +211,12 @@ impl Broker {
     }
 }
 
-/// Whether the group of a file, or all users, can read it.
+/// Whether the group of a file or other users can read it.
 #[cfg(unix)]
 fn others_can_read(path: &Path) -> Result<bool, Failure> {
     use std::os::unix::fs::PermissionsExt as _;
 
-    // The service manager keeps its credentials in a folder for this process alone; an access list shows as rights of a group.
+    // Credentials of the service manager are in a private folder. Their access list appears as group permissions.
     if env::var_os("CREDENTIALS_DIRECTORY").is_some_and(|folder| !folder.is_empty() && path.starts_with(folder)) {
         return Ok(false);
     }
@@ -227,14 +224,14 @@ fn others_can_read(path: &Path) -> Result<bool, Failure> {
     Ok(metadata.is_file() && metadata.permissions().mode() & 0o044 != 0)
 }
 
-/// Whether others can read a file: its permissions say nothing of that here.
+/// File permissions are not checked on this system.
 #[cfg(not(unix))]
 #[expect(clippy::unnecessary_wraps, reason = "the other one reads the file's permissions")]
 fn others_can_read(_: &Path) -> Result<bool, Failure> {
     Ok(false)
 }
 
-/// Whether what is sent to this host stays on this machine.
+/// Whether the host is this computer.
 fn is_this_machine(host: &str) -> bool {
     match host.parse::<std::net::IpAddr>() {
         Ok(address) => address.to_canonical().is_loopback(),
@@ -246,7 +243,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     Ok(files::read(path, LARGEST_FILE).with_context(|| path.display().to_string())?)
 }
 
-/// The password: of the file, without the end of its line; or of the environment.
+/// Password from the file without its line end, or from the environment.
 fn password(login: &Login) -> Result<Option<Vec<u8>>, Failure> {
     if let Some(path) = &login.password_file {
         let mut password = bytes(path)?;

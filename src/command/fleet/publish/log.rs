@@ -1,4 +1,4 @@
-//! What is said of the broker, and how both ends are.
+//! Log of broker events, and status for the service manager.
 
 use std::cell::Cell;
 
@@ -6,7 +6,7 @@ use super::pump::Listener;
 use crate::command::fleet::service::Service;
 use crate::output::log::Level;
 
-/// Says what happens with a broker, with a field for the journal, and remembers whether it is reached.
+/// Logs broker events with a journal field, and keeps the connection state.
 pub struct BrokerLog<'a> {
     service: &'a Service,
     url: String,
@@ -14,12 +14,12 @@ pub struct BrokerLog<'a> {
 }
 
 impl<'a> BrokerLog<'a> {
-    /// Of a broker that is not reached yet.
+    /// Creates a log; the broker is not connected yet.
     pub fn new(service: &'a Service, url: String) -> Self {
         Self { service, url, is_there: Cell::new(false) }
     }
 
-    /// In a line: `3 robots, 2 answer; connected to mqtt://broker:1883`.
+    /// Status line: `3 robots, 2 answer; connected to mqtt://broker:1883`.
     pub fn status(&self) -> String {
         let verb = if self.is_there.get() { "connected" } else { "not connected" };
         format!("{}; {verb} to {}", self.service.robots(), self.url)

@@ -1,20 +1,20 @@
-//! `armctl publish`: tells an MQTT broker what `top` shows, as it changes. It only reads; what comes from the broker
-//! reaches no robot.
+//! `armctl publish`: publishes robot data to an MQTT broker as it changes. It only reads robots. Nothing from the
+//! broker reaches a robot.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `broker` | where the broker is, and as whom one comes |
-//! | `topic` | names as levels of topics |
-//! | `also` | command lines whose answers are told, too |
-//! | `speech` | a way to tell of robots: what the next two have in common |
-//! | `plain` | one topic a robot and kind, with envelopes |
+//! | `broker` | address and credentials of the broker |
+//! | `topic` | names as topic levels |
+//! | `also` | extra commands whose results are published |
+//! | `speech` | trait for a message format |
+//! | `plain` | one topic per robot and kind, with envelopes |
 //! | `sparkplug` | a Sparkplug B node whose devices are robots |
-//! | `outbox` | what is not told yet, in memory; no broker, no clock |
-//! | `spool` | the same on disk |
-//! | `pump` | between poller and broker |
+//! | `outbox` | queue of unsent messages in memory; no broker, no clock |
+//! | `spool` | the same queue on disk |
+//! | `pump` | from poller to broker |
 //! | `uplink` | the connection |
-//! | `log` | what is said of it, and to the service manager |
-//! | `words` | what brokers refuse, in words |
+//! | `log` | log, and status for the service manager |
+//! | `words` | texts of broker refusals |
 
 mod also;
 mod broker;
@@ -135,9 +135,9 @@ struct BufferArguments {
     path: Option<PathBuf>,
 }
 
-/// Least size of a buffer, in bytes: less holds no envelope of a full position.
+/// Minimum size of a buffer in bytes, so that an envelope with a full position fits.
 const LEAST: u64 = 64 << 10;
-/// Least time from look to look, and the usual one.
+/// Minimum and default polling interval.
 const LEAST_EVERY: Duration = Duration::from_millis(50);
 const EVERY: Duration = Duration::from_secs(1);
 
@@ -180,7 +180,7 @@ pub enum Kind {
 impl Kind {
     const ALL: [Self; 3] = [Self::Status, Self::Alarms, Self::Position];
 
-    /// The last level of its topic.
+    /// Last level of its topic.
     fn name(self) -> &'static str {
         match self {
             Self::Status => "status",
@@ -189,7 +189,7 @@ impl Kind {
         }
     }
 
-    /// The command of its envelope, whose schema `armctl schema` prints.
+    /// Command id of its envelope, which `armctl schema` accepts.
     fn id(self) -> &'static str {
         match self {
             Self::Status => "status",
@@ -199,7 +199,7 @@ impl Kind {
     }
 }
 
-/// The schemas of what is published, and of the report at the end.
+/// Schemas of the published data and of the final report.
 pub fn schemas() -> Vec<SchemaEntry> {
     vec![
         SchemaEntry::of::<Published>("publish"),
@@ -246,7 +246,7 @@ impl Report for Published {
 }
 
 impl Publish {
-    /// Does it.
+    /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let interval = run.repeat.every.unwrap_or(EVERY);
         self.fits(run, interval)?;
@@ -276,7 +276,7 @@ impl Publish {
         let pauses = Pauses::new(fastrand::u64(..));
         let mut pump = Pump::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
         let mut looks = Looks::new(&robots, run.repeat.count);
-        // A broker that is away for now holds up nobody who waits for this service.
+        // A broker that is temporarily away must not delay services that wait for this one.
         service.ready(robots.len())?;
         let ended = {
             let found = async || {
@@ -295,7 +295,7 @@ impl Publish {
             }
         };
         drop(events);
-        // Without a broker, where one is needed, the failure tells enough.
+        // If a run with --count found no broker, the failure is the only message.
         let has_failed = ended.is_err() && run.repeat.count.is_some();
         let (counts, _in_time) = join(pump.end(has_failed), timeout(END, polled)).await;
         ended?;
@@ -305,7 +305,7 @@ impl Publish {
         run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
     }
 
-    /// Refuses what has no meaning here.
+    /// Rejects options that make no sense here.
     fn fits(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
         let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
         if run.filter.is_some() || run.repeat.until.is_some() {
@@ -332,7 +332,7 @@ impl Publish {
         Ok(())
     }
 
-    /// What is not told yet, and the folder of this publisher, if there is one.
+    /// Creates the outbox. Also returns the state folder of this publisher, if there is one.
     fn outbox(&self, node: &str) -> Result<(Outbox, Option<PathBuf>), Failure> {
         let BufferArguments { memory, disk, path } = &self.buffer;
         let memory = usize::try_from(*memory).unwrap_or(usize::MAX);
@@ -373,7 +373,7 @@ impl Publish {
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
                 let remember = Box::new(move |next: u8| {
                     if let Some(file) = &file {
-                        // The number only has to differ from the last one; without a memory it begins with 0.
+                        // The number must only differ from the last one. Without a file it starts with 0.
                         let _kept = files::replace(file, next.to_string().as_bytes());
                     }
                 });
@@ -383,25 +383,25 @@ impl Publish {
     }
 }
 
-/// The folder for what is remembered: that of the service, or of the user.
+/// State folder of the service or of the user.
 fn state() -> Option<PathBuf> {
     let of_service = env::var_os("STATE_DIRECTORY").filter(|folder| !folder.is_empty());
     of_service.and_then(|folders| env::split_paths(&folders).next()).or_else(state_folder)
 }
 
-/// The name of this machine.
+/// Host name.
 #[cfg(unix)]
 fn this_machine() -> String {
     rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
 
-/// The name of this machine.
+/// Host name.
 #[cfg(not(unix))]
 fn this_machine() -> String {
     env::var("COMPUTERNAME").unwrap_or_else(|_| "armctl".to_owned())
 }
 
-/// What the poller finds, up to so many looks at each robot.
+/// Events of the poller, up to a number of polls per robot.
 #[derive(Debug)]
 struct Looks {
     left: BTreeMap<RobotId, u64>,

@@ -1,30 +1,29 @@
-//! What is to be told and is not told yet, in order: first in memory, then on disk, both bounded. It knows no broker and no
-//! clock.
+//! Queue of unsent records, in order: first in memory, then on disk, both limited. It knows no broker and no clock.
 //!
-//! A record leaves once it is acknowledged. Those in memory are older than those on disk. Where nothing has room any more,
-//! the oldest that is not under way goes, and is counted.
+//! A record is removed after its acknowledgement. Records in memory are older than those on disk. When both are full,
+//! the oldest record that is not in transit is dropped and counted.
 
 use std::collections::VecDeque;
 use std::io;
 
 use super::spool::{Spool, SpoolError};
 
-/// Something to be told.
+/// A record to publish.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
-    /// What it is, for whoever tells it.
+    /// Type of the record; its meaning belongs to the message format.
     pub kind: u8,
-    /// When it was so, in milliseconds since 1970.
+    /// Time of the data, in ms since 1970.
     pub time_ms: u64,
-    /// What it is about: a topic, a device.
+    /// Topic or device.
     pub key: String,
-    /// What is told.
+    /// Content.
     pub body: Vec<u8>,
-    /// The birth that it came after; 0 where it was read from disk.
+    /// Number of the birth before it; 0 if it was read from disk.
     pub epoch: u64,
 }
 
-/// What a record takes in memory beside its texts.
+/// Memory overhead of a record.
 const BESIDE: usize = 128;
 
 impl Record {
@@ -33,7 +32,7 @@ impl Record {
     }
 }
 
-/// Tells one record from all others.
+/// Unique number of a record.
 pub type Ticket = u64;
 
 /// A record in memory.
@@ -42,7 +41,7 @@ struct Held {
     ticket: Ticket,
     record: Record,
     state: State,
-    /// The file that it was read from, where it still is.
+    /// Disk segment that still contains the record.
     segment: Option<u64>,
 }
 
@@ -52,32 +51,32 @@ enum State {
     Sent,
 }
 
-/// What had no room.
+/// Counts of dropped records.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Dropped {
-    /// For want of room.
+    /// Dropped because the queue was full.
     pub for_room: u64,
-    /// On disk, and not readable any more.
+    /// Damaged on disk.
     pub damaged: u64,
 }
 
-/// The records, the oldest first.
+/// The queue, oldest record first.
 #[derive(Debug)]
 pub struct Outbox {
     memory: VecDeque<Held>,
     bytes: usize,
-    /// Most bytes in memory.
+    /// Memory limit in bytes.
     most: usize,
     spool: Option<Spool>,
     next: Ticket,
     dropped: Dropped,
-    /// What the disk said last, once.
+    /// Last disk error, until it is reported.
     trouble: Option<io::Error>,
     is_troubled: bool,
 }
 
 impl Outbox {
-    /// With so many bytes of memory, and a disk or none.
+    /// Creates a queue with a memory limit, with or without a disk spool.
     pub fn new(most: usize, spool: Option<Spool>) -> Self {
         Self {
             memory: VecDeque::new(),
@@ -91,7 +90,7 @@ impl Outbox {
         }
     }
 
-    /// Takes a record.
+    /// Adds a record.
     pub fn push(&mut self, record: Record) {
         let size = record.size();
         if size > self.most {
@@ -115,7 +114,7 @@ impl Outbox {
                     {
                         self.trouble = Some(error);
                     }
-                    // A file goes as a whole: once that has room again, the disk is asked again.
+                    // A segment is deleted as a whole. If that makes room, try the disk again.
                     if !self.make_room(size, bytes) {
                         self.dropped.for_room += 1;
                         return;
@@ -131,7 +130,8 @@ impl Outbox {
         }
     }
 
-    /// Drops the oldest until a file on disk is gone, or memory has room and nothing is on disk; `false` if nothing can go.
+    /// Drops the oldest records until a disk segment is free, or memory has room and the disk is empty; `false` if
+    /// nothing can be dropped.
     fn make_room(&mut self, size: usize, bytes: u64) -> bool {
         loop {
             self.refill();
@@ -145,7 +145,7 @@ impl Outbox {
         }
     }
 
-    /// The next record that is to be told, if there is one. It counts as sent.
+    /// Returns the next record to send, and marks it as sent.
     pub fn take_next(&mut self) -> Option<(Ticket, Record)> {
         self.refill();
         let held = self.memory.iter_mut().find(|held| held.state == State::Waiting)?;
@@ -153,15 +153,15 @@ impl Outbox {
         Some((held.ticket, held.record.clone()))
     }
 
-    /// A record has arrived, or is nothing that could arrive.
+    /// Removes a record that has arrived or can never be sent.
     pub fn done(&mut self, ticket: Ticket) {
-        // They are in order of their tickets.
+        // Records are sorted by ticket.
         if let Ok(at) = self.memory.binary_search_by_key(&ticket, |held| held.ticket) {
             self.remove(at);
         }
     }
 
-    /// The connection is gone: what was sent and is not acknowledged is sent again.
+    /// The connection is lost. Unacknowledged records are sent again.
     pub fn lost(&mut self) {
         for held in &mut self.memory {
             if held.state == State::Sent {
@@ -170,30 +170,30 @@ impl Outbox {
         }
     }
 
-    /// Whether nothing is left to be told.
+    /// Whether the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.memory.is_empty() && !self.has_more_on_disk()
     }
 
-    /// How many wait or are under way, in memory; and the bytes on disk.
+    /// Number of records in memory, and bytes on disk.
     pub fn waiting(&self) -> (usize, u64) {
         (self.memory.len(), self.spool.as_ref().map_or(0, Spool::bytes))
     }
 
-    /// What was dropped since this was asked last.
+    /// Records dropped since the last call.
     pub fn take_dropped(&mut self) -> Dropped {
         let damaged = self.spool.as_mut().map_or(0, Spool::take_damaged);
         let dropped = std::mem::take(&mut self.dropped);
         Dropped { damaged: dropped.damaged + damaged, ..dropped }
     }
 
-    /// What is wrong with the disk, told once until it works again.
+    /// The last disk error; reported once until the disk works again.
     pub fn take_trouble(&mut self) -> Option<io::Error> {
         self.trouble.take()
     }
 
-    /// Writes what is in memory alone to the disk, before what is there, for the next one who comes; says how many records
-    /// have found no place.
+    /// Writes records that are only in memory to the disk, before those already there, for the next process. Returns
+    /// the number of records that did not fit.
     pub fn park(mut self) -> (u64, Option<io::Error>) {
         let alone = self.memory.drain(..).filter(|held| held.segment.is_none());
         let records: Vec<Record> = alone.map(|held| held.record).collect();
@@ -214,7 +214,7 @@ impl Outbox {
         self.next += 1;
     }
 
-    /// Brings records from disk into memory, while half of that is free.
+    /// Reads records from disk while half of the memory is free.
     fn refill(&mut self) {
         while self.bytes <= self.most / 2
             && let Some(spool) = &mut self.spool
@@ -224,7 +224,7 @@ impl Outbox {
         }
     }
 
-    /// Drops the oldest record that is not under way, or the oldest one; `false` if there is none.
+    /// Drops the oldest record that is not in transit, otherwise the oldest; `false` if the queue is empty.
     fn drop_oldest(&mut self) -> bool {
         let waiting = self.memory.iter().position(|held| held.state == State::Waiting);
         let Some(at) = waiting.or((!self.memory.is_empty()).then_some(0)) else { return false };
@@ -255,7 +255,7 @@ mod tests {
         Record { kind: 0, time_ms: number, key: format!("t{}", number % 3), body: vec![7; 40], epoch: 0 }
     }
 
-    /// Bytes of memory for so many records.
+    /// Memory for a number of records.
     fn memory(records: usize) -> usize {
         records * record(0).size()
     }
@@ -264,7 +264,7 @@ mod tests {
         Outbox::new(memory(records), Some(Spool::open(folder, disk).unwrap()))
     }
 
-    /// All that is left, told and acknowledged one by one.
+    /// Sends and acknowledges all records one by one.
     fn drained(outbox: &mut Outbox) -> Vec<u64> {
         std::iter::from_fn(|| {
             let (ticket, record) = outbox.take_next()?;
@@ -282,7 +282,7 @@ mod tests {
         let (second, _) = outbox.take_next().unwrap();
         let (_, third) = outbox.take_next().unwrap();
         assert_eq!(third.time_ms, 3);
-        // Acknowledgements may come in any order.
+        // Acknowledgements can come in any order.
         outbox.done(second);
         assert_eq!(outbox.waiting().0, 3);
         outbox.done(first);
@@ -303,7 +303,7 @@ mod tests {
         assert_eq!(outbox.take_dropped(), Dropped::default());
         outbox.done(under_way);
         assert_eq!(drained(&mut outbox), [4, 5]);
-        // One that never has room drops nothing else.
+        // A record that is too large does not displace others.
         outbox.push(record(6));
         outbox.push(Record { body: vec![0; memory(4)], ..record(7) });
         assert_eq!(outbox.take_dropped().for_room, 1);
@@ -344,7 +344,7 @@ mod tests {
         let (ticket, first) = outbox.take_next().unwrap();
         assert_eq!(first.time_ms, 11, "ten were in memory alone");
         outbox.done(ticket);
-        // Read into memory, and not told: they are still there.
+        // Records that were read into memory but not sent are still on disk.
         drop(outbox);
         let mut outbox = on_disk(folder.path(), 10, 1 << 20);
         assert_eq!(outbox.take_next().unwrap().1.time_ms, 11);
@@ -377,7 +377,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever happens, records come in order, none is lost but those that are counted, and none stays.
+        /// In any sequence of events, records arrive in order, every lost record is counted, and no record remains.
         #[test]
         fn nothing_is_lost_uncounted(
             steps in prop::collection::vec(
@@ -423,7 +423,7 @@ mod tests {
             arrived.sort_unstable();
             arrived.dedup();
             let dropped = outbox.take_dropped().for_room;
-            // One that was under way may have arrived although its place was needed.
+            // A dropped record that was in transit can have arrived as well.
             prop_assert!(u64::try_from(arrived.len()).unwrap() + dropped >= pushed, "{} and {dropped} of {pushed}", arrived.len());
             prop_assert!(outbox.is_empty() && outbox.waiting() == (0, 0));
         }

@@ -1,7 +1,8 @@
-//! One topic a robot and kind: `PREFIX/ROBOT/status`, kept by the broker, with the envelope of `--json` as payload.
+//! Plain message format: one retained topic per robot and kind, `PREFIX/ROBOT/status`, with the envelope of `--json` as
+//! payload.
 //!
-//! Something is told when it has changed, and at the latest after a given time. What is said of a robot that does not
-//! answer is said in all of its topics, so that nobody takes the last position for where it is.
+//! A message is sent after a change, and at the latest after a given time. If a robot does not answer, all its topics
+//! report that. So an old position is never taken for the current one.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -41,7 +42,7 @@ pub struct Position {
     not_asked: Option<&'static str>,
 }
 
-/// What was told last in a topic.
+/// Last message of a topic.
 #[derive(Debug)]
 struct Told {
     /// The envelope without its time.
@@ -49,7 +50,7 @@ struct Told {
     at_ms: u64,
 }
 
-/// What is told in topics of armctl's own.
+/// The plain message format.
 #[derive(Debug)]
 pub struct Plain {
     prefix: String,
@@ -62,7 +63,8 @@ pub struct Plain {
 }
 
 impl Plain {
-    /// Of these kinds and lines, again after so long; `node` is a level of a topic.
+    /// Creates the format for these kinds and extra commands; unchanged data is sent again after `every_ms`. `node` is
+    /// a topic level.
     pub fn new(
         (prefix, node, levels): (&str, String, Levels),
         kinds: &[Kind],
@@ -81,7 +83,7 @@ impl Plain {
         }
     }
 
-    /// What has changed, or was told long ago.
+    /// Records for data that has changed or is due again.
     fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
         let Ok(level) = self.levels.of(robot) else { return Vec::new() };
         let told = self.told.entry(RobotId::of(robot)).or_default();
@@ -108,7 +110,7 @@ impl Plain {
         let mut line = OverviewReport { family: robot.family.name(), ..look.sample.line.clone() };
         let at = (line.state.position, line.not_asked);
         if self.kinds.contains(&Kind::Position) {
-            // Else each step of a motion would be told twice.
+            // Otherwise each step of a motion would be published twice.
             (line.state.position, line.not_asked) = (None, Some("it has a topic of its own"));
         }
         let mut envelopes = Vec::new();
@@ -129,7 +131,7 @@ impl Plain {
         self.changed(robot, envelopes, now_ms)
     }
 
-    /// A robot that does not answer: its state says so, with all that is known of it; all else is not known.
+    /// The robot does not answer. Its status reports that with all known data. Its other data is unknown.
     fn failed(&mut self, robot: &Robot, failure: &Failure, now_ms: u64) -> Vec<Record> {
         let mut envelopes = Vec::new();
         for kind in &self.kinds {
@@ -144,7 +146,7 @@ impl Plain {
         self.changed(robot, envelopes, now_ms)
     }
 
-    /// A robot that is no more: the broker keeps nothing of it.
+    /// The robot was removed: clears its retained messages.
     fn gone(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
         let told = self.told.remove(&RobotId::of(robot)).unwrap_or_default();
         let Ok(level) = self.levels.of(robot) else { return Vec::new() };

@@ -1,5 +1,5 @@
-//! Between poller and broker: takes what is found into the outbox, and tells it while the broker is there. A connection that
-//! is lost is made again, after a pause that grows.
+//! Pump from poller to broker: puts data into the outbox, and sends it while the broker is connected. After a loss it
+//! connects again with a growing backoff.
 
 use std::collections::{HashMap, VecDeque};
 use std::future::{Future, pending};
@@ -23,52 +23,53 @@ use crate::failure::{Failure, Kind, plain};
 use crate::output::log::Level;
 use crate::settings::duration;
 
-/// Messages that are on their way at a time: with an acknowledgement, and without.
+/// Limits of messages in transit: with and without acknowledgement.
 const WINDOW: usize = 64;
 const UNCONFIRMED: usize = 1000;
-/// Bytes that wait for the line before no more are added.
+/// Limit of unsent bytes on the connection.
 const LINE: usize = 256 * 1024;
-/// The least time between two pings that ask whether all has arrived.
+/// Minimum interval of pings that confirm messages without acknowledgement.
 const PING: Duration = Duration::from_millis(500);
-/// How long a broker has to acknowledge, while it answers pings.
+/// Time limit for an acknowledgement, while the broker answers pings.
 const ACKNOWLEDGE: Duration = Duration::from_secs(30);
-/// The pause after a failure: the first one, and the longest.
+/// First and longest backoff.
 const PAUSES: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(60)];
-/// How long a connection holds before the pauses begin anew: one that is lost at once is no success.
+/// Lifetime of a connection after which the backoff starts again.
 const STEADY: Duration = Duration::from_secs(10);
-/// Time of the end for what waits, and for the acknowledgement of the farewell. What is left of it is for the goodbye.
+/// Time limits at the end: for queued records, and for the acknowledgement of the last message. DISCONNECT gets the
+/// rest.
 const DELIVER: Duration = Duration::from_millis(500);
 const FAREWELL: Duration = Duration::from_millis(700);
-/// How often a failure that goes on is said again, at the least.
+/// Interval after which an ongoing failure is reported again.
 const REMIND: Duration = Duration::from_secs(600);
 
-/// What opens connections to a broker.
+/// Opens connections to a broker.
 pub trait Broker {
-    /// A connection.
+    /// Connection type.
     type Uplink: Uplink;
-    /// Connects, and says hello; whether the broker takes the client is the first event.
+    /// Connects and sends CONNECT. The first event is the broker's answer.
     async fn open(&self, client_id: String, will: Will) -> Result<Self::Uplink, Loss>;
 }
 
 /// A connection to a broker.
 pub trait Uplink {
-    /// What happens next; may be dropped.
+    /// Waits for the next event. Cancel safe.
     async fn next(&mut self) -> Event;
-    /// Sends a message; the number of its acknowledgement, if it gets one.
+    /// Sends a message. Returns the number of its acknowledgement, if it gets one.
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
-    /// Wants messages.
+    /// Subscribes to topics.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
-    /// Asks whether all has arrived; the number of the ping.
+    /// Sends a ping, and returns its number.
     fn ping(&mut self) -> u64;
-    /// Acknowledged messages that the broker takes, if it has said so.
+    /// How many more unacknowledged messages the broker accepts, if it has set a limit.
     fn room(&self) -> Option<u16>;
-    /// Bytes that the line has not taken.
+    /// Number of unsent bytes.
     fn unsent(&mut self) -> usize;
-    /// Says goodbye.
+    /// Disconnects.
     async fn close(self);
 }
 
-/// The pauses between attempts.
+/// Backoff between attempts to connect.
 #[derive(Debug)]
 pub struct Pauses {
     next: Duration,
@@ -76,13 +77,13 @@ pub struct Pauses {
 }
 
 impl Pauses {
-    /// Which they are, by a seed.
+    /// Creates the backoff with a random seed.
     pub fn new(seed: u64) -> Self {
         Self { next: PAUSES[0], random: fastrand::Rng::with_seed(seed) }
     }
 
-    /// The next one: twice as long as the last, up to a minute, and a bit off, so that those who lost a broker at the same
-    /// moment do not come back at the same moment.
+    /// Next pause: twice the last one, up to a minute, with a random factor. So clients that lost a broker together do
+    /// not return together.
     pub fn pause(&mut self) -> Duration {
         let pause = self.next.mul_f64(0.75 + self.random.f64() / 2.0);
         self.next = (self.next * 2).min(PAUSES[1]);
@@ -94,42 +95,42 @@ impl Pauses {
     }
 }
 
-/// Who is told what happens with the broker.
+/// Receiver of broker events.
 pub trait Listener {
-    /// Something happened.
+    /// A message for the log.
     fn say(&self, level: Level, text: &str);
-    /// The broker has taken this client, or is gone.
+    /// The broker accepted this client, or is gone.
     fn reached(&self, is_there: bool);
 }
 
-/// What came of it.
+/// Counters of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Records that have arrived.
     pub published: u64,
-    /// Records that the broker does not want.
+    /// Records that the broker rejected.
     pub refused: u64,
-    /// Records that had no room.
+    /// Records dropped because the queue was full.
     pub dropped: u64,
     /// Connections after the first one.
     pub reconnects: u64,
-    /// Records that were left to the next process, or to nobody.
+    /// Records left for the next process, or lost.
     pub undelivered: u64,
 }
 
-/// An open connection, and what is on its way over it.
+/// An open connection with its messages in transit.
 struct Open<U> {
     uplink: U,
     is_accepted: bool,
-    /// Acknowledged messages, by their numbers.
+    /// Messages with acknowledgement, by number.
     acknowledged: HashMap<u64, Option<Ticket>>,
-    /// Records whose messages have no acknowledgement and were not confirmed by a ping.
+    /// Records without acknowledgement that no ping has confirmed yet.
     unconfirmed: VecDeque<Ticket>,
-    /// Those that a ping under way will confirm.
+    /// Number of the current ping, and the records that it will confirm.
     pinged: Option<(u64, Vec<Ticket>)>,
     since: Instant,
     last_ping: Instant,
-    /// When something was acknowledged last, or nothing was on its way.
+    /// Time of the last acknowledgement, or when nothing was in transit.
     progress: Instant,
 }
 
@@ -148,7 +149,7 @@ impl<U> Open<U> {
         }
     }
 
-    /// Notes that something has arrived; whether the connection has held for some time.
+    /// Notes progress. Returns whether the connection counts as stable.
     fn progressed(&mut self) -> bool {
         self.progress = Instant::now();
         self.progress - self.since >= STEADY
@@ -159,14 +160,14 @@ impl<U> Open<U> {
     }
 }
 
-/// Where the connection is.
+/// State of the connection.
 enum Line<'a, B: Broker> {
     Waiting(Instant),
     Opening(LocalBoxFuture<'a, Result<B::Uplink, Loss>>),
     Open(Open<B::Uplink>),
 }
 
-/// What comes next of the connection.
+/// Next step of the connection.
 enum Step<U> {
     Try,
     Opened(Result<U, Loss>),
@@ -185,19 +186,19 @@ pub struct Pump<'a, B: Broker> {
     line: Line<'a, B>,
     pauses: Pauses,
     counts: Counts,
-    /// Whether the broker has ever taken the client; since when it is gone.
+    /// Whether the broker has ever accepted this client, and the time of the last loss.
     was_accepted: bool,
     gone_since: Option<Instant>,
-    /// What was said last of the broker, and when.
+    /// Last reported failure and its time.
     said: Option<(String, Instant)>,
-    /// Whether a broker that is not there ends it.
+    /// Whether a missing broker ends the run.
     ends_without_broker: bool,
-    /// Messages that the broker refused.
+    /// Number of messages that the broker rejected.
     forbidden: u32,
 }
 
 impl<'a, B: Broker + 'a> Pump<'a, B> {
-    /// Between this broker and this way to tell.
+    /// Creates a pump.
     pub fn new(
         (broker, url): (&'a B, &'a Url),
         speech: Box<dyn Speech>,
@@ -222,10 +223,10 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Goes on until it is stopped, or `found` has nothing more and all of it has arrived. [`end`](Self::end) comes next.
+    /// Runs until it is stopped, or until `found` has ended and everything has arrived. Call [`end`](Self::end) next.
     ///
     /// # Errors
-    /// There is no broker, or it refuses this client, and the run is a bounded one.
+    /// A bounded run without a broker, or the broker refuses this client.
     pub async fn run(
         &mut self,
         mut found: impl AsyncFnMut() -> Option<Found>,
@@ -255,7 +256,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         matches!(&self.line, Line::Open(open) if open.is_accepted && open.is_idle())
     }
 
-    /// Takes what the poller has found.
+    /// Handles an event of the poller.
     fn take(&mut self, event: &Found) {
         for record in self.speech.found(event, now_ms()) {
             self.outbox.push(record);
@@ -265,7 +266,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             self.listener
                 .say(Level::Error, &format!("the disk takes no messages ({why}): what memory cannot hold is dropped"));
         }
-        // While nobody listens, each one would be said: the sum comes with the connection.
+        // Without a connection, each drop would be reported. The sum is reported with the next connection.
         if matches!(self.line, Line::Open(_)) {
             self.say_dropped();
         }
@@ -286,7 +287,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Does what follows from a step of the connection.
+    /// Handles a step of the connection.
     fn go(&mut self, step: Step<B::Uplink>) -> Result<(), Failure> {
         match step {
             Step::Try => {
@@ -348,7 +349,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let messages = if waiting == 1 { "message" } else { "messages" };
         let buffered = match (waiting, on_disk) {
             (0, 0) => String::new(),
-            // The first looks are done while it is connected to.
+            // The first polls run while it connects, so some records always wait.
             (_, 0) if !again => String::new(),
             (waiting, 0) => format!("; {waiting} {messages} waited for it"),
             (0, bytes) => format!("; {} KiB on disk waited for it", bytes.div_ceil(1024)),
@@ -381,13 +382,13 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
         self.send(None, &reaction.messages);
         if reaction.leaves {
-            // The next connection has a will of its own.
+            // The next connection has a new last will.
             self.leave();
             self.line = Line::Waiting(Instant::now() + PAUSES[0]);
         }
     }
 
-    /// The connection is over: what has not arrived waits.
+    /// The connection has ended. Records that have not arrived stay in the queue.
     fn leave(&mut self) {
         self.listener.reached(false);
         self.outbox.lost();
@@ -405,8 +406,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         self.fail(words::refusal(self.url, refusal))
     }
 
-    /// Waits before the next attempt, whatever the reason: it was given by another machine, or depends on the clock, and
-    /// both may be right a minute later. Only a bounded run gives up.
+    /// Waits before the next attempt, for any failure: even a refusal or a certificate error can be over a minute
+    /// later. Only a bounded run gives up.
     fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
         if self.ends_without_broker {
             self.line = Line::Waiting(Instant::now());
@@ -415,7 +416,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         let pause = self.pauses.pause();
         self.line = Line::Waiting(Instant::now() + pause);
         let is_known = self.said.as_ref().is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMIND);
-        // Where it worked before, a setting is wrong only if the broker says so.
+        // If it worked before, the settings are probably right, unless the broker reports an error in them.
         let is_setting = failure.kind == Kind::Usage || !self.was_accepted;
         let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
         let level = if is_known { Level::Detail } else { Level::Warning };
@@ -443,7 +444,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Says it the first time, and then at `-v`.
+    /// Reports the first rejection as a warning, and later ones at `-v`.
     fn refuse(&mut self, why: &str) {
         self.listener.say(if self.forbidden > 0 { Level::Detail } else { Level::Warning }, why);
         self.forbidden = self.forbidden.saturating_add(1);
@@ -462,7 +463,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Sends as much as may be on its way.
+    /// Sends records up to the limits.
     fn fill(&mut self) {
         loop {
             let Line::Open(open) = &mut self.line else { return };
@@ -481,7 +482,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Sends the messages of a record, or those that are of none.
+    /// Sends the messages of a record, or messages without a record.
     fn send(&mut self, ticket: Option<Ticket>, messages: &[Message]) {
         let Line::Open(open) = &mut self.line else { return };
         if open.is_idle() {
@@ -504,7 +505,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
             if is_confirmed_by_ping {
                 open.unconfirmed.push_back(ticket);
             } else if !is_under_way {
-                // Nothing of it left: it would never leave.
+                // No message of it could be sent, so it is removed.
                 self.outbox.done(ticket);
                 self.counts.refused += u64::from(failed.is_some());
             }
@@ -514,8 +515,8 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
         }
     }
 
-    /// Tells what waits, if that is soon done, says farewell, and leaves the rest for the next process, of which it says
-    /// little where a failure says more. It takes less than [`END`], whatever the broker does.
+    /// Ends the run: sends queued records within a time limit, then a last message, and leaves the rest for the next
+    /// process. It always takes less than [`END`]. After a failure it reports less.
     pub async fn end(mut self, has_failed: bool) -> Counts {
         let now = Instant::now();
         let told = async {
@@ -567,7 +568,7 @@ impl<'a, B: Broker + 'a> Pump<'a, B> {
     }
 }
 
-/// Waits for the next step of the connection; may be dropped.
+/// Waits for the next step of the connection. Cancel safe.
 async fn step<B: Broker>(line: &mut Line<'_, B>) -> Step<B::Uplink> {
     match line {
         Line::Waiting(until) => {
@@ -582,7 +583,7 @@ async fn step<B: Broker>(line: &mut Line<'_, B>) -> Step<B::Uplink> {
             tokio::select! {
                 biased;
                 event = async {
-                    // A broker that always has something to say leaves others their turn.
+                    // A broker with endless events must not block other tasks.
                     consume_budget().await;
                     open.uplink.next().await
                 } => Step::Happened(event),

@@ -1,6 +1,6 @@
-//! How robots are told of: in topics of armctl's own ([`Plain`](super::plain::Plain)), or as a Sparkplug node
-//! ([`Node`](super::sparkplug::Node)). It is handed what the poller finds and what the broker sends, and knows no
-//! connection and no clock.
+//! Trait for a message format: plain topics ([`Plain`](super::plain::Plain)), or a Sparkplug node
+//! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It knows no connection and no
+//! clock.
 
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::Event;
@@ -8,37 +8,37 @@ use crate::output::log::Level;
 
 use super::outbox::Record;
 
-/// What a message of the broker leads to.
+/// Reaction to a message of the broker.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Reaction {
-    /// What is sent at once, before all that waits.
+    /// Messages to send at once, before the queue.
     pub messages: Vec<Message>,
-    /// What is said of it.
+    /// Text for the log.
     pub note: Option<(Level, String)>,
-    /// Whether the connection is left, and made anew.
+    /// Whether to close the connection and open a new one.
     pub leaves: bool,
 }
 
-/// A way to tell of robots.
+/// A message format.
 pub trait Speech {
-    /// The name of the client, unique at the broker.
+    /// Client identifier, unique at the broker.
     fn client_id(&self) -> String;
-    /// A new connection is about to be made: what the broker says when it ends by itself.
+    /// Last will of a new connection.
     fn will(&mut self, now_ms: u64) -> Will;
-    /// What the broker's messages are wanted of.
+    /// Topics to subscribe to.
     fn topics(&self) -> Vec<String>;
-    /// The connection is there: what is sent first.
+    /// First messages of a new connection.
     fn connected(&mut self, now_ms: u64) -> Vec<Message>;
-    /// The connection is gone.
+    /// The connection is lost.
     fn lost(&mut self);
-    /// The broker has sent a message.
+    /// Handles a message of the broker.
     fn received(&mut self, message: &Message, now_ms: u64) -> Reaction;
-    /// The poller has found something: what is to be told of it.
+    /// Converts a poller event to records.
     fn found(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
-    /// Whether records may be told now.
+    /// Whether records can be sent now.
     fn is_ready(&self) -> bool;
-    /// What a record is as messages; none where there is nothing to tell any more.
+    /// Converts a record to messages; empty if it is out of date.
     fn told(&mut self, record: Record, now_ms: u64) -> Vec<Message>;
-    /// What is sent last, before the connection is left in order.
+    /// Last messages before a normal close.
     fn farewell(&mut self, now_ms: u64) -> Vec<Message>;
 }

@@ -1,9 +1,8 @@
-//! Records on disk, the oldest first, in files of a folder of its own.
+//! Disk spool: records in segment files of a private folder, oldest first.
 //!
-//! A file is written by one process from its beginning to its end, and goes once all of its records have arrived. Each
-//! record stands behind its length and a checksum: what a process was writing when it was killed, and what a disk has
-//! spoilt, is recognised, and damages nothing else. Which records of the first file have arrived is not written down:
-//! after a kill they are told once more.
+//! One process writes a segment from start to end. The segment is deleted when all its records have arrived. Each
+//! record has a length and a checksum, so that an incomplete write and disk damage are detected without effect on other
+//! records. Acknowledgements are not stored: after a kill, the records of the first segment are sent again.
 
 use std::collections::VecDeque;
 use std::fs::{self, File, OpenOptions};
@@ -15,60 +14,59 @@ use sha2::{Digest as _, Sha256};
 use super::outbox::Record;
 use crate::files;
 
-/// Largest record, in bytes.
+/// Size limit of a record in bytes.
 const LARGEST: usize = 1 << 20;
-/// Largest file, unless less is allowed in all.
+/// Size limit of a segment, unless the total limit is smaller.
 const SEGMENT: u64 = 1 << 20;
-/// Files of the least disk.
+/// Number of segments at the smallest total limit.
 const SEGMENTS: u64 = 8;
-/// How the first file of a folder is called, so that others can come before it.
+/// Number of the first segment, high enough that others can be placed before it.
 const FIRST: u64 = 1 << 40;
 const SUFFIX: &str = "spool";
 /// Length and checksum.
 const HEAD: usize = 12;
-/// Kind, time, length of the key.
+/// Type, time, key length.
 const FIELDS: usize = 11;
 
-/// Why a record is not on disk.
+/// Reason why a record could not be written.
 #[derive(Debug)]
 pub enum SpoolError {
-    /// As much is there as is allowed.
+    /// The size limit is reached.
     Full,
-    /// The disk.
+    /// Disk error.
     Io(io::Error),
 }
 
-/// A file.
 #[derive(Debug)]
 struct Segment {
     number: u64,
     bytes: u64,
-    /// Records that were read and have not arrived.
+    /// Records that were read but have not arrived.
     outstanding: usize,
     is_read: bool,
 }
 
-/// The folder.
+/// The spool.
 #[derive(Debug)]
 pub struct Spool {
     folder: PathBuf,
-    /// Most bytes of all files.
+    /// Size limit of all segments in bytes.
     most: u64,
     segments: VecDeque<Segment>,
-    /// The number of the next file.
+    /// Number of the next segment.
     next: u64,
     writer: Option<File>,
-    /// Records of the file that is being read.
+    /// Records of the segment that is being read.
     read: VecDeque<Record>,
     damaged: u64,
     _lock: files::Claim,
 }
 
 impl Spool {
-    /// Opens a folder, or makes it. What others have left there is told first.
+    /// Opens or creates a folder. Records of earlier processes are sent first.
     ///
     /// # Errors
-    /// [`ErrorKind::WouldBlock`] if another process has it.
+    /// [`ErrorKind::WouldBlock`] if another process uses the folder.
     pub fn open(folder: &Path, most: u64) -> io::Result<Self> {
         make_folder(folder)?;
         let lock = files::claim(folder)?;
@@ -96,25 +94,25 @@ impl Spool {
         })
     }
 
-    /// Bytes of all files.
+    /// Total size in bytes.
     pub fn bytes(&self) -> u64 {
         self.segments.iter().map(|segment| segment.bytes).sum()
     }
 
-    /// Whether there are records that were not read.
+    /// Whether there are unread records.
     pub fn has_more(&self) -> bool {
         !self.read.is_empty() || self.segments.iter().any(|segment| !segment.is_read)
     }
 
-    /// Records that could not be read, since this was asked last; of a file that cannot be read at all, one.
+    /// Number of unreadable records since the last call. An unreadable segment counts as one.
     pub fn take_damaged(&mut self) -> u64 {
         std::mem::take(&mut self.damaged)
     }
 
-    /// Writes a record behind all others.
+    /// Appends a record.
     ///
     /// # Errors
-    /// Nothing of it is there then.
+    /// Nothing of the record was written.
     pub fn append(&mut self, record: &Record) -> Result<(), SpoolError> {
         let bytes = encode(record);
         let len = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
@@ -125,7 +123,7 @@ impl Spool {
         if self.writer.is_none() || is_full {
             let number = self.next;
             if let Some(last) = self.writer.take() {
-                // The next one begins: this one is there as a whole, whatever happens to the machine.
+                // The complete segment is flushed, so that a power failure does not damage it.
                 last.sync_data().map_err(SpoolError::Io)?;
             }
             self.writer = Some(self.create(number).map_err(SpoolError::Io)?);
@@ -141,7 +139,7 @@ impl Spool {
                 Ok(())
             }
             Err(error) => {
-                // A piece of it may be there: it must not stand before the next one.
+                // Removes an incomplete record, so that the next one is readable.
                 if writer.set_len(segment.bytes).is_err() {
                     self.writer = None;
                 }
@@ -156,7 +154,7 @@ impl Spool {
         }
     }
 
-    /// The next record, with the file that it is in until [`Spool::release`].
+    /// Reads the next record, with its segment for [`Spool::release`].
     pub fn read(&mut self) -> Option<(u64, Record)> {
         loop {
             if let Some(record) = self.read.pop_front() {
@@ -165,7 +163,7 @@ impl Spool {
             }
             let at = self.segments.iter().position(|segment| !segment.is_read)?;
             if at + 1 == self.segments.len() {
-                // What comes goes into the next one, so that this one is read once.
+                // New records go to the next segment, so that this one is read only once.
                 self.writer = None;
             }
             let number = self.segments[at].number;
@@ -186,7 +184,7 @@ impl Spool {
         }
     }
 
-    /// A record of a file has arrived, or was given up.
+    /// A record of a segment has arrived or was dropped.
     pub fn release(&mut self, number: u64) {
         let Some(at) = self.segments.iter().position(|segment| segment.number == number) else { return };
         let segment = &mut self.segments[at];
@@ -197,7 +195,8 @@ impl Spool {
         }
     }
 
-    /// Writes records before all others, the newest of them that have room; says how many had none.
+    /// Writes records before all others. If there is not enough room, the newest are written. Returns the number of
+    /// those that were not.
     pub fn prepend(&mut self, records: &[Record]) -> (u64, Option<io::Error>) {
         let mut room = self.most.saturating_sub(self.bytes());
         let mut kept = 0;
@@ -217,7 +216,7 @@ impl Spool {
             }
         }
         let all = u64::try_from(records.len()).unwrap_or(u64::MAX);
-        // The newest first: each goes before the one that was written last.
+        // Newest first: each chunk goes before the one written last.
         let mut number = self.segments.front().map_or(self.next, |first| first.number).saturating_sub(1);
         for chunk in chunks {
             let written = self.create(number).and_then(|mut file| {
@@ -250,12 +249,12 @@ impl Spool {
     }
 
     fn remove(&self, number: u64) {
-        // One that stays is told once more by the next process, which removes it then.
+        // If this fails, the next process sends the records again and deletes the file.
         let _gone = fs::remove_file(self.path(number));
     }
 }
 
-/// What robots say is for whoever runs this.
+/// Robot data is private to the user of this process.
 fn make_folder(folder: &Path) -> io::Result<()> {
     if folder.is_dir() {
         return Ok(());
@@ -273,8 +272,7 @@ fn checksum(bytes: &[u8]) -> [u8; 8] {
     sum
 }
 
-/// Length of what follows the checksum, checksum; kind, time, length of the key, key, body. Numbers begin with their lowest
-/// byte.
+/// Format: length after the checksum, checksum; type, time, key length, key, body. Numbers are little-endian.
 fn encode(record: &Record) -> Vec<u8> {
     let Record { kind, time_ms, key, body, .. } = record;
     let mut fields = Vec::with_capacity(FIELDS + key.len() + body.len());
@@ -290,7 +288,7 @@ fn encode(record: &Record) -> Vec<u8> {
     bytes
 }
 
-/// All records up to the first one that is cut or spoilt, and whether there is one.
+/// Decodes all records up to the first damaged one. Also returns 1 if there is one.
 fn decode_all(mut bytes: &[u8]) -> (VecDeque<Record>, u64) {
     let mut records = VecDeque::new();
     while !bytes.is_empty() {
@@ -318,7 +316,7 @@ fn decode(bytes: &[u8]) -> Option<(Record, &[u8])> {
     Some((record, rest))
 }
 
-/// Whether a folder is somebody else's at present.
+/// Whether the error means that another process uses the folder.
 pub fn is_taken(error: &io::Error) -> bool {
     error.kind() == ErrorKind::WouldBlock
 }
@@ -362,7 +360,7 @@ mod tests {
         for len in 0..=whole.len() {
             fs::write(file, &whole[..len]).unwrap();
             let mut spool = Spool::open(folder.path(), 1 << 20).unwrap();
-            // The next process writes into a file of its own.
+            // The next process starts a new segment.
             spool.append(&record(9)).unwrap();
             let complete = u64::try_from(len / one).unwrap();
             assert_eq!(all(&mut spool), (1..=complete).chain([9]).collect::<Vec<_>>(), "{len}");
@@ -388,7 +386,7 @@ mod tests {
         drop(spool);
         let mut spool = Spool::open(folder.path(), 64 << 10).unwrap();
         assert_eq!(all(&mut spool), (1..=110).collect::<Vec<_>>());
-        // Where there is no room for all, the oldest go.
+        // If there is not enough room, the oldest are dropped.
         drop(spool);
         let mut spool = Spool::open(folder.path(), 1 << 10).unwrap();
         let (dropped, None) = spool.prepend(&records) else { panic!("the disk") };

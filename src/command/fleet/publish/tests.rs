@@ -1,4 +1,4 @@
-//! The pump in virtual time, between looks that are made here and a broker that is made here.
+//! Tests of the pump in virtual time, with simulated polls and a simulated broker.
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -29,7 +29,7 @@ use crate::output::log::Level;
 use crate::settings::inventory::Inventory;
 use crate::settings::{Robot, Selection, Sources};
 
-/// A robot of this name.
+/// A robot with this name.
 pub fn robot(name: &str) -> Arc<Robot> {
     let text = format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"sim:\"\n");
     let inventory = Inventory::parse(&text, "robots.toml").unwrap();
@@ -38,7 +38,7 @@ pub fn robot(name: &str) -> Arc<Robot> {
     Arc::new(robots.remove(0))
 }
 
-/// A look that found this place, and alarms with these codes.
+/// A poll result with this position and these alarm codes.
 pub fn look(robot: &Arc<Robot>, x_mm: f64, alarms: &[&str]) -> Found {
     let alarm = |code: &&str| Alarm { code: Some((*code).to_owned()), ..Alarm::default() };
     let state = State {
@@ -58,30 +58,28 @@ pub fn silence(robot: &Arc<Robot>) -> Found {
     Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1), traffic: Traffic::default() }
 }
 
-/// What the broker does with those who come.
+/// Behaviour of the broker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mood {
     Works,
     Away,
-    /// Takes messages, answers pings, and acknowledges nothing.
+    /// Accepts messages and answers pings, but does not acknowledge.
     Hangs,
     Refuses(u8),
     Distrusted,
-    /// Takes a client and its first message, and breaks the protocol then.
+    /// Accepts a client and its first message, then breaks the protocol.
     Breaks,
-    /// Takes the connection and answers nothing.
+    /// Accepts the connection but does not answer.
     Mute,
-    /// Is never reached, and never refused.
+    /// Cannot be reached, and does not refuse.
     Lost,
 }
 
-/// A broker, as long as its test.
 #[derive(Debug)]
 struct Fake {
     mood: RefCell<Mood>,
-    /// All that it has acknowledged.
+    /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
-    /// When somebody came.
     attempts: RefCell<Vec<Instant>>,
     changed: Notify,
     start: Instant,
@@ -107,7 +105,7 @@ impl Fake {
         self.taken.borrow().iter().map(|message| message.topic.clone()).collect()
     }
 
-    /// The places that came in the topic of this robot, in order.
+    /// Published positions of this robot, in order.
     fn places(&self, name: &str) -> Vec<f64> {
         let topic = format!("armctl/{name}/position");
         let taken = self.taken.borrow();
@@ -205,7 +203,7 @@ fn plain() -> Box<dyn Speech> {
     Box::new(Plain::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
 }
 
-/// Notes what is said unless it is for `-v`.
+/// Records log messages, except those for `-v`.
 #[derive(Debug, Default)]
 struct Notes {
     said: RefCell<Vec<String>>,
@@ -224,7 +222,7 @@ impl Listener for Notes {
     }
 }
 
-/// Runs the pump while `script` hands it what is found; what was said, and what came of it.
+/// Runs the pump with events from `script`. Returns the log and the counters.
 async fn pumped(
     fake: &Fake,
     outbox: Outbox,
@@ -262,7 +260,7 @@ async fn what_changes_is_told_and_what_does_not_is_told_again_in_time() {
     let mut expected = vec!["armctl/cell7/state".to_owned()];
     expected.extend(kinds(["status", "alarms", "position"]));
     expected.push("armctl/press/position".to_owned());
-    // Silence is said in all of them; of a robot that is no more the broker keeps nothing.
+    // A silent robot is reported in all its topics. The topics of a removed robot are cleared.
     expected.extend(kinds(["status", "alarms", "position"]));
     expected.extend(kinds(["alarms", "position", "status"]));
     expected.push("armctl/cell7/state".to_owned());
@@ -424,7 +422,7 @@ async fn a_service_outlives_every_refusal() {
             assert_eq!((counts.unwrap().published, fake.places("press")), (3, vec![1.0]));
             let attempts = fake.attempts.borrow().len();
             assert!((25..50).contains(&attempts), "{attempts} in half an hour");
-            // Once, and once every ten minutes.
+            // Once at first, then every ten minutes.
             let lines = said.iter().filter(|line| line.contains(why) && line.contains("trying again")).count();
             assert!((2..=4).contains(&lines), "{said:?}");
         }

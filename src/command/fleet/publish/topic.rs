@@ -1,22 +1,22 @@
-//! Names as levels of topics.
+//! Names as topic levels.
 //!
-//! A level is the name itself. What has a meaning in topics, or must not be in them, is written as `%` with the hex digits
-//! of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and a `$` at the beginning. So two names are never one
-//! topic, and the name can be read back.
+//! A level is the name. Characters with a special meaning in topics, or that are not allowed, are written as `%` and
+//! the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and a leading `$`. So two names
+//! never have the same topic, and the name can be decoded.
 
 use std::collections::BTreeSet;
 
 use crate::failure::Failure;
 use crate::settings::Robot;
 
-/// The names of robots as levels of topics. Where several have one name, as simulators do, that of the family follows it.
+/// Topic levels of robots. If several robots have the same name, as simulators do, the family is appended.
 #[derive(Debug, Clone, Default)]
 pub struct Levels {
     shared: BTreeSet<String>,
 }
 
 impl Levels {
-    /// Of these robots, and of those to come.
+    /// Levels for these robots, and for later ones.
     pub fn new(robots: &[Robot]) -> Self {
         let (mut seen, mut shared) = (BTreeSet::new(), BTreeSet::new());
         for robot in robots {
@@ -27,10 +27,7 @@ impl Levels {
         Self { shared }
     }
 
-    /// That of a robot.
-    ///
-    /// # Errors
-    /// Its name cannot be one.
+    /// Level of a robot.
     pub fn of(&self, robot: &Robot) -> Result<String, Failure> {
         if self.shared.contains(&robot.name) {
             return level(&format!("{}-{}", robot.name, robot.family));
@@ -39,13 +36,10 @@ impl Levels {
     }
 }
 
-/// Longest level, in bytes. A topic can have 65,535 of them, and many brokers take fewer.
+/// Longest level in bytes. A topic can have 65,535 bytes, but many brokers allow fewer.
 const LONGEST: usize = 200;
 
-/// A name as a level of a topic.
-///
-/// # Errors
-/// It is empty or too long to be one.
+/// Encodes a name as a level.
 pub fn level(name: &str) -> Result<String, Failure> {
     let mut level = String::with_capacity(name.len());
     for (at, c) in name.char_indices() {
@@ -65,12 +59,12 @@ pub fn level(name: &str) -> Result<String, Failure> {
     Ok(level)
 }
 
-/// Code points that are no characters; the standard wants none of them in a topic.
+/// Unicode noncharacters; the standard does not allow them in topics.
 fn is_nothing(c: char) -> bool {
     matches!(c, '\u{fdd0}'..='\u{fdef}') || u32::from(c) & 0xfffe == 0xfffe
 }
 
-/// The beginning of all topics: levels with `/` between them, as they are.
+/// Checks a topic prefix: levels separated by `/`, used unchanged.
 pub fn prefix(text: &str) -> Result<String, String> {
     if text.is_empty() || text.len() > LONGEST {
         return Err(format!("a prefix takes 1 to {LONGEST} bytes"));
@@ -87,7 +81,7 @@ pub fn prefix(text: &str) -> Result<String, String> {
     Ok(text.to_owned())
 }
 
-/// An identifier of Sparkplug: no `+`, no `#`, no `/`.
+/// Checks a Sparkplug identifier: no `+`, `#` or `/`.
 pub fn identifier(text: &str) -> Result<String, String> {
     if text.is_empty() || text.len() > LONGEST {
         return Err(format!("an identifier takes 1 to {LONGEST} bytes"));
@@ -134,7 +128,7 @@ mod tests {
         }
     }
 
-    /// A level, read back.
+    /// Decodes a level.
     fn name(level: &str) -> String {
         let mut bytes = Vec::new();
         let mut rest = level.bytes();

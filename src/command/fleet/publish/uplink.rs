@@ -1,4 +1,4 @@
-//! The connection to a broker: the one place here that sees the transport.
+//! Connection to a broker; the only file of this folder that uses the transport.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ pub use crate::transport::mqtt::{
     Endpoint, Event, Hello, Identity, Loss, Message, Refusal, SendError, Tls, TlsError, Trust, Version, Will,
 };
 
-/// How long a broker has for all of it: connection, certificates, answer.
+/// Time limit of the whole connection procedure: TCP, TLS, answer.
 const WITHIN: Duration = Duration::from_secs(10);
 
 impl pump::Broker for Broker {

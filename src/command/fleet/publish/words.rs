@@ -1,10 +1,10 @@
-//! What a broker says and does, in words, with what to do about it.
+//! Failures for the broker's refusals and connection errors, with hints.
 
 use super::broker::Url;
 use super::uplink::{Loss, Refusal, TlsError, Version};
 use crate::failure::{Failure, Kind};
 
-/// What a code means, what to do, and whether it is about a setting of one of both ends. Of MQTT 3.1.1, section 3.2.2.3.
+/// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether it concerns a setting.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
     (1, "it does not speak this version of MQTT", "try --protocol 5, or ask which versions it has", true),
     (2, "it does not accept the name of this client", "give another name with --node", true),
@@ -13,7 +13,7 @@ const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
     (5, "not authorized to connect", "check --user and the password, and what the broker lets this user do", true),
 ];
 
-/// The same of MQTT 5, section 3.2.2.2.
+/// Reason codes of MQTT 5, section 3.2.2.2.
 const REASON_CODES: [(u8, &str, &str, bool); 20] = [
     (0x80, "it gives no reason", "its log tells more", false),
     (0x81, "it says that CONNECT is malformed", "try --protocol 3.1.1", true),
@@ -37,7 +37,7 @@ const REASON_CODES: [(u8, &str, &str, bool); 20] = [
     (0x9d, "it has moved", "name its new place", true),
 ];
 
-/// A broker that said no to CONNECT.
+/// Failure for a refused CONNECT.
 pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
     let Refusal { version, code, reason, server } = refusal;
     let codes: &[(u8, &str, &str, bool)] = match version {
@@ -54,7 +54,7 @@ pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
     if advice.is_empty() { failure } else { failure.hint(advice) }
 }
 
-/// A connection that did not come about, or ended.
+/// Failure for a connection that failed or was lost.
 pub fn loss(url: &Url, loss: &Loss) -> Failure {
     if let Loss::Tls(error) = loss {
         return distrust(url, error);
@@ -72,7 +72,7 @@ pub fn loss(url: &Url, loss: &Loss) -> Failure {
     failure.hint(hint)
 }
 
-/// What is wrong with a certificate.
+/// Failure for a certificate error.
 pub fn distrust(url: &Url, error: &TlsError) -> Failure {
     let (hint, kind) = match error {
         TlsError::UnknownIssuer => {

@@ -1,4 +1,4 @@
-//! `armctl robots check`: from the name of a robot to its alarms, and what to set where something is wrong.
+//! `armctl robots check`: checks each layer of a connection, with hints for problems.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -24,13 +24,13 @@ pub struct Check {
     pub name: Option<String>,
 }
 
-/// Robots of any family, each of which its own check connects to.
+/// Robots of any family. The check of the family connects to each of them.
 #[derive(Debug)]
 pub struct Checked;
 
 impl Family for Checked {
     const FAMILY: Option<target::Family> = None;
-    /// How the check may connect.
+    /// Access for the check.
     type Link = Access;
     const STOP: &'static [&'static str] = &[];
 

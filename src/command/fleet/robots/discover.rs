@@ -1,4 +1,4 @@
-//! `armctl robots discover`: controllers that answer on a network, and the serial ports of this machine.
+//! `armctl robots discover`: finds controllers on the network, and lists serial ports.
 
 use std::time::Duration;
 
@@ -42,7 +42,7 @@ fn wait(text: &str) -> Result<Duration, String> {
 }
 
 impl Discover {
-    /// As without arguments.
+    /// Default arguments.
     pub fn usual() -> Result<Self, Failure> {
         let matches = Self::augment_args(clap::Command::new("discover")).get_matches_from(["discover"]);
         Self::from_arg_matches(&matches).map_err(|error| Failure::local(format!("internal error: {error}")))
@@ -57,7 +57,7 @@ impl Discover {
         run.local("robots.discover", &self.find(run).await?)
     }
 
-    /// Asks who is there.
+    /// Runs the search.
     pub async fn find(self, run: &Run) -> Result<Discovered, Failure> {
         let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };
         run.begin_trace()?;
@@ -88,7 +88,7 @@ pub struct Discovered {
 }
 
 impl Discovered {
-    /// Each with its target, its family where that is known, and what it is.
+    /// Targets that were found, with family, if known, and description.
     pub fn places(&self) -> Vec<(String, Option<&'static str>, String)> {
         let boards = self.boards.iter().map(|board| (board.target.clone(), board.family, board.device.clone()));
         let port = |port: &Port| (port.target().to_owned(), None, format!("serial port: {}", port.device()));
@@ -96,7 +96,6 @@ impl Discovered {
     }
 }
 
-/// Said of an empty report.
 const NOTHING: &str = "no answer, and no serial port found. Connect this computer to the network of the robots, or \
                        select a network with --broadcast 192.168.0.255";
 

@@ -1,4 +1,4 @@
-//! `armctl robots edit` and `path`: the file itself.
+//! `armctl robots edit` and `path`: the inventory file.
 
 use std::io::Write as _;
 
@@ -15,10 +15,10 @@ use crate::files;
 use crate::output::view::View;
 use crate::settings::inventory::Inventory;
 
-/// What a new file begins with.
+/// Content of a new file.
 const NEW: &str = "# The robots of this site. `armctl help inventory` describes this file.\n";
 
-/// Has a copy of the file edited; it replaces the file if it can be read.
+/// Opens a copy of the file in an editor. If the copy is valid, it replaces the file.
 pub fn edit(run: &Run) -> Result<(), RunError> {
     let path = file::path(run)?;
     let place = || path.display().to_string();
@@ -29,7 +29,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
     let copy = tempfile::Builder::new().prefix("robots-").suffix(".toml").tempfile_in(&folder);
     let mut copy = copy.with_context(|| folder.display().to_string())?;
     copy.write_all(if before.is_empty() { NEW } else { &before }.as_bytes()).with_context(place)?;
-    // An editor may put another file in its place: from here on it is a name.
+    // Only the path is kept, because an editor can replace the file.
     let copy = copy.into_temp_path();
     open_editor(&copy)?;
     let after = files::text(&copy, files::SETTINGS).with_context(|| copy.display().to_string())?;
@@ -37,7 +37,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
         let robots = Inventory::parse(&before, &place())?.robots.len();
         return run.local("robots.edit", &Edited { file: place(), changed: false, robots });
     }
-    // Named like the copy, so that line and column are those of the file that is to be corrected.
+    // With the name of the copy, so that line and column in an error belong to the file in the editor.
     let checked = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
         file::replace(path, |now| {
             if now == before {
@@ -80,7 +80,7 @@ impl Report for Edited {
     }
 }
 
-/// Says where the file is, or would be.
+/// Prints the path of the inventory.
 pub fn path(run: &Run) -> Result<(), RunError> {
     let path = file::path(run)?;
     run.local("robots.path", &InventoryPath { file: path.display().to_string(), exists: path.exists() })

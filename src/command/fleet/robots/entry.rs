@@ -1,4 +1,4 @@
-//! Robots that come into the inventory, change, and leave it.
+//! Commands that add, change and remove inventory entries.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -44,27 +44,27 @@ pub struct Add {
     default: bool,
 }
 
-/// A robot that comes into the inventory.
+/// A new inventory entry.
 #[derive(Debug)]
 pub struct NewRobot {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Where it is.
+    /// Target.
     pub target: Target,
-    /// Its family.
+    /// Family.
     pub family: Family,
-    /// Read commands only.
+    /// Whether it accepts only reads and stops.
     pub read_only: bool,
-    /// See [`Entry`].
+    /// Automatic session; see [`Entry`].
     pub hold: bool,
-    /// Words to choose it by.
+    /// Tags.
     pub tags: Vec<String>,
-    /// Taken when no robot is named.
+    /// Whether it becomes the default robot.
     pub is_default: bool,
 }
 
 impl NewRobot {
-    /// Its table in the file.
+    /// Table of the entry.
     pub fn table(&self) -> Table {
         let mut table = Table::new();
         table["name"] = value(&self.name);
@@ -81,7 +81,7 @@ impl NewRobot {
         table
     }
 
-    /// Writes it into the file.
+    /// Writes the entry to the file.
     pub fn add(self, run: &Run, id: &'static str) -> Result<(), RunError> {
         let file = change(run, |document| document.add(self.table(), self.is_default))?;
         let target = self.target.url().to_owned();
@@ -134,10 +134,10 @@ pub struct Set {
     settings: Vec<String>,
 }
 
-/// Makes a value of the file of what was typed for a robot of a family.
+/// Parses the typed text for a robot of a family into a TOML value.
 type Parse = fn(&str, Family) -> Result<Value, Failure>;
 
-/// The settings of an entry, with what they are.
+/// Settings of an entry: key, description, parser.
 const SETTINGS: [(&str, &str, Parse); 10] = [
     ("target", "target URL", |text, family| {
         let target = text.parse::<Given>()?.of(Some(family))?;
@@ -203,11 +203,11 @@ impl Set {
     }
 }
 
-/// Writes settings of a robot into the file.
+/// Writes settings of a robot to the file.
 pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> Result<(), RunError> {
     let entry = known(&run.sources.inventory, &robot)?;
     let settings = settings.iter().map(|setting| assigned(setting)).collect::<Result<Vec<_>, _>>()?;
-    // What an address without a scheme means depends on the family that comes with it.
+    // The meaning of an address without a scheme depends on the family, which can be set in the same command.
     let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
     let family = family.unwrap_or(entry.family);
     let values = settings.iter().map(|(key, text, parse)| {
@@ -230,13 +230,13 @@ pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> R
     told(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
-/// What a name stands for: a number where it is one, as people write it into the file.
+/// Address of a name; a number if it looks like one, as in a hand-written file.
 fn address(text: &str, family: Family) -> Result<Value, Failure> {
     named(family, "any", text)?;
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
 }
 
-/// A setting as typed: its key, the text of its value, and how that is read.
+/// Splits a typed setting into its key and text, and finds its parser.
 fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
         return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("examples: read_only=off, timeout=5s"));
@@ -260,7 +260,7 @@ fn about(key: &str, failure: Failure) -> Failure {
     Failure { message: format!("{key}: {}", failure.message), ..failure }
 }
 
-/// A value of the file as one of a report.
+/// Converts a TOML value to JSON for the report.
 fn json(value: &Value) -> serde_json::Value {
     match value {
         Value::Boolean(is_on) => (*is_on.value()).into(),
@@ -386,12 +386,12 @@ impl Report for WasChosen {
     }
 }
 
-/// What was changed is changed, also where that could not be reported.
+/// The change is done even if the report could not be written.
 fn told(reported: Result<(), RunError>) -> Result<(), RunError> {
     reported.map_err(|stopped| RunError { failure: after_a_change(stopped.failure), ..stopped })
 }
 
-/// Whether a robot may be called so: a name that none has.
+/// Checks that a name is valid and not in use.
 pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
     if !is_name(name) {
         return Err(
@@ -406,7 +406,7 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The entry of a name.
+/// Entry with this name.
 pub fn known<'a>(inventory: &'a Inventory, name: &str) -> Result<&'a Entry, Failure> {
     inventory.robots.iter().find(|robot| robot.name == name).ok_or_else(|| {
         let failure = Failure::usage(format!("there is no robot '{name}' in the inventory"));

@@ -1,4 +1,4 @@
-//! The one place that changes `robots.toml`.
+//! Write access to `robots.toml`; the only place that changes the file.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::output::busy::busy;
 use crate::settings::document::{Document, Wrong};
 use crate::settings::inventory::Inventory;
 
-/// Where the inventory is, or would be.
+/// Path of the inventory file, whether it exists or not.
 pub fn path(run: &Run) -> Result<&Path, Failure> {
     run.sources
         .inventory
@@ -20,7 +20,7 @@ pub fn path(run: &Run) -> Result<&Path, Failure> {
         .ok_or_else(|| Failure::new(Kind::Usage, "no home folder for robots.toml").hint("give a file with --config"))
 }
 
-/// The text of the file; empty where there is none yet.
+/// Content of the file; empty if it does not exist.
 pub fn read(path: &Path) -> Result<String, Failure> {
     match files::text(path, files::SETTINGS) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
@@ -28,7 +28,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Changes the file; it is written beside and renamed. What comes back is where it is.
+/// Changes the file. A new version is written next to it and renamed. Returns the path.
 pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>) -> Result<String, Failure> {
     let path = path(run)?;
     replace(path, |text| {
@@ -43,10 +43,10 @@ pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), Wrong>
     Ok(path.display().to_string())
 }
 
-/// Replaces the file by what is made of its text. What would not be read again is not written.
+/// Replaces the file with the result of `make`. A version that cannot be parsed is not written.
 pub fn replace(path: &Path, make: impl FnOnce(&str) -> Result<String, Failure>) -> Result<Inventory, Failure> {
     let _busy = busy();
-    // Others may be changing it: what is read is what is replaced.
+    // Locks out other processes between the read and the write.
     let _turn = files::turn(path).with_context(|| path.display().to_string())?;
     let text = make(&read(path)?)?;
     let inventory = Inventory::parse(&text, &path.display().to_string())?;

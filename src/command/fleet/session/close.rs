@@ -1,4 +1,4 @@
-//! `armctl session close`: has sessions end, and waits until they are gone.
+//! `armctl session close`: closes sessions, and waits until they are closed.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -49,7 +49,7 @@ struct Session {
     became: &'static str,
 }
 
-/// The robot of the session that a person chooses; `None` where there is none, or nobody can choose.
+/// Session that the user chooses; `None` without sessions or without a terminal.
 async fn choose(run: &Run) -> Result<Option<String>, Failure> {
     if !run.screen.can_choose() {
         return Ok(None);
@@ -88,7 +88,7 @@ impl Close {
         }
         let mut meant = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
         for robot in &mut meant {
-            // One that does not answer has the address that was typed.
+            // A robot that does not answer is identified by the typed address.
             let _ = identify(&run.sources, families::of(robot.family).driver(), robot, false);
         }
         let is_named = |info: &Info, name: &str| {

@@ -1,4 +1,4 @@
-//! Links that are held: for a session that others use, or as long as this process runs one command line after the other.
+//! Session hosts in this process: for `session open`, or for the prompt and command files.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -24,28 +24,28 @@ use crate::settings::Robot;
 use crate::transport::session::host::{Host, Why};
 use crate::transport::session::place::{Place, Turn};
 
-/// A link that this process holds, and lets clients have.
+/// A link that this process holds, with clients.
 pub struct SessionHost {
     host: Host,
-    /// Stops what clients move when this process ends.
+    /// Stops the motions of clients when this process ends.
     guardian: Rc<HolderGuardian>,
-    /// What is to be done once the link is closed.
+    /// Action after the link is closed.
     finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
     label: String,
 }
 
-/// Whether a link could be held.
+/// Result of an attempt to hold a link.
 pub enum Attempt {
-    /// It is.
+    /// The link is held.
     Held(Box<SessionHost>),
-    /// Somebody has it already.
+    /// Another process has the link.
     Taken,
-    /// There is no place for sessions, and why.
+    /// No sessions are possible, with the reason.
     NoPlace(Failure),
 }
 
 impl SessionHost {
-    /// Opens the link to a robot, and lets clients in. `say` is told what happens from then on, also from other threads.
+    /// Opens the link to a robot, and accepts clients. `say` receives log messages, also from other threads.
     pub async fn open(
         robot: &Robot,
         access: &Access,
@@ -83,24 +83,24 @@ impl SessionHost {
         Ok(Attempt::Held(Box::new(Self { host, guardian, finish, label: robot.label() })))
     }
 
-    /// Has it end after so long without a client.
+    /// Sets the idle time after which the session ends.
     #[must_use]
     pub fn ending_after(self, idle: Option<Duration>) -> Self {
         Self { host: self.host.ending_after(idle), ..self }
     }
 
-    /// Serves until a client has it end, or none has come for long. The future may be dropped: [`SessionHost::end`] goes on
-    /// from there.
+    /// Serves clients until one of them closes the session, or until the idle time is over. Cancel safe:
+    /// [`SessionHost::end`] continues from there.
     pub async fn serve(&mut self) -> Why {
         self.guardian.guard(Box::pin(self.host.serve())).await
     }
 
-    /// Whether the controller shows that something is under way.
+    /// Whether the robot moves.
     pub fn under_way(&mut self) -> bool {
         self.host.under_way()
     }
 
-    /// Ends it: clients are told why, the link is closed, the record is whole.
+    /// Ends the session: informs clients, closes the link, completes the recording.
     pub async fn end(self, why: &str, screen: &Screen) -> Result<(), Failure> {
         if let Err(trouble) = self.host.end(why).await {
             screen.note(&format!("{}: the connection was not closed properly: {trouble}", self.label));
@@ -109,10 +109,10 @@ impl SessionHost {
     }
 }
 
-/// What a link has to tell at any time, to whoever types.
+/// Receiver of log messages.
 type Say = Arc<dyn Fn(&str) + Send + Sync>;
 
-/// Begins to hold nothing yet. What happens to links is told to `say`.
+/// Starts the thread without a link. Log messages go to `say`.
 pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManager, ManagerThread), Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("start")?;
@@ -125,7 +125,7 @@ pub fn start(say: impl Fn(&str) + Send + Sync + 'static) -> Result<(SessionManag
     Ok((manager.clone(), ManagerThread { manager, thread }))
 }
 
-/// The thread behind a [`SessionManager`].
+/// Thread behind a [`SessionManager`].
 #[derive(Debug)]
 pub struct ManagerThread {
     manager: SessionManager,
@@ -133,17 +133,17 @@ pub struct ManagerThread {
 }
 
 impl ManagerThread {
-    /// Lets all links go, and waits until they are gone.
+    /// Closes all links, and waits for it.
     pub async fn end(self) {
         let (done, is_done) = oneshot::channel();
-        // A thread that has ended holds nothing.
+        // A thread that has ended holds no link.
         if self.manager.end(done) && is_done.await.is_ok() {
             let _ = self.thread.join();
         }
     }
 }
 
-/// What the thread does.
+/// Body of the thread.
 async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
     let held = Rc::new(RefCell::new(BTreeSet::new()));
     let (end, ended) = watch::channel(false);
@@ -157,7 +157,7 @@ async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
             ManagerRequest::End(done) => {
                 end.send_replace(true);
                 while holdings.join_next().await.is_some() {}
-                // Whoever waited may have gone.
+                // The caller can be gone already.
                 let _ = done.send(());
                 return;
             }
@@ -187,7 +187,7 @@ async fn hold(
         match Place::find() {
             _ if !is_held => SessionHost::open(&robot, &access, &screen, tell).await.map(Some),
             Ok(Some(place)) if place.spot(&key).socket().exists() => Ok(None),
-            // A line that goes around the link that is held would meet another simulator, or open a second connection.
+            // A line that bypasses the held link would reach another simulator, or open a second connection.
             _ => Err(Failure::local(format!("{label}: somebody has removed the socket of the link that is held"))
                 .hint("leave, and begin again")),
         }
@@ -203,7 +203,7 @@ async fn hold(
         Ok(Some(Attempt::NoPlace(why))) => (Ok(By::Nobody(why)), None),
         Err(failure) => (Err(failure), None),
     };
-    // Whoever asked may have been interrupted; the link is there for the next line.
+    // The caller can be interrupted already. The link is there for the next line.
     let _ = done.send(by);
     let Some(mut holding) = holding else { return };
     held.borrow_mut().insert(key.clone());

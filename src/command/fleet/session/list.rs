@@ -1,4 +1,4 @@
-//! `armctl session list`: which links are held, and who uses them.
+//! `armctl session list`: open sessions and their clients.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ impl List {
     }
 }
 
-/// Where sessions are, or were.
+/// Locations of sessions, alive or dead.
 pub fn spots() -> Result<Vec<Spot>, Failure> {
     match Place::find().and_then(|place| place.map_or(Ok(Vec::new()), |place| place.spots())) {
         Ok(spots) => Ok(spots),
@@ -121,7 +121,7 @@ impl Session {
         }
     }
 
-    /// What is worth knowing beside the columns.
+    /// Remark in addition to the columns.
     fn remark(&self) -> String {
         let mut remarks = Vec::new();
         remarks.extend(self.why.clone());

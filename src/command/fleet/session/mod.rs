@@ -25,17 +25,17 @@ pub enum Session {
 }
 
 impl Session {
-    /// Whether it makes a link, and so must know all about a robot.
+    /// Whether it opens a link, and needs all settings of a robot.
     pub fn opens(&self) -> bool {
         matches!(self, Self::Open(_))
     }
 
-    /// Whether it goes on until somebody ends it.
+    /// Whether it runs until it is closed.
     pub fn stays(&self) -> bool {
         matches!(self, Self::Open(open) if open.stays())
     }
 
-    /// Does it.
+    /// Runs the command.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self {
             Self::Open(open) => open.run(run).await,

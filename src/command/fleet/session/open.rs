@@ -1,4 +1,4 @@
-//! `armctl session open`: holds the link to a robot, in the foreground or behind it.
+//! `armctl session open`: holds the link to a robot, in the foreground or in the background.
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
@@ -47,7 +47,7 @@ pub struct Open {
 }
 
 impl Open {
-    /// Whether it holds the terminal, too.
+    /// Whether it runs in the foreground.
     pub fn stays(&self) -> bool {
         !self.background
     }
@@ -102,7 +102,7 @@ impl Open {
         }
     }
 
-    /// Opens the link, and lets clients in.
+    /// Opens the link, and accepts clients.
     async fn open(run: &Run, robot: &Robot, background: bool) -> Result<(Box<SessionHost>, Opened), Failure> {
         let place = Place::make().map_err(|error| no_place(&error))?;
         let spot = place.spot(&key_of(robot));
@@ -123,7 +123,7 @@ impl Open {
         Ok((holding, opened))
     }
 
-    /// Serves until somebody wants it to end, or nobody uses it any more; that is no failure.
+    /// Serves until the session is closed or idle; both are normal.
     async fn serve(&self, run: &Run, holding: Box<SessionHost>) -> Result<(), Failure> {
         let mut holding = holding.ending_after(self.idle);
         let why = match interruptible(holding.serve()).await {
@@ -135,7 +135,7 @@ impl Open {
     }
 }
 
-/// Somebody else holds the link already.
+/// Failure: another process has the link.
 async fn taken(robot: &Robot, spot: &Spot) -> Failure {
     let who = match (status(spot).await, spot.owner()) {
         (Ok(Some(status)), _) => format!("process {}, since {}", status.info.pid, since(status.for_ms)),
@@ -146,7 +146,7 @@ async fn taken(robot: &Robot, spot: &Spot) -> Failure {
         .hint(format!("commands go through it by themselves; `armctl session close {}` ends it", robot.name))
 }
 
-/// Where it is told what happens: on the terminal, or in a file.
+/// Log of a session: on the terminal, or in a file.
 struct SessionLog {
     screen: Screen,
     label: String,
@@ -154,7 +154,7 @@ struct SessionLog {
     repeats: Repeats,
 }
 
-/// What was only counted is told at the end.
+/// Writes the counts of repeated lines at the end.
 impl Drop for SessionLog {
     fn drop(&mut self) {
         for line in self.repeats.due(Instant::now(), true) {
@@ -163,7 +163,7 @@ impl Drop for SessionLog {
     }
 }
 
-/// The file is begun anew at this size; the one before is kept.
+/// Size limit of the log file. Above it, a new file is started, and the old one is kept.
 const LONGEST: u64 = 1 << 18;
 
 impl SessionLog {
@@ -179,7 +179,7 @@ impl SessionLog {
             self.screen.note(&format!("{}: {text}", self.label));
             return;
         };
-        // A full disk must not end the session: a robot may be moving.
+        // A full disk must not end the session, because a robot can be moving.
         let _ = (|| {
             if path.metadata().is_ok_and(|found| found.len() > LONGEST) {
                 std::fs::rename(path, path.with_extension("log.1"))?;

@@ -1,4 +1,4 @@
-//! What the inventory says of a robot while a session is open.
+//! Inventory entry of a robot during an open session.
 
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -6,10 +6,10 @@ use std::time::SystemTime;
 use crate::settings::inventory::{Inventory, Location};
 use crate::settings::{Robot, Sources};
 
-/// The entry of a robot, read again whenever the file has changed. Once it is read-only it stays so.
+/// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays so.
 pub struct WatchedEntry {
     robot: Robot,
-    /// What tells the version of the file that was read from the next one.
+    /// Version of the file that was read last.
     version: Option<(SystemTime, u64)>,
 }
 
@@ -18,10 +18,10 @@ impl WatchedEntry {
         Self { robot: robot.clone(), version: None }
     }
 
-    /// Whether the robot is read-only by now.
+    /// Whether the robot is read-only now.
     ///
     /// # Errors
-    /// In words, when the file cannot be read; once for each version of it.
+    /// A text, if the file cannot be read; once per version of the file.
     pub fn is_read_only(&mut self) -> Result<bool, String> {
         let Some(path) = self.robot.inventory.clone().filter(|_| !self.robot.read_only.value) else {
             return Ok(self.robot.read_only.value);
@@ -36,7 +36,7 @@ impl WatchedEntry {
     }
 
     fn update(&mut self, path: PathBuf) -> Result<(), String> {
-        // A file that is gone says nothing new.
+        // A deleted file changes nothing.
         let inventory = Inventory::load(&Location::Usual(path)).map_err(|failure| {
             format!("whether {} is read-only could not be read again: {failure}", self.robot.name)
         })?;

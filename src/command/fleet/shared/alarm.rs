@@ -1,4 +1,4 @@
-//! `armctl alarm list|history|watch|reset`: alarms of robots of any family.
+//! `armctl alarm list|history|watch|reset` for robots of any family.
 
 use std::time::Duration;
 
@@ -41,15 +41,15 @@ pub struct Watch {
 }
 
 impl Alarm {
-    /// Whether it only reads, so that all robots are meant where none is named.
+    /// Whether it only reads. Without a selection it then applies to all robots.
     pub fn reads(&self) -> bool {
         !matches!(self, Self::Reset)
     }
 
-    /// As a command for robots.
+    /// Command for robots of any family.
     ///
     /// # Errors
-    /// A family that lacks the verb, which a test rules out.
+    /// A family without this verb; a test excludes that.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self {
             Self::List(_) => Box::new(List {}),
@@ -60,7 +60,7 @@ impl Alarm {
     }
 }
 
-/// The schemas of what is reported.
+/// Schemas of the reports.
 pub fn schemas() -> [SchemaEntry; 4] {
     [
         SchemaEntry::of::<Present>("alarm.list"),
@@ -99,7 +99,7 @@ impl Command for List {
         Ok(Present { alarms: AllAlarms::present(alarms), several })
     }
 
-    /// `3 robots, 1 with an alarm`.
+    /// Summary line: `3 robots, 1 with an alarm`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let has_alarm = |envelope: &&Envelope| {
             envelope.data.as_ref().and_then(|data| data["alarms"].as_array()).is_some_and(|alarms| !alarms.is_empty())

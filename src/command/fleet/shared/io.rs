@@ -1,4 +1,4 @@
-//! `armctl io get|list|watch`: signals of robots of any family.
+//! `armctl io get|list|watch` for robots of any family.
 
 use std::time::Duration;
 
@@ -49,10 +49,7 @@ pub struct Watch {
 }
 
 impl Io {
-    /// As a command for robots.
-    ///
-    /// # Errors
-    /// No family understands a word of it.
+    /// Command for robots of any family.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         let (id, verb, words) = match self {
             Self::Get(Get { signals }) => ("io.get", "get", signals.clone()),
@@ -64,7 +61,7 @@ impl Io {
     }
 }
 
-/// The schemas of what is reported.
+/// Schemas of the reports.
 pub fn schemas() -> [SchemaEntry; 3] {
     [
         SchemaEntry::of::<Signals>("io.get"),

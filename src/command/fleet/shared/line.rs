@@ -1,4 +1,5 @@
-//! A line of the family of each robot: `io get clamp`. Each robot has names of its own, so each reads the line itself.
+//! A command line for each family: `io get clamp`. Names are different on each robot, so the line is parsed for each
+//! robot.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -20,24 +21,21 @@ use crate::gate::{Confirmation, Intent};
 use crate::settings::Robot;
 use crate::settings::target::Family;
 
-/// The command that a line is, or why it is none.
+/// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 
-/// A line that reads, in the words that all families share.
+/// A read command in words that all families have.
 pub struct SharedLine {
     id: &'static str,
     words: Vec<String>,
-    /// As each family reads it, any address in place of a name.
+    /// Commands by family, with placeholder addresses for names.
     usual: Vec<(Family, Parsed)>,
-    /// As each robot reads it: by its name.
+    /// Commands by robot name.
     own: RefCell<HashMap<String, Rc<Parsed>>>,
 }
 
 impl SharedLine {
-    /// A line; `id` is its name in envelopes and schemas.
-    ///
-    /// # Errors
-    /// No family understands it.
+    /// Parses a line; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, words: Vec<String>) -> Result<Self, Failure> {
         let usual: Vec<(Family, Parsed)> =
             Family::ALL.into_iter().map(|family| (family, names::asking(|| parse(family, &words)).0)).collect();
@@ -93,7 +91,7 @@ impl AnyCommand for SharedLine {
     }
 }
 
-/// The command of a family that words are.
+/// Parses words into a command of a family.
 fn parse(family: Family, words: &[String]) -> Parsed {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(true).disable_help_flag(true);

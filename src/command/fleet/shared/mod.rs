@@ -1,4 +1,4 @@
-//! Verbs that every family has, for robots of any: each gets the command of its family.
+//! Verbs that every family has. Each robot gets the command of its family.
 
 pub mod alarm;
 pub mod io;
@@ -18,14 +18,14 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use crate::settings::target::{Address, Family};
 
-/// A verb that each family carries out in its own way.
+/// A verb with the command of each family.
 pub struct Shared {
     id: &'static str,
     commands: [(Family, Box<dyn AnyCommand>); FAMILIES.len()],
 }
 
 impl Shared {
-    /// Such a verb; `id` is its name in envelopes and schemas.
+    /// Creates a verb; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, verb: SharedVerb) -> Self {
         Self { id, commands: FAMILIES.map(|face| (face.family(), face.shared(verb))) }
     }
@@ -66,24 +66,24 @@ impl AnyCommand for Shared {
     }
 }
 
-/// `armctl stop`: what stops each robot.
+/// `armctl stop`: the stop command of each family.
 pub fn stop() -> Shared {
     Shared::new("stop", SharedVerb::Stop)
 }
 
-/// `armctl position`: where each robot stands.
+/// `armctl position`: current position of each robot.
 pub fn position() -> Shared {
     Shared::new("position", SharedVerb::Position)
 }
 
-/// The schemas of what is reported.
+/// Schemas of the reports.
 pub fn schemas() -> Vec<SchemaEntry> {
     let stop = SchemaEntry::of::<Done>("stop");
     let position = SchemaEntry::of::<AllPositions>("position");
     alarm::schemas().into_iter().chain(io::schemas()).chain([position, stop]).collect()
 }
 
-/// Connects to each robot as its family does.
+/// Connects to each robot with the driver of its family.
 struct PerRobot;
 
 impl Driver for PerRobot {

@@ -1,48 +1,48 @@
-//! What keys order.
+//! Key bindings of the teach panel.
 
 use crate::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crate::output::painter::Explained;
 
-/// What a key orders.
+/// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyAction {
-    /// The axis above, or below.
+    /// Previous or next axis.
     Axis(isize),
-    /// A step of the chosen axis, forwards or backwards.
+    /// Move the selected axis by one step, forward or backward.
     Step(bool),
-    /// A larger or a smaller step.
+    /// Larger or smaller step.
     StepSize(isize),
     /// Faster or slower.
     Speed(isize),
-    /// The next way in which axes move.
+    /// Next coordinate system.
     System,
-    /// Stop.
+    /// Stop the robot.
     Stop,
-    /// Let a held robot go on.
+    /// Release HOLD.
     Release,
     /// Store a point.
     Store,
-    /// Go to a point.
+    /// Move to a point.
     Go,
-    /// A character of an answer.
+    /// Add a character to the answer.
     Type(char),
-    /// The last character goes.
+    /// Remove the last character.
     Erase,
-    /// The answer is whole.
+    /// Confirm the answer.
     Enter,
-    /// No answer after all; no help any more.
+    /// Cancel the answer, or close the help.
     Escape,
-    /// Explain the keys, or no more.
+    /// Open or close the help.
     Help,
-    /// End.
+    /// Quit.
     Quit,
-    /// End as Ctrl-C ends.
+    /// Quit as with Ctrl-C.
     Interrupt,
-    /// Draw everything anew.
+    /// Redraw the screen.
     Refresh,
 }
 
-/// What a key orders; nothing if it means nothing. `is_asked`: it belongs to an answer. A stop is one everywhere.
+/// Action of a key; `None` if it has none. With `is_asked`, the key belongs to an answer, but a stop key always stops.
 pub fn order(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
@@ -79,7 +79,7 @@ pub fn order(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
     })
 }
 
-/// Every key, in the order in which they are explained.
+/// All keys in the order of the help.
 pub const KEYS: [Explained; 12] = [
     Explained { key: "← →", short: "step", full: "move the chosen axis by one step, - or +" },
     Explained { key: "↑ ↓", short: "axis", full: "choose the axis" },

@@ -1,11 +1,11 @@
-//! `armctl teach`: a panel that moves a robot by single steps and teaches points. Every key is a command line that the panel
-//! types, as a person could; `crate::app` runs them.
+//! `armctl teach`: a panel that moves a robot by single steps and teaches points. Every key runs a command line, as if
+//! it were typed; `crate::app` executes it.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `model` | what is chosen, what is under way, what was typed; no terminal, no line, no clock |
-//! | `keys` | what keys order, and how they are explained |
-//! | `view` | the picture: the robot as `top` shows it, and the panel below |
+//! | `model` | selection, motion in progress, past commands; no terminal, no link, no clock |
+//! | `keys` | key bindings and their help |
+//! | `view` | screen: the robot as in `top`, with the panel below |
 
 mod keys;
 mod model;
@@ -48,7 +48,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl Teach {
-    /// What the gate is told: one yes for all steps of a panel.
+    /// Intent for the gate: one confirmation for all steps of the panel.
     pub fn intent(&self) -> Intent {
         let Self { max_step, max_speed, .. } = self;
         Intent {
@@ -66,6 +66,6 @@ impl Teach {
 /// Runs command lines of the panel.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Types {
-    /// The data that a command line of the family reports.
+    /// Runs a command line of the family, and returns the data of its report.
     async fn run(&self, words: &[String]) -> Result<serde_json::Value, Failure>;
 }

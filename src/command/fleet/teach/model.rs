@@ -1,5 +1,5 @@
-//! What the panel knows: what is chosen, what is under way, what was typed and what came of it. It is handed keys and
-//! outcomes, and knows no terminal, no line and no clock.
+//! State of the teach panel: selection, motion in progress, past commands and their results. Its input is keys and
+//! results. It knows no terminal, no link and no clock.
 
 use std::collections::VecDeque;
 
@@ -9,98 +9,98 @@ use super::keys::KeyAction;
 use crate::command::face::panel::{Panel, System};
 use crate::failure::{Failure, Kind};
 
-/// Lines of the past that are kept.
+/// Number of past commands kept.
 const PAST: usize = 20;
-/// What a point holds that was never taught.
+/// Text for a point that was never taught.
 const EMPTY: &str = "empty";
-/// Digits of a point.
+/// Digits of a point number.
 const DIGITS: usize = 5;
 
-/// What the panel shall do next.
+/// Next action of the panel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wish {
     /// Move an axis.
     Step {
-        /// Its number.
+        /// Axis number.
         axis: usize,
-        /// By so many steps of the controller, or units.
+        /// Distance in steps of the controller, or in units.
         by: f64,
     },
     /// Stop the robot.
     Stop,
-    /// Let it go on.
+    /// Release HOLD.
     Release,
-    /// Ask what is in a point, before it is stored, or gone to.
+    /// Read a point before it is stored or moved to.
     Look(u32),
     /// Store a point.
     Store(u32),
-    /// Go to a point.
+    /// Move to a point.
     Go(u32),
-    /// End.
+    /// Quit.
     Quit,
-    /// End as Ctrl-C does.
+    /// Quit as with Ctrl-C.
     Interrupt,
-    /// Draw everything anew.
+    /// Redraw the screen.
     Refresh,
 }
 
-/// What is done with a point.
+/// Use of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Use {
-    /// The place of the robot is stored in it.
+    /// Store the current position in the point.
     Store,
-    /// The robot goes to it.
+    /// Move to the point.
     Go,
 }
 
-/// What was asked of the person.
+/// Open question to the user.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Asked {
-    /// Which point; as far as it is typed.
+    /// Point number, as typed so far.
     Point(Use, String),
-    /// Whether to do it, with what the point holds now.
+    /// Confirmation with the current content of the point.
     Sure(Use, u32, String),
-    /// Whether to let a held robot go on.
+    /// Confirmation to release HOLD.
     Release,
 }
 
-/// A line that was typed for a key.
+/// A past command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Typed {
     number: u64,
-    /// As a person would type it, behind the word of the family.
+    /// Command line without the family.
     pub words: String,
-    /// What came of it; nothing while it is under way.
+    /// Result; `None` while it is in progress.
     pub outcome: Option<Result<(), Failure>>,
 }
 
-/// Everything that a picture of the panel is made of.
+/// State of the panel.
 #[derive(Debug)]
 pub struct Model {
-    /// The keys as command lines.
+    /// Panel of the family.
     pub panel: Panel,
-    /// Most that a key may move, in mm or degrees.
+    /// Largest step in mm or degrees.
     max_step: f64,
     max_speed: u32,
     system: usize,
-    /// The chosen axis.
+    /// Selected axis.
     pub axis: usize,
     step: usize,
     speed: usize,
-    /// Size of the controller's own small step of each axis, in the unit of the axis.
+    /// Size of the controller's small step per axis, in the unit of the axis.
     scale: Vec<f64>,
-    /// What the person is asked.
+    /// Open question.
     pub asked: Option<Asked>,
-    /// Whether the keys are explained.
+    /// Whether the help is open.
     pub has_help: bool,
-    /// Lines that were typed, the latest at the end.
+    /// Past commands, newest last.
     pub past: VecDeque<Typed>,
-    /// Whether a step or a motion is under way.
+    /// Whether a motion is in progress.
     pub is_moving: bool,
 }
 
 impl Model {
-    /// Nothing moves yet.
+    /// Creates the state without a motion.
     pub fn new(panel: Panel, max_step: f64, max_speed: u32) -> Self {
         let mut model = Self {
             panel,
@@ -120,18 +120,18 @@ impl Model {
         model
     }
 
-    /// The sizes of the controller's own small steps, in the units of the axes.
+    /// Sets the sizes of the controller's small steps, in the units of the axes.
     pub fn scale_by(&mut self, scale: Vec<f64>) {
         self.scale = scale;
         self.begin_again();
     }
 
-    /// The way in which axes move.
+    /// Selected coordinate system.
     pub fn system(&self) -> &'static System {
         &self.panel.systems[self.system]
     }
 
-    /// Steps that a key may move the chosen axis, as the command line has them.
+    /// Allowed steps of the selected axis, as on the command line.
     fn steps(&self) -> Vec<f64> {
         let size = self.size();
         let is_bounded = self.unit() != "pulses";
@@ -143,32 +143,32 @@ impl Model {
         self.system().speeds.iter().copied().filter(|speed| *speed <= self.max_speed).collect()
     }
 
-    /// How much the chosen axis moves by a step of 1.
+    /// Distance of a step of 1 on the selected axis.
     fn size(&self) -> f64 {
         self.scale.get(self.axis).copied().unwrap_or(1.0)
     }
 
-    /// The name of the chosen axis.
+    /// Name of the selected axis.
     pub fn axis_name(&self) -> &'static str {
         self.system().axes.get(self.axis).map_or("", |(name, _)| name)
     }
 
-    /// The unit of the chosen axis.
+    /// Unit of the selected axis.
     pub fn unit(&self) -> &'static str {
         self.system().axes.get(self.axis).map_or("", |(_, unit)| unit)
     }
 
-    /// How far a key moves the chosen axis, in its unit; nothing where not even the least step is allowed.
+    /// Selected step in the unit of the axis; `None` if even the smallest step is not allowed.
     pub fn step(&self) -> Option<f64> {
         self.steps().get(self.step).map(|step| step * self.size())
     }
 
-    /// How fast; nothing where the controller has its own speed for small steps.
+    /// Selected speed; `None` if the controller has a fixed speed for small steps.
     pub fn speed(&self) -> Option<u32> {
         self.speeds().get(self.speed).copied()
     }
 
-    /// Whether no speed of this way is as low as is allowed.
+    /// Whether all speeds of the system are above the limit.
     fn is_too_fast(&self) -> bool {
         !self.system().speeds.is_empty() && self.speed().is_none()
     }
@@ -179,7 +179,7 @@ impl Model {
         self.speed = 1.min(self.speeds().len().saturating_sub(1));
     }
 
-    /// Takes a key, and says what is to be done.
+    /// Handles a key. Returns the resulting action.
     pub fn obey(&mut self, action: KeyAction) -> Option<Wish> {
         match action {
             KeyAction::Stop => {
@@ -201,8 +201,8 @@ impl Model {
             }
             KeyAction::StepSize(by) => self.step = moved(self.step, by, self.steps().len()),
             KeyAction::Speed(by) => self.speed = moved(self.speed, by, self.speeds().len()),
-            // Whatever else is wanted waits until what moves has ended, and is not remembered: a key that is held down
-            // must not fill a queue.
+            // During a motion, all other keys are ignored and not queued. A key that is held down must not fill a
+            // queue.
             _ if self.is_moving => {}
             KeyAction::System => {
                 self.system = (self.system + 1) % self.panel.systems.len();
@@ -220,7 +220,7 @@ impl Model {
         None
     }
 
-    /// A key of an answer.
+    /// Handles a key of an answer.
     fn answer(&mut self, action: KeyAction) -> Option<Wish> {
         match (self.asked.as_mut()?, action) {
             (Asked::Point(_, typed), KeyAction::Type(digit)) if digit.is_ascii_digit() && typed.len() < DIGITS => {
@@ -240,20 +240,20 @@ impl Model {
                 self.asked = None;
                 return Some(Wish::Release);
             }
-            // Only a y is a yes.
+            // Only "y" confirms.
             (Asked::Sure(..) | Asked::Release, KeyAction::Type(_) | KeyAction::Enter) => self.asked = None,
             _ => {}
         }
         None
     }
 
-    /// What a point holds now: the next question.
+    /// Handles the content of a point: asks for confirmation.
     pub fn found(&mut self, point: u32, content: Result<Value, Failure>) {
-        // Meanwhile the question may have been put away.
+        // The user can have closed the question.
         let Some(Asked::Point(what, _)) = self.asked else { return };
         match content {
             Ok(data) => self.asked = Some(Asked::Sure(what, point, content_of(&data))),
-            // Nobody has taught it yet.
+            // The point was never taught.
             Err(failure) if what == Use::Store && failure.kind == Kind::Refused => {
                 self.asked = Some(Asked::Sure(what, point, EMPTY.to_owned()));
             }
@@ -265,7 +265,7 @@ impl Model {
         }
     }
 
-    /// A line is on its way: its number.
+    /// Adds a command in progress. Returns its number.
     pub fn begin(&mut self, words: &[String]) -> u64 {
         if self.past.len() == PAST {
             self.past.pop_front();
@@ -275,14 +275,14 @@ impl Model {
         number
     }
 
-    /// What a line turned out to be.
+    /// Replaces the text of a command by the actual command line.
     pub fn was(&mut self, number: u64, words: &[String]) {
         if let Some(typed) = self.past.iter_mut().find(|typed| typed.number == number) {
             typed.words = words.join(" ");
         }
     }
 
-    /// A line has ended.
+    /// Sets the result of a command.
     pub fn end(&mut self, number: u64, outcome: Result<(), Failure>) {
         if let Some(typed) = self.past.iter_mut().find(|typed| typed.number == number) {
             typed.outcome = Some(outcome);
@@ -290,12 +290,12 @@ impl Model {
     }
 }
 
-/// An index moved within bounds.
+/// Moves an index within its range.
 fn moved(index: usize, by: isize, length: usize) -> usize {
     index.saturating_add_signed(by).min(length.saturating_sub(1))
 }
 
-/// What a point holds, in a line, of the data of a command that read it alone.
+/// One-line content of a point, from the data of its read command.
 fn content_of(data: &Value) -> String {
     let list = data.as_object().and_then(|fields| fields.values().find_map(Value::as_array));
     let point = list.and_then(|list| list.first()).unwrap_or(&Value::Null);
@@ -304,7 +304,7 @@ fn content_of(data: &Value) -> String {
     format!("{label}{}", place_of(value))
 }
 
-/// A place in a line.
+/// One-line position.
 fn place_of(value: &Value) -> String {
     if let Some(text) = value.get("text").and_then(Value::as_str) {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! Shows the panel until somebody leaves: types the lines that keys stand for, one motion at a time.
+//! Event loop of the teach panel: runs the command lines of keys, one motion at a time.
 
 use std::time::Duration;
 
@@ -23,24 +23,23 @@ use crate::output::fullscreen::{Event, Fullscreen, Keys};
 use crate::output::painter::Palette;
 use crate::settings::Robot;
 
-/// Time from look to look, and between pictures.
+/// Polling interval, and interval of screen updates.
 const EVERY: Duration = Duration::from_millis(250);
-/// The longest that the robot is left alone while it does not answer.
+/// Longest backoff while the robot does not answer.
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// What a line came to.
 enum Done {
-    /// What is in a point.
+    /// Content of a point.
     Found(u32, Result<Value, Failure>),
-    /// Line number so and so; whether it was one that keeps others waiting.
+    /// A command with this number; `true` if others wait for it.
     Line(u64, bool, Result<(), Failure>),
-    /// A step, with its line if it came to one.
+    /// A step, with its command line, if there was one.
     Step(u64, Vec<String>, Result<(), Failure>),
 }
 
 type Running<'a> = FuturesUnordered<LocalBoxFuture<'a, Done>>;
 
-/// Shows the panel of a robot, which the gate has let through.
+/// Shows the panel of a robot. The gate has already authorized it.
 pub async fn show(
     screen: &Screen,
     robot: &Robot,
@@ -85,7 +84,7 @@ struct Show<'a, L> {
     is_real: bool,
     lines: &'a L,
     start: Instant,
-    /// How the panel ends, once nothing is under way.
+    /// Result of the panel; it ends when no command is in progress.
     leaving: Option<Result<(), Failure>>,
 }
 
@@ -115,7 +114,7 @@ impl<'a, L: Types> Show<'a, L> {
                     None => self.leave(Err(Failure::new(Kind::Interrupted, "the terminal was closed"))),
                 },
                 Some(done) = running.next(), if !running.is_empty() => self.take(done),
-                // The lines under way hear it, too, and stop the robot.
+                // Commands in progress also receive the interrupt, and stop the robot.
                 how = asked_to_end(), if self.leaving.is_none() => {
                     self.leave(Err(Failure::new(Kind::Interrupted, how)));
                 }
@@ -140,7 +139,7 @@ impl<'a, L: Types> Show<'a, L> {
         self.terminal.draw(|frame| draw(frame, model, &robot, palette))
     }
 
-    /// What is to be run for a wish. Whoever leaves while something moves stops it first.
+    /// Starts the command of an action. To quit during a motion, it first stops the robot.
     fn heed(&mut self, wish: Wish, running: &Running<'a>) -> Result<Option<LocalBoxFuture<'a, Done>>, Failure> {
         let panel = self.model.panel;
         let line = match wish {
@@ -157,7 +156,7 @@ impl<'a, L: Types> Show<'a, L> {
                 self.line(owned(panel.stop), false)
             }
             Wish::Stop => self.line(owned(panel.stop), false),
-            // Nothing new begins.
+            // No new command.
             _ if self.leaving.is_some() || self.model.is_moving => return Ok(None),
             Wish::Release => self.line(owned(panel.release.unwrap_or_default()), true),
             Wish::Look(point) => {
@@ -174,7 +173,7 @@ impl<'a, L: Types> Show<'a, L> {
         Ok(Some(line))
     }
 
-    /// A line; others wait until it has ended.
+    /// Runs a command; with `waits`, others wait for it.
     fn line(&mut self, words: Vec<String>, waits: bool) -> LocalBoxFuture<'a, Done> {
         let number = self.model.begin(&words);
         self.model.is_moving |= waits;
@@ -182,7 +181,7 @@ impl<'a, L: Types> Show<'a, L> {
         async move { Done::Line(number, waits, lines.run(&words).await.map(|_| ())) }.boxed_local()
     }
 
-    /// A step from where the robot stands now.
+    /// Runs a step from the current position.
     fn step(&mut self, axis: usize, by: f64) -> LocalBoxFuture<'a, Done> {
         let (panel, system, lines) = (self.model.panel, self.model.system(), self.lines);
         let speed = self.model.speed().unwrap_or_default();

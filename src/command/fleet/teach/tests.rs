@@ -1,4 +1,4 @@
-//! What keys order, and the picture of the panel. `ARMCTL_BLESS=1` draws it anew; look at it.
+//! Tests of keys and screen of the panel. `ARMCTL_BLESS=1` writes the screens again; check the diff.
 
 use std::path::Path;
 use std::time::Duration;
@@ -44,14 +44,14 @@ fn steps_are_no_larger_than_is_allowed() {
         yerc.obey(KeyAction::StepSize(1));
     }
     assert_eq!(yerc.step(), Some(1.0));
-    // The controller's small step is 0.05 mm: a hundred of them are 5 mm.
+    // The controller's small step is 0.05 mm, so a hundred of them are 5 mm.
     let mut toyo = Model::new(families::of(Family::Toyo).panel(), 1.0, 10);
     toyo.scale_by(vec![0.05; 4]);
     for _ in 0..9 {
         toyo.obey(KeyAction::StepSize(1));
     }
     assert_eq!((toyo.step(), toyo.obey(KeyAction::Step(true))), (Some(0.5), Some(Wish::Step { axis: 0, by: 10.0 })));
-    // Nothing is as slow as that: nothing moves.
+    // All steps are above the limit, so nothing moves.
     let mut none = Model::new(families::of(Family::Yerc).panel(), 0.001, 10);
     assert_eq!((none.step(), none.obey(KeyAction::Step(true))), (None, None));
 }
@@ -66,7 +66,7 @@ fn a_point_is_stored_after_a_look_and_a_y() {
     assert_eq!(model.asked, Some(Asked::Sure(Use::Store, 5, "pulse:s=1".to_owned())));
     assert_eq!(typed(&mut model, "y"), Some(Wish::Store(5)));
 
-    // Anything else is no yes.
+    // Any other key is a no.
     model.obey(KeyAction::Go);
     typed(&mut model, "7");
     model.found(7, Ok(json!({"points": [{"point": 7, "x_mm": 1.5, "y_mm": null, "ok": true}]})));
@@ -88,7 +88,7 @@ fn a_point_that_is_empty_can_be_stored_and_not_gone_to() {
     }
 }
 
-/// A panel in the middle of work.
+/// A panel with commands in progress.
 fn at_work() -> Buffer {
     let mut seen = top::Model::new(&fleet(1), Duration::from_millis(250)).without_signals();
     seen.take(Duration::from_secs(1), 0, Ok(sample(1200.0)));
@@ -125,7 +125,7 @@ fn the_picture_is_current() {
     }
 }
 
-/// As a terminal shows it.
+/// The screen as SVG.
 fn drawn(buffer: &Buffer) -> String {
     let rows = buffer.content.chunks(usize::from(buffer.area.width));
     let text: String = rows.map(|row| row.iter().map(shown).collect::<String>() + "\n").collect();

@@ -1,4 +1,4 @@
-//! The picture of the panel: the robot as `top` shows it above, what keys do to it below.
+//! Screen of the teach panel: the robot as in `top`, with the panel below.
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
@@ -11,21 +11,21 @@ use crate::command::fleet::top;
 use crate::output::painter::{Painter, Palette, after, line_of, to_ascii, wrapped};
 use crate::output::view::Tone;
 
-/// Lines of the panel, and the most that lines of the past get.
+/// Lines of the panel, and the limit of lines for past commands.
 const PANEL: u16 = 3;
 const PAST: u16 = 6;
 
-/// What is shown of the robot.
+/// State of the robot.
 pub struct Robot<'a> {
-    /// As `top` knows it.
+    /// Model of the `top` screen.
     pub seen: &'a top::Model,
-    /// Since the panel began.
+    /// Time since the panel started.
     pub now: std::time::Duration,
-    /// Whether it is a real one.
+    /// Whether it is a real controller.
     pub is_real: bool,
 }
 
-/// Draws everything.
+/// Draws the screen.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, robot: &Robot<'_>, palette: Palette) {
     let area = frame.area();
     render(frame.buffer_mut(), area, model, robot, palette);
@@ -53,7 +53,7 @@ pub(super) fn render(buffer: &mut Buffer, area: Rect, model: &Model, robot: &Rob
     }
 }
 
-/// Which axis, how far, how fast; and what is asked.
+/// Draws axis, step, speed, and the open question.
 fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool) {
     let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
     let who = if is_real { "REAL CONTROLLER" } else { "simulator" };
@@ -85,7 +85,7 @@ fn controls(painter: &mut Painter<'_>, area: Rect, model: &Model, is_real: bool)
     }
 }
 
-/// What the person is asked.
+/// Text of the open question.
 fn question(model: &Model, asked: &Asked) -> String {
     let point = model.panel.point;
     match asked {
@@ -101,7 +101,7 @@ fn question(model: &Model, asked: &Asked) -> String {
     }
 }
 
-/// What was typed, and what came of it: the latest at the bottom, and what the latest failed of in full.
+/// Draws past commands, newest at the bottom, with the full error of the newest.
 fn lines(painter: &mut Painter<'_>, area: Rect, model: &Model) {
     let mut bottom = area.height;
     for (age, Typed { words, outcome, .. }) in model.past.iter().rev().enumerate() {

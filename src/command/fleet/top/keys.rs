@@ -1,57 +1,57 @@
-//! What keys order. None of them reaches a robot.
+//! Key bindings of `top`. No key sends anything to a robot.
 
 use crate::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 use crate::output::painter::Explained;
 
-/// What a key orders.
+/// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeyAction {
-    /// So many lines up: robots in the list, axes on the screen of one.
+    /// Move up by lines: robots in the list, axes on the robot screen.
     Up(usize),
-    /// So many lines down.
+    /// Move down by lines.
     Down(usize),
-    /// The robot before.
+    /// Previous robot.
     Previous,
-    /// The robot behind.
+    /// Next robot.
     Next,
-    /// Give the robot at the cursor the screen.
+    /// Open the screen of the selected robot.
     Open,
     /// Back to the list; in the list, show all robots again.
     Back,
-    /// Another order of the list.
+    /// Next sort order.
     Sort,
-    /// Stand still, or go on.
+    /// Pause or continue the display.
     Pause,
-    /// Look more often.
+    /// Poll more often.
     Faster,
-    /// Look less often.
+    /// Poll less often.
     Slower,
-    /// Explain the keys, or no more.
+    /// Open or close the help.
     Help,
-    /// Begin to type a filter.
+    /// Start to type a filter.
     Filter,
-    /// A character of the filter.
+    /// Add a character to the filter.
     Type(char),
-    /// The last character of the filter goes.
+    /// Remove the last character of the filter.
     Erase,
-    /// The filter is as it shall be.
+    /// Confirm the filter.
     Keep,
-    /// No filter after all.
+    /// Cancel the filter.
     Discard,
-    /// End.
+    /// Quit.
     Quit,
-    /// End as Ctrl-C ends.
+    /// Quit as with Ctrl-C.
     Interrupt,
     /// Suspend the process.
     Suspend,
-    /// Draw everything anew.
+    /// Redraw the screen.
     Refresh,
 }
 
 /// Lines of a page.
 const PAGE: usize = 10;
 
-/// What a key orders; nothing if it means nothing. `is_typing`: it belongs to the filter.
+/// Action of a key; `None` if it has none. With `is_typing`, the key belongs to the filter.
 pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
@@ -96,7 +96,7 @@ pub fn order(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     })
 }
 
-/// Every key, in the order in which they are explained: whether it counts in the list, and on the screen of one robot.
+/// All keys in the order of the help, with their validity in the list and on the robot screen.
 pub const KEYS: [((bool, bool), Explained); 15] = [
     explained((true, false), "↑ ↓", "choose", "select a robot; also j k, PgUp PgDn, Home End"),
     explained((true, false), "Enter", "open", "open the selected robot"),

@@ -1,11 +1,11 @@
-//! `armctl top`: all robots, or one, as they are now. A picture that fills the terminal.
+//! `armctl top`: full-screen live monitor of all robots, or of one.
 //!
-//! | file | holds |
+//! | file | contents |
 //! |---|---|
-//! | `model` | what is known and chosen; no terminal, no line, no clock |
-//! | `track` | the past of an axis |
-//! | `keys` | what keys order, and how they are explained |
-//! | `view` | the picture of a model |
+//! | `model` | data and selection; no terminal, no link, no clock |
+//! | `track` | history of an axis |
+//! | `keys` | key bindings and their help |
+//! | `view` | screen of a model |
 
 mod keys;
 mod model;
@@ -41,21 +41,21 @@ use crate::output::fullscreen::{Event, Fullscreen, Keys};
 )]
 pub struct Top {}
 
-/// Time from look to look, unless it is told; and the least one.
+/// Default and minimum polling interval.
 const EVERY: Duration = Duration::from_millis(500);
 const LEAST: Duration = Duration::from_millis(50);
-/// Least time between two pictures, and the greatest: times that pass are shown as well.
+/// Minimum and maximum time between two screen updates. Elapsed times are shown as well.
 const PICTURE: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
-/// The longest that a robot is left alone that does not answer: somebody waits for it.
+/// Longest backoff of a robot that does not answer. It is short, because a user is waiting.
 const LONGEST_PAUSE: Duration = Duration::from_secs(4);
 
 impl Top {
-    /// Does it.
+    /// Runs the command.
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(EVERY);
         fits(run, every)?;
-        // What links have to say would be written over the picture.
+        // Messages of links would damage the screen.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let screen = run.screen;
         if !screen.can_fill() {
@@ -66,7 +66,7 @@ impl Top {
         let model = Model::new(poll.robots(), every);
         let mut updates = poll.subscribe(wish_of(&model));
         let mut polled = Box::pin(poll.run());
-        // From here on nothing may end the process that does not give the terminal back.
+        // From here on, the process must restore the terminal before it ends.
         catch_interrupts();
         let palette = Palette { has_color: screen.stdout_color(), is_unicode: screen.is_unicode() };
         let ended = {
@@ -77,18 +77,18 @@ impl Top {
             let shown = interruptible(view.show(keys));
             tokio::select! {
                 ended = shown => ended.and_then(|ended| ended),
-                // It goes on as long as somebody wants to know.
+                // The poller runs as long as it has a consumer.
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
             }
         };
-        // The terminal is as it was found. Links are left properly, but nobody waits long for it.
+        // The terminal is restored. The links are closed within a time limit.
         drop(updates);
         polled.await;
         Ok(ended?)
     }
 }
 
-/// Refuses what has no meaning on a screen.
+/// Rejects options that make no sense on a screen.
 fn fits(run: &Run, every: Duration) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
     if run.screen.format != Format::Table || run.filter.is_some() {
@@ -116,7 +116,7 @@ fn wish_of(model: &Model) -> Wish {
     Wish { whole: model.open(), longest_pause: LONGEST_PAUSE, ..Wish::every(model.every) }
 }
 
-/// The picture, and what changes it.
+/// The screen and its inputs.
 #[derive(Debug)]
 struct View<'a> {
     terminal: Fullscreen,
@@ -127,7 +127,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Shows what comes until a key ends it. Update are drawn together, keys at once.
+    /// Runs until a key quits. Updates are drawn together, keys at once.
     async fn show(&mut self, mut events: mpsc::UnboundedReceiver<Event>) -> Result<(), Failure> {
         self.draw()?;
         let mut drawn = Instant::now();
@@ -141,7 +141,7 @@ impl View<'_> {
                     if self.heed(&event)? {
                         return Ok(());
                     }
-                    // Several keys that came together make one picture.
+                    // Several keys at once make one screen update.
                     if !events.is_empty() {
                         continue;
                     }
@@ -164,7 +164,7 @@ impl View<'_> {
         }
     }
 
-    /// Takes what was told of a robot; whether it changes the picture.
+    /// Handles a poller event. Returns whether the screen changes.
     fn take(&mut self, told: poll::Event) -> bool {
         let now = self.start.elapsed();
         match told {
@@ -172,7 +172,7 @@ impl View<'_> {
             poll::Event::Gone(robot) => self.model.leave(&RobotId::of(&robot)),
             told => return self.model.hear(now, told),
         }
-        // The robot that has the screen may be another one.
+        // Another robot can be open now.
         self.updates.wish(wish_of(&self.model));
         true
     }
@@ -182,7 +182,7 @@ impl View<'_> {
         self.terminal.draw(|frame| view::draw(frame, model, now, palette))
     }
 
-    /// Does what an event asks for; whether it is the end.
+    /// Handles a terminal event. Returns whether to quit.
     fn heed(&mut self, event: &Event) -> Result<bool, Failure> {
         let Event::Key(key) = event else { return Ok(false) };
         match order(*key, self.model.is_typing) {

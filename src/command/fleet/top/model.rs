@@ -1,5 +1,5 @@
-//! What a live view knows: robots with their latest samples and a bounded past, and what is chosen of them. It is handed
-//! samples, orders and the time, and knows no terminal, no line and no clock.
+//! State of a live view: robots with their newest samples and a limited history, and the selection. Its input is
+//! samples, keys and the time. It knows no terminal, no link and no clock.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,12 +12,12 @@ use crate::failure::{Failure, Kind};
 use crate::output::view::Tone;
 use crate::settings::{Robot, target};
 
-/// A moment: the time since the view began.
+/// Time since the view started.
 pub type Moment = Duration;
 
-/// Times of answers that are kept of each robot.
+/// Number of answer times kept per robot.
 const ANSWERS: usize = 24;
-/// Intervals that can be chosen by keys, ascending.
+/// Intervals for the keys, ascending.
 const INTERVALS: [Duration; 8] = [
     Duration::from_millis(100),
     Duration::from_millis(200),
@@ -28,49 +28,49 @@ const INTERVALS: [Duration; 8] = [
     Duration::from_secs(10),
     Duration::from_secs(30),
 ];
-/// An answer is old after so many intervals, and not before this time.
+/// An answer is out of date after this number of intervals, but not before this time.
 const OLD_AFTER: (u32, Duration) = (3, Duration::from_secs(2));
 /// Longest filter.
 const FILTER: usize = 40;
 
-/// Everything that a picture is made of.
+/// State of the screen.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Model {
-    /// As they are now; a pause shows others.
+    /// Current robots; a pause shows older data.
     robots: Vec<Seen>,
-    /// What a pause shows, and since when.
+    /// Start and data of a pause.
     frozen: Option<(Moment, Vec<Seen>)>,
-    /// Time from look to look.
+    /// Polling interval.
     pub every: Duration,
-    /// The robot at the cursor.
+    /// Selected robot.
     pub cursor: usize,
-    /// Whether it has the screen for itself.
+    /// Whether its screen is open.
     pub is_open: bool,
-    /// The axis at the cursor.
+    /// Selected axis.
     pub axis: usize,
-    /// Order of the list.
+    /// Sort order of the list.
     pub sort: Sort,
-    /// Only robots with this in name, family, place or tags are in the list.
+    /// Filter: part of the name, family, target or a tag.
     pub filter: String,
-    /// Whether keys go into the filter.
+    /// Whether the filter is being typed.
     pub is_typing: bool,
-    /// Whether the keys are explained.
+    /// Whether the help is open.
     pub has_help: bool,
-    /// Whether the screen of a robot shows its signals.
+    /// Whether the robot screen shows signals.
     pub has_signals: bool,
 }
 
-/// Order of the list.
+/// Sort order of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
-    /// As chosen, or in the inventory.
+    /// As selected, or as in the inventory.
     Given,
-    /// What wants to be looked at first.
+    /// Most severe first.
     Trouble,
     /// By name.
     Name,
-    /// The slowest first.
+    /// Slowest answer first.
     Answer,
 }
 
@@ -82,7 +82,7 @@ impl Sort {
         (Self::Answer, "slowest first"),
     ];
 
-    /// In words.
+    /// Name of the order.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(sort, _)| *sort == self).map_or("", |(_, name)| name)
     }
@@ -93,43 +93,43 @@ impl Sort {
     }
 }
 
-/// One robot.
+/// A robot of the view.
 #[derive(Debug, Clone)]
 pub struct Seen {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its family.
+    /// Family.
     pub family: target::Family,
-    /// Where it is, as a URL.
+    /// Target URL.
     pub place: String,
     tags: Vec<String>,
     /// Whether it answers.
     pub contact: Contact,
-    /// The latest sample, and when it came.
+    /// Newest sample and its time.
     pub last: Option<(Moment, Sample)>,
-    /// How long the last answers took, the latest at the end.
+    /// Last answer times, newest last.
     pub answers: VecDeque<Duration>,
-    /// The past of each axis of the latest whole sample.
+    /// History of each axis of the newest full sample.
     pub tracks: Vec<Track>,
 }
 
 /// Whether a robot answers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contact {
-    /// It was not asked yet, or has not answered yet.
+    /// Not polled yet, or no answer yet.
     Waiting,
-    /// It does.
+    /// It answers.
     Answers,
-    /// It does not, or not as it should.
+    /// The last poll failed.
     Fails(Failure),
 }
 
-/// What wants to be looked at, the least of it first.
+/// Severity of a robot's state, in rising order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Nothing.
+    /// No problem.
     None,
-    /// It is held, or was not heard yet.
+    /// On hold, or not polled yet.
     Held,
     /// An alarm or error.
     Alarm,
@@ -138,14 +138,14 @@ pub enum Severity {
 }
 
 impl Model {
-    /// Robots that nothing is known of yet.
+    /// Creates a view without data.
     pub fn new(robots: &[Robot], every: Duration) -> Self {
         Self {
             robots: robots.iter().map(Seen::new).collect(),
             frozen: None,
             every,
             cursor: 0,
-            // A single one needs no list.
+            // A single robot needs no list.
             is_open: robots.len() == 1,
             axis: 0,
             sort: Sort::Given,
@@ -156,24 +156,24 @@ impl Model {
         }
     }
 
-    /// The room of the signals goes to the axes.
+    /// Gives the space of the signals to the axes.
     #[must_use]
     pub fn without_signals(self) -> Self {
         Self { has_signals: false, ..self }
     }
 
-    /// Puts the cursor at the axis of this name, where there is one.
+    /// Selects an axis by name, if it exists.
     pub fn choose_axis(&mut self, name: &str) {
         let axes = self.chosen().and_then(Seen::sample).and_then(|sample| sample.whole.as_ref());
         let found = axes.and_then(|whole| whole.axes.iter().position(|axis| axis.name.eq_ignore_ascii_case(name)));
         self.axis = found.unwrap_or(self.axis);
     }
 
-    /// Takes what a poll has told of a look at a robot; whether there is anything new.
+    /// Handles a poller event of a robot. Returns whether anything is new.
     pub fn hear(&mut self, now: Moment, told: Event) -> bool {
         let (robot, looked) = match told {
             Event::Looked(look) => {
-                // A text that cannot be read is a mistake that somebody can set right.
+                // The user can correct an unreadable text file, so show its error.
                 let looked = look.unexplained.clone().map_or_else(|| Ok(look.sample.clone()), Err);
                 (RobotId::of(&look.robot), looked)
             }
@@ -187,21 +187,21 @@ impl Model {
         at.is_some()
     }
 
-    /// A robot is looked at from now on, or is another one under its name.
+    /// A robot was added or changed.
     pub fn appear(&mut self, robot: &Robot) {
         if !self.robots.iter().any(|seen| seen.id() == RobotId::of(robot)) {
             self.robots.push(Seen::new(robot));
         }
     }
 
-    /// A robot is looked at no more.
+    /// A robot was removed.
     pub fn leave(&mut self, robot: &RobotId) {
         let chosen = self.chosen().map(Seen::id);
         self.robots.retain(|seen| seen.id() != *robot);
         self.choose(chosen.as_ref());
     }
 
-    /// Puts the cursor on a robot, where it is still there.
+    /// Selects a robot if it is still present.
     fn choose(&mut self, robot: Option<&RobotId>) {
         let robots = self.robots();
         let at = robots.iter().position(|seen| Some(&seen.id()) == robot);
@@ -211,7 +211,7 @@ impl Model {
         self.keep_cursor();
     }
 
-    /// Takes what a look came to.
+    /// Handles the result of a poll.
     pub fn take(&mut self, now: Moment, robot: usize, looked: Result<Sample, Failure>) {
         let every = self.every;
         if let Some(seen) = self.robots.get_mut(robot) {
@@ -219,32 +219,32 @@ impl Model {
         }
     }
 
-    /// What is shown of the robots, in the order they were given.
+    /// The shown robots in their original order.
     pub fn robots(&self) -> &[Seen] {
         self.frozen.as_ref().map_or(&self.robots, |(_, robots)| robots)
     }
 
-    /// The moment that is shown.
+    /// The shown time.
     pub fn moment(&self, now: Moment) -> Moment {
         self.frozen.as_ref().map_or(now, |(since, _)| *since)
     }
 
-    /// Whether the picture stands still.
+    /// Whether the display is paused.
     pub fn is_paused(&self) -> bool {
         self.frozen.is_some()
     }
 
-    /// The robot that has the screen for itself, which is looked at in full.
+    /// The robot with the open screen; it is polled in full detail.
     pub fn open(&self) -> Option<RobotId> {
         self.chosen().filter(|_| self.is_open).map(Seen::id)
     }
 
-    /// The robot at the cursor.
+    /// The selected robot.
     pub fn chosen(&self) -> Option<&Seen> {
         self.robots().get(self.cursor)
     }
 
-    /// Numbers of the robots in the list, in its order.
+    /// Indexes of the robots in the list, sorted and filtered.
     pub fn listed(&self) -> Vec<usize> {
         let robots = self.robots();
         let wanted = self.filter.to_lowercase();
@@ -258,9 +258,9 @@ impl Model {
         listed
     }
 
-    /// Does what a key orders. What is about the process and not about the picture is left to the caller.
+    /// Handles a key, except actions of the process, which the caller handles.
     pub fn obey(&mut self, now: Moment, order: KeyAction) {
-        // Whatever is pressed, whoever has read the help wants it gone.
+        // Any key closes the help.
         if std::mem::take(&mut self.has_help) {
             return;
         }
@@ -294,7 +294,7 @@ impl Model {
         self.keep_cursor();
     }
 
-    /// Moves the cursor to another place in the list.
+    /// Moves the selection in the list.
     fn step(&mut self, to: impl FnOnce(usize, usize) -> usize) {
         let listed = self.listed();
         let at = listed.iter().position(|robot| *robot == self.cursor).unwrap_or_default();
@@ -305,7 +305,7 @@ impl Model {
         self.axis = axis;
     }
 
-    /// The cursor is on a robot of the list.
+    /// Keeps the selection on a robot of the list.
     fn keep_cursor(&mut self) {
         let listed = self.listed();
         if !self.is_open
@@ -335,12 +335,12 @@ impl Seen {
         }
     }
 
-    /// What tells it from others.
+    /// Unique id.
     pub fn id(&self) -> RobotId {
         RobotId { name: self.name.clone(), family: self.family }
     }
 
-    /// Whether its name, family, place or a tag has this in it.
+    /// Whether its name, family, target or a tag contains this text.
     fn has(&self, wanted: &str) -> bool {
         let own = [self.name.as_str(), self.family.name(), self.place.as_str()];
         own.into_iter().chain(self.tags.iter().map(String::as_str)).any(|text| text.to_lowercase().contains(wanted))
@@ -373,7 +373,7 @@ impl Seen {
         self.last = Some((now, Sample { whole, ..sample }));
     }
 
-    /// The latest sample, as long as the robot answers.
+    /// Newest sample, while the robot answers.
     pub fn sample(&self) -> Option<&Sample> {
         let answers = matches!(self.contact, Contact::Answers);
         self.last.as_ref().filter(|_| answers).map(|(_, sample)| sample)
@@ -384,13 +384,13 @@ impl Seen {
         self.last.as_ref().map(|(then, _)| now.saturating_sub(*then))
     }
 
-    /// Whether the last answer is older than it should be.
+    /// Whether the last answer is out of date.
     pub fn is_old(&self, now: Moment, every: Duration) -> bool {
         let (intervals, least) = OLD_AFTER;
         self.age(now).is_some_and(|age| age > every.saturating_mul(intervals).max(least))
     }
 
-    /// What wants to be looked at.
+    /// Severity of its state.
     pub fn trouble(&self) -> Severity {
         if let Contact::Fails(_) = self.contact {
             return Severity::Silent;
@@ -403,7 +403,7 @@ impl Seen {
         }
     }
 
-    /// Its alarm in a few words, and how bad that is.
+    /// Short alarm text and its tone.
     pub fn alarm(&self) -> (String, Tone) {
         if let Contact::Fails(failure) = &self.contact {
             return (in_short(failure.kind).to_owned(), Tone::Bad);
@@ -413,7 +413,7 @@ impl Seen {
     }
 }
 
-/// Why there is no sample, in two words.
+/// Short reason for a missing sample.
 fn in_short(kind: Kind) -> &'static str {
     match kind {
         Kind::NoAnswer => "no answer",
@@ -423,7 +423,7 @@ fn in_short(kind: Kind) -> &'static str {
     }
 }
 
-/// The next interval of those that keys can choose.
+/// Next faster or slower interval.
 fn nearest(every: Duration, faster: bool) -> Duration {
     let found = if faster {
         INTERVALS.into_iter().rev().find(|interval| *interval < every)
@@ -542,7 +542,7 @@ mod tests {
         assert_eq!((names(&model), model.cursor, model.is_open), (vec!["cell2", "cell3"], 1, true));
         model.appear(&robots[3]);
         assert_eq!(model.chosen().map(|seen| seen.name.as_str()), Some("cell3"));
-        // A pause shows what was; the cursor finds its robot again behind it.
+        // A pause shows old data. After it, the same robot is selected.
         model.obey(NOW, KeyAction::Pause);
         model.leave(&RobotId::of(&robots[1]));
         assert_eq!(names(&model), ["cell2", "cell3", "cell4"]);

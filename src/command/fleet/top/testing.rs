@@ -27,7 +27,7 @@ pub fn fleet(robots: usize) -> Vec<Robot> {
     if robots == 0 { Vec::new() } else { sources.robots(None).unwrap() }
 }
 
-/// A robot that runs, with everything a screen shows; its first axis is at `position`.
+/// A running robot with all data of a screen; its first axis is at `position`.
 pub fn sample(position: f64) -> Sample {
     let state = State {
         reachable: true,
@@ -84,7 +84,7 @@ pub fn sample(position: f64) -> Sample {
     Sample { line, answered_in: Some(Duration::from_micros(4200)), alarms: Vec::new(), whole: Some(whole) }
 }
 
-/// The same with two alarms, in a text that would steer a terminal.
+/// The same with two alarms, whose text contains terminal control characters.
 pub fn alarmed() -> Sample {
     let mut alarmed = sample(0.0);
     alarmed.line.state.running = Some(false);

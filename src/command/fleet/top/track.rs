@@ -1,4 +1,4 @@
-//! The past of an axis: what a chart shows, and the range that a bar is measured by.
+//! History of an axis, for charts and bars.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,26 +6,26 @@ use std::time::Duration;
 use super::model::Moment;
 use crate::command::face::sample::Axis;
 
-/// Most points that are kept.
+/// Limit of stored points.
 const POINTS: usize = 600;
-/// A chart shows so many intervals, and no less than this time.
+/// Time range of a chart in intervals, and its minimum.
 const SHOWN: (u32, Duration) = (120, Duration::from_secs(30));
 
-/// The past of an axis. Times are seconds since the view began.
+/// History of an axis. Times are in seconds since the view started.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     name: String,
     unit: &'static str,
-    /// Where it was, the latest at the end.
+    /// Positions with times, newest last.
     pub positions: VecDeque<(f64, f64)>,
-    /// Its torque, likewise.
+    /// Torques with times, newest last.
     pub torques: VecDeque<(f64, f64)>,
-    /// The least and the greatest position seen.
+    /// Smallest and largest position so far.
     pub range: (f64, f64),
 }
 
 impl Track {
-    /// Of an axis that nothing is known of yet.
+    /// Empty history of an axis.
     pub fn new(axis: &Axis) -> Self {
         Self {
             name: axis.name.clone(),
@@ -36,13 +36,13 @@ impl Track {
         }
     }
 
-    /// Whether these are the tracks of these axes.
+    /// Whether the tracks belong to these axes.
     pub fn fit(tracks: &[Self], axes: &[Axis]) -> bool {
         let same = |(track, axis): (&Self, &Axis)| track.name == axis.name && track.unit == axis.unit;
         tracks.len() == axes.len() && tracks.iter().zip(axes).all(same)
     }
 
-    /// Adds where the axis is, and forgets what no chart shows any more.
+    /// Adds a point, and drops points that no chart shows any more.
     pub fn push(&mut self, now: Moment, every: Duration, axis: &Axis) {
         let (least, most) = self.range;
         self.range = (least.min(axis.position), most.max(axis.position));
@@ -58,7 +58,7 @@ impl Track {
     }
 }
 
-/// The time that a chart shows.
+/// Time range of a chart.
 pub fn window(every: Duration) -> Duration {
     let (intervals, least) = SHOWN;
     every.saturating_mul(intervals).max(least)

@@ -1,13 +1,13 @@
 //! Writing rows: what is there is read first, what differs is confirmed, written, and answers for itself.
 
-use super::{Answers, Store, Writable, WrittenOf, columns, difference, item};
+use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
 use crate::command::frame::authority::Authority;
 use crate::command::frame::connection::Family;
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::interrupt::interruptible;
 use crate::command::frame::names;
 use crate::command::frame::orders::unwritten;
-use crate::command::robot::item::{Written, WrittenItems, asked};
+use crate::command::robot::item::{Written, WrittenItems};
 use crate::controller::Risk;
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
@@ -32,6 +32,8 @@ pub type Row<S> = (<S as Store>::Key, <S as Writable>::Draft);
 
 /// Whatever a write needs beside its rows.
 pub struct Work<'a, S: Store> {
+    /// The table.
+    pub table: S,
     /// The robot.
     pub robot: &'a Robot,
     /// The connection to it.
@@ -51,11 +53,48 @@ struct Compared<S: Store> {
     outcome: Result<bool, Failure>,
 }
 
+impl<S: Store> Compared<S> {
+    fn differs(&self) -> bool {
+        self.old.as_ref() != Some(&self.new)
+    }
+}
+
 /// Writes rows that do not hold that already. The first failure of the link ends it; each row says what became of it.
 pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
-    let Work { robot, link, screen, authority } = work;
+    let Work { mut table, robot, link, screen, authority } = work;
+    table.select(link).await.map_err(unwritten)?;
+    let compared = write_selected(&table, link, screen, authority, rows).await;
+    let compared = table.deselect(link, compared).await?;
+    let written: Vec<S::Key> =
+        compared.iter().filter(|row| matches!(row.outcome, Ok(true))).map(|row| row.key).collect();
+    if let Some(words) = table.afterwards(&written).filter(|_| !written.is_empty()) {
+        screen.note(&words);
+    }
+    let names = names::of(robot, screen);
+    let items: Vec<_> = compared
+        .into_iter()
+        .map(|Compared { key, old, new, outcome }| {
+            let (is_written, outcome) = match outcome {
+                Ok(is_written) => (is_written, Ok(Some(new))),
+                Err(failure) => (false, Err(failure)),
+            };
+            let old = old.as_ref().and_then(|old| table.value(old));
+            Written::new(item(&table, names, key, outcome), old, is_written)
+        })
+        .collect();
+    Ok(WrittenItems::new(columns(&table), items))
+}
+
+/// Compares rows with what the controller holds, has it confirmed what is overwritten, and writes what differs.
+async fn write_selected<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    authority: Authority<'_>,
+    rows: Vec<Row<S>>,
+) -> Result<Vec<Compared<S>>, Failure> {
     let keys: Vec<S::Key> = rows.iter().map(|(key, _)| *key).collect();
-    let read = match S::read(link, screen, &keys).await {
+    let read = match table.read(link, screen, &keys).await {
         // All are refused alike: each is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
             let refused = keys.iter().map(|_| Err(failure.clone()));
@@ -65,7 +104,7 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
     };
     let Some(answers) = read.known().map_err(unwritten)? else {
         for (key, draft) in &rows {
-            S::plan(link, *key, draft).await?;
+            table.plan(link, *key, draft).await?;
         }
         return Err(unknown());
     };
@@ -77,55 +116,50 @@ pub async fn write<S: Writable>(work: Work<'_, S>, rows: Vec<Row<S>>) -> Result<
             Err(failure) if S::is_undefined(&failure) => None,
             Err(failure) => return Err(unwritten(failure)),
         };
-        let new = S::whole(key, &draft, old.as_ref())?;
+        let new = table.whole(key, &draft, old.as_ref())?;
         compared.push(Compared::<S> { key, old, new, outcome: Ok(false) });
     }
-    authority.confirm(&overwritten(&compared)).await?;
-    write_each(link, screen, &mut compared).await;
-    let names = names::of(robot, screen);
-    let items: Vec<_> = compared
-        .into_iter()
-        .map(|Compared { key, old, new, outcome }| {
-            let (is_written, outcome) = match outcome {
-                Ok(is_written) => (is_written, Ok(Some(new))),
-                Err(failure) => (false, Err(failure)),
-            };
-            Written::new(item::<S>(names, key, outcome), old.as_ref().and_then(S::value), is_written)
-        })
-        .collect();
-    Ok(WrittenItems::new(columns::<S>(), items))
+    let differing: Vec<Differing<'_, S>> =
+        compared.iter().filter(|row| row.differs()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect();
+    authority.confirm(&overwritten(table, &differing)).await?;
+    write_each(table, link, screen, &mut compared).await;
+    Ok(compared)
 }
 
-/// What is overwritten that a person wrote.
-fn overwritten<S: Writable>(rows: &[Compared<S>]) -> Change {
-    let lost = rows.iter().filter_map(|Compared { key, old, new, .. }| {
-        let old = old.as_ref().filter(|old| *old != new && !S::is_blank(old))?;
-        let [old, new] = difference::<S>(old, new);
-        Some((asked(S::WORDS.nouns[0], &S::name(*key)), old, new))
+/// What is overwritten that a person wrote, for a question.
+pub fn overwritten<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+    let lost = rows.iter().filter_map(|(key, old, new)| {
+        let old = old.filter(|old| old != new && !table.is_blank(old))?;
+        let [old, new] = table.difference(old, new);
+        Some((S::asked(*key), old, new))
     });
     let lost: Vec<_> = lost.collect();
     let [one, many] = S::WORDS.nouns;
+    let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.place());
     let change = match lost.len() {
         0 => return Change::nothing(),
-        1 => Change::new(format!(
-            "overwrite {} {one}",
-            if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
-        )),
-        count => Change::new(format!("overwrite {count} {many}")),
+        1 => Change::new(format!("overwrite {article} {one}{place}")),
+        count => Change::new(format!("overwrite {count} {many}{place}")),
     };
+    let change = table.consequences(rows).into_iter().fold(change, Change::note);
     lost.iter().fold(change, |change, (name, old, new)| change.replaces(name, old, new))
 }
 
-async fn write_each<S: Writable>(link: &mut <S::Family as Family>::Link, screen: &Screen, rows: &mut [Compared<S>]) {
-    let differing = rows.iter().filter(|row| row.old.as_ref() != Some(&row.new)).count();
+async fn write_each<S: Writable>(
+    table: &S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    rows: &mut [Compared<S>],
+) {
+    let differing = rows.iter().filter(|row| row.differs()).count();
     let mut progress =
         (differing > 1).then(|| screen.items_progress(&format!("writing {}", S::WORDS.nouns[1]), differing as u64));
     let mut end: Option<Failure> = None;
-    for row in rows.iter_mut().filter(|row| row.old.as_ref() != Some(&row.new)) {
+    for row in rows.iter_mut().filter(|row| row.differs()) {
         row.outcome = match &end {
             Some(failure) => Err(not_written(failure)),
             // Ctrl-C ends the work, and what was written is said.
-            None => match interruptible(S::write(link, screen, row.key, &row.new)).await {
+            None => match interruptible(table.write(link, screen, row.key, (row.old.as_ref(), &row.new))).await {
                 Ok(outcome) => outcome.map(|()| true),
                 Err(interrupted) => Err(interrupted),
             },

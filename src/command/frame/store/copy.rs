@@ -4,7 +4,7 @@ use clap::Args;
 
 use super::change::{Work, confirmation, intent, write};
 use super::get::Rows;
-use super::{Writable, WrittenOf};
+use super::{Writable, WrittenOf, read};
 use crate::command::frame::command::{Command, Context};
 use crate::command::frame::dry_run::Known as _;
 use crate::command::robot::item::asked;
@@ -22,6 +22,8 @@ pub struct Copy<S: Writable> {
     /// Rows to write
     #[arg(required = true, value_name = "TO", value_delimiter = ',', value_parser = Rows::<S>::parse)]
     to: Vec<Rows<S>>,
+    #[command(flatten)]
+    options: S::Options,
 }
 
 impl<S: Writable> Command for Copy<S> {
@@ -48,18 +50,19 @@ impl<S: Writable> Command for Copy<S> {
         if to.contains(&from) {
             return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("name another row"));
         }
+        let mut table = S::open(link, &self.options).await?;
         // A dry run knows no values: every field stays open.
-        let mut texts = vec![None; S::fields().len()];
-        if let Some(answers) = S::read(link, screen, &[from]).await.known()? {
+        let mut texts = vec![None; table.fields().len()];
+        if let Some(answers) = read(&mut table, link, screen, &[from]).await.known()? {
             let held = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {
                 let message = format!("{name} is not defined: there is nothing to copy");
                 Failure::new(Kind::ConditionNotMet, message).hint("nothing was written")
             })?;
-            texts = S::texts(&held).into_iter().map(Some).collect();
+            texts = table.texts(&held).into_iter().map(Some).collect();
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
-        let draft = |key: S::Key| Ok((key, S::draft(key, &texts).map_err(Failure::local)?));
+        let draft = |key: S::Key| Ok((key, table.draft(key, &texts).map_err(Failure::local)?));
         let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
-        write(Work::<S> { robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(Work { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }
 }

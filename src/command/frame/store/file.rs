@@ -1,7 +1,7 @@
 //! `dump` and `restore`: rows as a CSV file for spreadsheets.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::change::{Work, confirmation, intent, write};
 use super::get::{Rows, defined};
-use super::{Store, Writable, WrittenOf, read_keys, sheet};
+use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
 use crate::command::frame::command::{Command, Context};
 use crate::command::frame::items::{ItemError, verdict};
 use crate::command::frame::report::Report;
@@ -33,6 +33,8 @@ use crate::output::view::View;
 pub struct Dump<S: Store> {
     /// A new CSV file
     file: PathBuf,
+    #[command(flatten)]
+    options: S::Options,
     #[arg(required = S::all().is_empty(), value_name = S::WORDS.placeholder, value_delimiter = ',',
         value_parser = Rows::<S>::parse, help = S::WORDS.range)]
     rows: Vec<Rows<S>>,
@@ -45,23 +47,63 @@ impl<S: Store> Command for Dump<S> {
     type Report = Dumped;
     const ID: &'static str = S::IDS.dump;
 
+    fn risk(&self) -> Risk {
+        S::risk_of_reading(&self.options)
+    }
+
     async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
-        let keys = Rows::of(&self.rows);
-        let answers = S::read(link, screen, &keys).await?;
+        // An update is of the rows that the file has, whatever they hold now.
+        let old = target.old();
+        let keys = old
+            .filter(|_| self.rows.is_empty())
+            .map_or_else(|| Ok(Rows::of(&self.rows)), |old| keys_of::<S>(&self.file, old))?;
+        let mut table = S::open(link, &self.options).await?;
+        let answers = read(&mut table, link, screen, &keys).await?;
         let (mut rows, mut errors) = (Vec::new(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let name = S::name(*key);
             match defined::<S>(outcome) {
-                Ok(Some(wire)) if !S::is_blank(&wire) => rows.push([vec![name], S::texts(&wire)].concat()),
+                Ok(Some(wire)) if old.is_some() || !table.is_blank(&wire) => {
+                    rows.push([vec![name], table.texts(&wire)].concat());
+                }
+                Ok(None) if old.is_some() => {
+                    rows.push([vec![name], vec![String::new(); table.fields().len()]].concat())
+                }
                 Ok(_) => {}
                 Err(failure) => errors.push(ItemError::new(asked(S::WORDS.nouns[0], &name), failure)),
             }
         }
-        let file = target.write(&sheet::<S>(), &rows, canonical::<S>)?;
+        let file = target.write(&sheet(&table), &rows, canonical::<S>)?;
         Ok(Dumped { file, saved: rows.len(), failed: errors })
     }
+}
+
+/// The rows that a file has, in its order.
+fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
+    let (mut findings, mut keys) = (Findings::default(), Vec::new());
+    let expected = "the first column is name";
+    if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
+        match sheet.column("name") {
+            Some(at) => {
+                for row in sheet.rows() {
+                    match read_keys::<S>(row.text(at)) {
+                        Ok(row) => keys.extend(row),
+                        Err(why) => findings.error(row.place(at), why, None),
+                    }
+                }
+            }
+            None => {
+                let message = "column name is missing".to_owned();
+                findings.error(sheet.end_of_head(), message, Some(expected.to_owned()));
+            }
+        }
+    }
+    if findings.errors() > 0 {
+        return Err(text_files::faulty(&text_files::shown(path), &findings.into_errors()));
+    }
+    Ok(keys)
 }
 
 /// One spelling of a row.
@@ -102,6 +144,8 @@ impl Report for Dumped {
 pub struct Restore<S: Writable> {
     /// What `dump` wrote, or a table like it; - is stdin
     file: PathBuf,
+    #[command(flatten)]
+    options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', value_parser = Rows::<S>::parse,
         help = "Only these")]
     rows: Vec<Rows<S>>,
@@ -121,8 +165,9 @@ impl<S: Writable> Command for Restore<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
         let name = text_files::shown(&self.file);
+        let table = S::open(link, &self.options).await?;
         let mut findings = Findings::default();
-        let mut rows = parse::<S>(&text_files::read(&self.file)?, &mut findings);
+        let mut rows = parse(&table, &text_files::read(&self.file)?, &mut findings);
         if findings.errors() > 0 {
             return Err(text_files::faulty(&name, &findings.into_errors()));
         }
@@ -134,13 +179,26 @@ impl<S: Writable> Command for Restore<S> {
             let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
             return Err(Failure::usage(message).hint("`dump FILE` writes such a file"));
         }
-        write(Work::<S> { robot, link, screen, authority }, rows).await
+        write(Work { table, robot, link, screen, authority }, rows).await
     }
 }
 
+/// Whether the first line of a file has an alias of a field among its columns.
+fn has_aliases<S: Store>(table: &S, bytes: &[u8]) -> bool {
+    let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
+    let head = String::from_utf8_lossy(head).to_lowercase();
+    let columns = || head.split([',', ';', '\t']).map(|column| column.trim().trim_matches('"'));
+    table.fields().iter().any(|field| field.alias.is_some_and(|alias| columns().any(|column| column == alias)))
+}
+
 /// Rows of a file, with what each shall hold.
-fn parse<S: Writable>(bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
-    let columns = sheet::<S>();
+fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
+    let mut columns = sheet(table);
+    if has_aliases(table, bytes) {
+        for (column, field) in columns.iter_mut().skip(1).zip(table.fields()) {
+            column.name = field.alias.map_or_else(|| field.name.into_owned(), ToOwned::to_owned);
+        }
+    }
     let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
     let expected = format!("the columns are {}", names.join(", "));
     let mut rows = Vec::new();
@@ -186,7 +244,7 @@ fn parse<S: Writable>(bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::
             });
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
-        match S::draft(key, &texts) {
+        match table.draft(key, &texts) {
             Ok(draft) => rows.push((key, draft)),
             Err(why) => findings.error(row.place(usize::MAX), why, None),
         }

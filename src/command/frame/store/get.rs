@@ -1,15 +1,13 @@
 //! `get`, `list` and what `watch` repeats.
 
-use std::marker::PhantomData;
-
 use clap::Args;
 
-use super::{ItemsOf, Store, columns, item, read_keys};
+use super::{ItemsOf, Store, columns, item, read, read_keys};
 use crate::command::frame::command::{Command, Context};
 use crate::command::frame::names;
 use crate::command::frame::watch::{Watchable, Watched};
 use crate::command::robot::item::{Item, Items};
-use crate::controller::typed;
+use crate::controller::{Risk, typed};
 use crate::failure::Failure;
 
 /// Rows as typed.
@@ -41,6 +39,8 @@ impl<S: Store> Rows<S> {
 #[derive(Debug, Args)]
 #[command(after_help = S::WORDS.reading)]
 pub struct Get<S: Store> {
+    #[command(flatten)]
+    options: S::Options,
     #[arg(required = S::all().is_empty(), value_name = S::WORDS.placeholder, value_delimiter = ',',
         value_parser = Rows::<S>::parse, help = S::WORDS.range, add = S::COMPLETE)]
     rows: Vec<Rows<S>>,
@@ -51,8 +51,18 @@ impl<S: Store> Command for Get<S> {
     type Report = ItemsOf<S>;
     const ID: &'static str = S::IDS.get;
 
+    fn risk(&self) -> Risk {
+        S::risk_of_reading(&self.options)
+    }
+
     async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
-        read::<S>(context, &Rows::of(&self.rows)).await?.or_only_failure()
+        let Context { robot, link, screen, .. } = context;
+        let keys = Rows::of(&self.rows);
+        let mut table = S::open(link, &self.options).await?;
+        let answers = read(&mut table, link, screen, &keys).await?;
+        let names = names::of(robot, screen);
+        let items = keys.iter().zip(answers.rows).map(|(key, outcome)| item(&table, names, *key, outcome));
+        Items::new(columns(&table), items.collect()).asked(answers.asked).or_only_failure()
     }
 }
 
@@ -64,6 +74,8 @@ impl<S: Store> Watchable for Get<S> {
 /// Reads all rows, and shows those that hold something.
 #[derive(Debug, Args)]
 pub struct List<S: Store> {
+    #[command(flatten)]
+    options: S::Options,
     /// Only these
     #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', required = S::all().is_empty(),
         value_parser = Rows::<S>::parse)]
@@ -71,8 +83,6 @@ pub struct List<S: Store> {
     /// Empty rows as well
     #[arg(long)]
     empty: bool,
-    #[arg(skip)]
-    of: PhantomData<S>,
 }
 
 impl<S: Store> Command for List<S> {
@@ -80,18 +90,24 @@ impl<S: Store> Command for List<S> {
     type Report = ItemsOf<S>;
     const ID: &'static str = S::IDS.list;
 
+    fn risk(&self) -> Risk {
+        S::risk_of_reading(&self.options)
+    }
+
     async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
         let Context { robot, link, screen, .. } = context;
         let keys = Rows::of(&self.rows);
-        let answers = S::read(link, screen, &keys).await?;
+        let mut table = S::open(link, &self.options).await?;
+        let answers = read(&mut table, link, screen, &keys).await?;
         let names = names::of(robot, screen);
         let rows = answers.rows.into_iter().map(defined::<S>);
         let held = keys.into_iter().zip(rows).filter(|(_, outcome)| {
-            let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(S::is_blank);
+            let is_empty = |wire: &Option<S::Wire>| wire.as_ref().is_none_or(|wire| table.is_blank(wire));
             self.empty || !outcome.as_ref().is_ok_and(is_empty)
         });
-        let items: Vec<Item<S::Value, S::More>> = held.map(|(key, outcome)| item::<S>(names, key, outcome)).collect();
-        Ok(Items::new(columns::<S>(), items))
+        let items: Vec<Item<S::Value, S::More>> =
+            held.map(|(key, outcome)| item(&table, names, key, outcome)).collect();
+        Ok(Items::new(columns(&table), items))
     }
 }
 
@@ -101,12 +117,4 @@ pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Op
         Err(failure) if S::is_undefined(&failure) => Ok(None),
         outcome => outcome,
     }
-}
-
-async fn read<S: Store>(context: Context<'_, S::Family>, keys: &[S::Key]) -> Result<ItemsOf<S>, Failure> {
-    let Context { robot, link, screen, .. } = context;
-    let answers = S::read(link, screen, keys).await?;
-    let names = names::of(robot, screen);
-    let items = keys.iter().zip(answers.rows).map(|(key, outcome)| item::<S>(names, *key, outcome));
-    Ok(Items::new(columns::<S>(), items.collect()).asked(answers.asked))
 }

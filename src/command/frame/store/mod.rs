@@ -7,12 +7,15 @@ mod file;
 mod get;
 mod set;
 
+use std::borrow::Cow;
 use std::fmt::Debug;
 use std::hash::Hash;
 
+use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+pub use self::change::{Work, overwritten, write};
 pub use self::copy::Copy;
 pub use self::file::{Dump, Restore};
 pub use self::get::{Get, List};
@@ -20,7 +23,7 @@ pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
 use super::names as labels;
-use crate::command::robot::item::{Columns, Item, Items, WrittenItems};
+use crate::command::robot::item::{Columns, Item, Items, WrittenItems, asked};
 use crate::controller::Risk;
 use crate::controller::names::{Kind, Names};
 use crate::controller::sheet::Column;
@@ -28,15 +31,29 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::Cell;
 
-/// What a row holds by name, for tables and files.
-#[derive(Debug, Clone, Copy)]
+/// A value of a row, for tables and files.
+#[derive(Debug, Clone)]
 pub struct Field {
     /// Column of a file: `speed_mm_s`.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
+    /// Another column that means the same: `ax1_mm` for `x_mm`.
+    pub alias: Option<&'static str>,
     /// Heading of a table: `speed (mm/s)`.
     pub heading: &'static str,
     /// Whether it is a number.
     pub is_number: bool,
+}
+
+impl Field {
+    /// A number.
+    pub const fn number(name: &'static str, heading: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: true }
+    }
+
+    /// A text.
+    pub const fn text(name: &'static str, heading: &'static str) -> Self {
+        Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false }
+    }
 }
 
 /// Words of a table.
@@ -130,7 +147,11 @@ impl<W> Answers<W> {
     }
 }
 
-/// A table of a controller: its rows, and how they are read.
+/// Options of a table that a controller has once.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Single {}
+
+/// A table of a controller, and how its rows are read.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// The family that has it.
@@ -143,6 +164,8 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     type Value: Debug + Clone + Serialize + JsonSchema;
     /// What the family adds to an item: [`Plain`](crate::command::robot::item::Plain) where that is nothing.
     type More: Debug + Clone + Serialize + JsonSchema;
+    /// Options that say which table is meant, where there are several: [`Single`] otherwise.
+    type Options: Args + Debug + Clone + Send + Sync;
 
     /// Its words.
     const WORDS: Words;
@@ -172,20 +195,74 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// A row as it is typed.
     fn name(key: Self::Key) -> String;
 
-    /// What a row holds, by name.
-    fn fields() -> Vec<Field>;
+    /// A row in questions.
+    fn asked(key: Self::Key) -> String {
+        asked(Self::WORDS.nouns[0], &Self::name(key))
+    }
+
+    /// The address under which people's names for rows are kept.
+    fn address(key: Self::Key) -> String {
+        Self::name(key)
+    }
+
+    /// Asks the controller what must be known before a row is read or written, such as the letters of the axes. Nothing is
+    /// changed.
+    async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
+
+    /// Risk of reading rows: Write where another table has to be selected on the controller for that.
+    fn risk_of_reading(_options: &Self::Options) -> Risk {
+        Risk::Read
+    }
+
+    /// Selects the table on the controller, where it has several.
+    async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Selects the table that was selected before [`select`](Self::select), whatever came of the work meanwhile.
+    async fn deselect<T>(
+        &self,
+        _link: &mut <Self::Family as Family>::Link,
+        outcome: Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        outcome
+    }
+
+    /// Which of several tables it is, in questions: ` of task 2`.
+    fn place(&self) -> String {
+        String::new()
+    }
+
+    /// The values of a row.
+    fn fields(&self) -> Vec<Field>;
 
     /// The text of each field.
-    fn texts(wire: &Self::Wire) -> Vec<String>;
+    fn texts(&self, wire: &Self::Wire) -> Vec<String>;
+
+    /// Headings of a table, and what stands under them; those of the fields where a row is narrow enough.
+    fn headings(&self) -> Vec<&'static str> {
+        self.fields().iter().map(|field| field.heading).collect()
+    }
+
+    /// What a table shows of a row.
+    fn cells(&self, _key: Self::Key, wire: &Self::Wire) -> Vec<Cell> {
+        let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
+        self.fields().into_iter().zip(self.texts(wire)).map(cell).collect()
+    }
+
+    /// What differs between two rows, in a line each.
+    fn difference(&self, old: &Self::Wire, new: &Self::Wire) -> [String; 2] {
+        difference(self, old, new)
+    }
 
     /// What a row holds, for reports; nothing where that fits no type.
-    fn value(wire: &Self::Wire) -> Option<Self::Value>;
+    fn value(&self, wire: &Self::Wire) -> Option<Self::Value>;
 
     /// What the family adds to the item of a row; without `wire`, that was not read, or is not defined.
-    fn more(key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
+    fn more(&self, key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
 
     /// Whether a row holds nothing that anybody wrote.
-    fn is_blank(_wire: &Self::Wire) -> bool {
+    fn is_blank(&self, _wire: &Self::Wire) -> bool {
         false
     }
 
@@ -200,11 +277,15 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     /// # Errors
     /// What ends the whole, where nothing was read.
     async fn read(
+        &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
         keys: &[Self::Key],
     ) -> Result<Answers<Self::Wire>, Failure>;
 }
+
+/// A row that will be written: its key, what it holds as far as that is known, and what it shall hold.
+pub type Differing<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, &'r <S as Store>::Wire);
 
 /// A table whose rows can be written.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
@@ -219,35 +300,47 @@ pub trait Writable: Store {
     ///
     /// # Errors
     /// Why that cannot be.
-    fn draft(key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
+    fn draft(&self, key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
 
     /// The same from words of a command line: all values in their order, or some as `NAME=VALUE`.
     ///
     /// # Errors
     /// Why that cannot be.
-    fn typed(key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
-        set::typed::<Self>(key, words)
+    fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
+        set::typed(self, key, words)
     }
 
     /// What the row will hold, where `old` is what it holds.
     ///
     /// # Errors
     /// Where what stays cannot be written, or is not known.
-    fn whole(key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire, Failure>;
+    fn whole(&self, key: Self::Key, draft: &Self::Draft, old: Option<&Self::Wire>) -> Result<Self::Wire, Failure>;
+
+    /// What follows from writing rows, beside what the question says anyway.
+    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What is to be done after these rows were written.
+    fn afterwards(&self, _written: &[Self::Key]) -> Option<String> {
+        None
+    }
 
     /// Notes in a dry run what writes a row, and reads it back.
     async fn plan(
+        &self,
         link: &mut <Self::Family as Family>::Link,
         key: Self::Key,
         draft: &Self::Draft,
     ) -> Result<(), Failure>;
 
-    /// Writes a row.
+    /// Writes a row; the change is from what it holds, as far as that is known, to what it shall hold.
     async fn write(
+        &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
         key: Self::Key,
-        new: &Self::Wire,
+        change: (Option<&Self::Wire>, &Self::Wire),
     ) -> Result<(), Failure>;
 }
 
@@ -257,37 +350,38 @@ type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
 type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
 /// The item of a row.
-fn item<S: Store>(names: &Names, key: S::Key, outcome: Result<Option<S::Wire>, Failure>) -> Item<S::Value, S::More> {
+fn item<S: Store>(
+    table: &S,
+    names: &Names,
+    key: S::Key,
+    outcome: Result<Option<S::Wire>, Failure>,
+) -> Item<S::Value, S::More> {
     let name = S::name(key);
-    let label = S::LABELS.and_then(|kind| labels::label(names, kind, &name));
+    let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
-    let (cells, more) = (wire.map(cells::<S>).unwrap_or_default(), S::more(key, wire));
-    let value = outcome.map(|wire| wire.as_ref().and_then(S::value));
+    let (cells, more) = (wire.map(|wire| table.cells(key, wire)).unwrap_or_default(), table.more(key, wire));
+    let value = outcome.map(|wire| wire.as_ref().and_then(|wire| table.value(wire)));
     Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
 }
 
-fn cells<S: Store>(wire: &S::Wire) -> Vec<Cell> {
-    let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
-    S::fields().into_iter().zip(S::texts(wire)).map(cell).collect()
-}
-
 /// Headings of a table of rows.
-fn columns<S: Store>() -> Columns {
+fn columns<S: Store>(table: &S) -> Columns {
     let [one, many] = S::WORDS.nouns;
-    Columns { name: one, values: S::fields().iter().map(|field| field.heading).collect(), empty: many }
+    Columns { name: one, values: table.headings(), empty: many }
 }
 
 /// Columns of a file: the row, its fields, and the name that people gave it.
-fn sheet<S: Store>() -> Vec<Column> {
+fn sheet<S: Store>(table: &S) -> Vec<Column> {
     let column = |field: Field| {
-        if field.is_number { Column::number(field.name) } else { Column::text(field.name) }
+        let name = field.name.into_owned();
+        if field.is_number { Column::number(name) } else { Column::text(name) }
     };
-    std::iter::once(Column::text("name")).chain(S::fields().into_iter().map(column)).collect()
+    std::iter::once(Column::text("name")).chain(table.fields().into_iter().map(column)).collect()
 }
 
 /// What a row holds in a line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
-fn line<S: Store>(wire: &S::Wire) -> String {
-    let (fields, texts) = (S::fields(), S::texts(wire));
+fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
+    let (fields, texts) = (table.fields(), table.texts(wire));
     if let ([field], [text]) = (&fields[..], &texts[..]) {
         let unit = field.heading.split_once('(').and_then(|(_, unit)| unit.strip_suffix(')'));
         return unit.map_or_else(|| text.clone(), |unit| format!("{text} {unit}"));
@@ -297,10 +391,10 @@ fn line<S: Store>(wire: &S::Wire) -> String {
 }
 
 /// What differs between two rows, in a line each.
-fn difference<S: Store>(old: &S::Wire, new: &S::Wire) -> [String; 2] {
-    let (fields, old_texts, new_texts) = (S::fields(), S::texts(old), S::texts(new));
+fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String; 2] {
+    let (fields, old_texts, new_texts) = (table.fields(), table.texts(old), table.texts(new));
     if fields.len() < 2 || old_texts.len() != fields.len() {
-        return [line::<S>(old), line::<S>(new)];
+        return [line(table, old), line(table, new)];
     }
     let differ = |texts: &[String]| {
         let rows = fields.iter().zip(texts).zip(old_texts.iter().zip(&new_texts));
@@ -308,6 +402,18 @@ fn difference<S: Store>(old: &S::Wire, new: &S::Wire) -> [String; 2] {
         rows.map(|((field, text), _)| format!("{}={text}", field.name)).collect::<Vec<_>>().join(" ")
     };
     [differ(&old_texts), differ(&new_texts)]
+}
+
+/// Reads rows of a table that is selected for it.
+async fn read<S: Store>(
+    table: &mut S,
+    link: &mut <S::Family as Family>::Link,
+    screen: &Screen,
+    keys: &[S::Key],
+) -> Result<Answers<S::Wire>, Failure> {
+    table.select(link).await?;
+    let read = table.read(link, screen, keys).await;
+    table.deselect(link, read).await
 }
 
 /// Rows as typed, with names where people gave some.

@@ -15,6 +15,8 @@ use crate::gate::Confirmation;
 #[derive(Debug, Args)]
 #[command(after_help = S::WORDS.writing)]
 pub struct Set<S: Writable> {
+    #[command(flatten)]
+    options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
     row: One<S>,
     /// All values in their order, or some as NAME=VALUE, which keeps the others
@@ -53,16 +55,17 @@ impl<S: Writable> Command for Set<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
         let Context { robot, link, screen, authority, .. } = context;
         let key = self.row.0;
-        let draft = S::typed(key, &self.values)?;
-        write(Work::<S> { robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
+        let table = S::open(link, &self.options).await?;
+        let draft = table.typed(key, &self.values)?;
+        write(Work { table, robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
     }
 }
 
 /// What a row shall hold from words: all values in their order, or some as `NAME=VALUE`.
-pub fn typed<S: Writable>(key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
-    let fields = S::fields();
+pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
+    let fields = table.fields();
     let row = asked(S::WORDS.nouns[0], &S::name(key));
-    let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
+    let names: Vec<&str> = fields.iter().map(|field| &*field.name).collect();
     let usage = match &names[..] {
         [_] => "give one value".to_owned(),
         names => format!("give all values in this order, or some by name: {}", names.join("=… ") + "=…"),
@@ -73,13 +76,11 @@ pub fn typed<S: Writable>(key: S::Key, words: &[String]) -> Result<S::Draft, Fai
     if words.iter().any(has_name) {
         for word in words {
             let (name, value) = word.split_once('=').ok_or_else(|| wrong(format!("'{word}' has no name")))?;
+            let wanted = name.to_ascii_lowercase().replace('-', "_");
+            let exact = names.iter().position(|field| *field == wanted);
             // `speed` for `speed_mm_s`.
-            let is_name = |field: &str| {
-                field.eq_ignore_ascii_case(name)
-                    || field.split_once('_').is_some_and(|(first, _)| first.eq_ignore_ascii_case(name))
-            };
-            let exact = names.iter().position(|field| field.eq_ignore_ascii_case(name));
-            let at = exact.or_else(|| names.iter().position(|field| is_name(field))).ok_or_else(|| {
+            let begins = |field: &&str| field.strip_prefix(&*wanted).is_some_and(|rest| rest.starts_with('_'));
+            let at = exact.or_else(|| names.iter().position(begins)).ok_or_else(|| {
                 let near = nearest(name, names.iter().copied());
                 let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
                 wrong(format!("there is no value '{}'{near}", name.escape_debug()))
@@ -93,5 +94,5 @@ pub fn typed<S: Writable>(key: S::Key, words: &[String]) -> Result<S::Draft, Fai
     } else {
         return Err(wrong(format!("{} values needed, {} given", fields.len(), words.len())));
     }
-    S::draft(key, &texts).map_err(wrong)
+    table.draft(key, &texts).map_err(wrong)
 }

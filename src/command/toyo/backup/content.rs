@@ -139,7 +139,9 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
             Ok(Text { text: pallets::write(&filled) + &remarks(&left_out), left_out })
         }
         Part::Points(task) => {
-            let (_, answers) = point::read_all(link, screen, Some(task), &(1..=999).collect::<Vec<_>>()).await?;
+            tasks::choose(link, Some(task)).await?;
+            let answers = point::read(link, screen, &(1..=999).collect::<Vec<_>>()).await;
+            let answers = tasks::done(link, answers).await?;
             let (records, left_out) = sorted((1..=999).map(|point: i32| point.to_string()), answers)?;
             let setting = |(_, record): &(String, Record)| Setting {
                 parameter: points::table(),
@@ -224,13 +226,13 @@ impl Content {
     pub fn stores(&self, room: u16) -> Result<Vec<Store>, Failure> {
         match self {
             Self::Parameters(settings) => {
-                settings.iter().filter(|setting| !is_machine(setting)).map(param::store).collect()
+                settings.iter().filter(|setting| !is_machine(setting)).map(of_setting).collect()
             }
             Self::Points(settings) => settings
                 .iter()
                 .map(|setting| {
                     let key = setting.row().unwrap_or_default().to_string();
-                    Ok(Store { key, ..param::store(setting)? })
+                    Ok(Store { key, ..of_setting(setting)? })
                 })
                 .collect(),
             Self::Program(program) => {
@@ -243,7 +245,9 @@ impl Content {
                     .collect()
             }
             Self::Palletizing(number, records) => {
-                let store = |(record, values): &pallets::Filled| palletizing::store(*number, record, values.clone());
+                let store = |(record, values): &pallets::Filled| {
+                    stored(record.name.to_owned(), palletizing::cell(*number, record, values.clone()))
+                };
                 records.iter().map(store).collect()
             }
             Self::Easy(programs) => {
@@ -260,7 +264,7 @@ impl Content {
         let Self::Parameters(settings) = self else { return Ok(Vec::new()) };
         let mut settings: Vec<&Setting> = settings.iter().filter(|setting| is_machine(setting)).collect();
         settings.sort_by_key(|setting| setting.parameter.group() == Group::Machine);
-        settings.into_iter().map(param::store).collect()
+        settings.into_iter().map(of_setting).collect()
     }
 
     /// Steps that the manual does not list, which are never written: number and text.
@@ -279,7 +283,7 @@ impl Content {
             Self::Palletizing(..) => ("storing records", "", ["a record", "records"]),
             Self::Easy(_) => ("storing easy programs", "program", ["a program", "programs"]),
         };
-        StoreTask { doing, noun, things, resumes: false }
+        StoreTask { doing, noun, things }
     }
 
     /// The steps that it needs room for: up to the last that is no NOP.
@@ -293,6 +297,19 @@ impl Content {
 /// Whether a parameter makes the controller another machine.
 fn is_machine(setting: &Setting) -> bool {
     matches!(setting.parameter.group(), Group::Machine | Group::Special)
+}
+
+/// A parameter, or a row of a table, as something that is stored.
+fn of_setting(setting: &Setting) -> Result<Store, Failure> {
+    let wrong = |error| wrong(&error);
+    let cell = Cell {
+        read: setting.read().map_err(wrong)?,
+        write: setting.write().map_err(wrong)?,
+        wanted: setting.parameter.layout.record(setting.values.clone()).map_err(wrong)?,
+    };
+    let key = param::Key { parameter: setting.parameter, row: setting.row() };
+    let is_optional = !setting.parameter.only_on.is_empty();
+    Ok(Store { is_optional, ..Store::new(param::key_text(key), cell) })
 }
 
 fn stored(key: String, cell: Result<Cell, Failure>) -> Result<Store, Failure> {

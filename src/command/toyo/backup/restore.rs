@@ -70,10 +70,8 @@ const MACHINE: StoreTask = StoreTask {
     doing: "storing machine parameters",
     noun: "",
     things: ["a machine or special parameter", "machine and special parameters"],
-    resumes: false,
 };
-const SPEED: StoreTask =
-    StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"], resumes: false };
+const SPEED: StoreTask = StoreTask { doing: "storing the override", noun: "", things: ["the override", "overrides"] };
 /// Values that a question shows one by one; more are counted by parts.
 const SHOWN: usize = 10;
 
@@ -193,7 +191,7 @@ impl Asked {
         }
         authority.confirm(&change).await?;
         steps::open(link).await?;
-        let stored = stores::store_all(link, screen, MACHINE, &machine, 0).await;
+        let stored = stores::store_all(link, screen, MACHINE, &machine).await;
         if needs_power_cycle || stored.is_err() {
             let parameters = jobs.iter().position(|job| job.part == Part::Parameters);
             let needs_power_cycle = stored.is_ok();
@@ -273,15 +271,15 @@ impl Asked {
         let mut speed: Vec<Store> = speed(backup)?.filter(|_| self.is_whole()).into_iter().collect();
         stores::look(link, screen, &mut speed).await?;
         steps::plan_open(link).await?;
-        stores::store_all(link, screen, MACHINE, &machine, 0).await?;
+        stores::store_all(link, screen, MACHINE, &machine).await?;
         for Looked { job, stores, .. } in &looked {
             choose(link, job.part).await?;
-            stores::store_all(link, screen, job.content.work(), stores, 0).await?;
+            stores::store_all(link, screen, job.content.work(), stores).await?;
             if let Part::Program(_) = job.part {
                 link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
             }
         }
-        stores::store_all(link, screen, SPEED, &speed, 0).await?;
+        stores::store_all(link, screen, SPEED, &speed).await?;
         link.put_back().await?;
         Err(unknown())
     }
@@ -454,7 +452,7 @@ async fn store_all(
     work: StoreTask,
     stores: &[Store],
 ) -> Result<(Cells, Vec<LeftOut>), Failure> {
-    let fates = stores::store_all(link, screen, work, stores, 0).await?;
+    let fates = stores::store_all(link, screen, work, stores).await?;
     let absent = stores.iter().zip(&fates).filter(|(_, fate)| **fate == StoreResult::NotThere);
     let why = "the controller does not have it";
     let absent = absent.map(|(store, _)| LeftOut { key: store.key.clone(), why: why.to_owned() });

@@ -87,7 +87,7 @@ fn a_backup_holds_all_that_is_stored() {
         ["easy.toml", "manifest.json", "parameters.toml", "points-1.csv", "program-1.txt", "program-2.txt"]
     );
     assert_eq!(files.len(), 22);
-    assert!(files["points-1.csv"].starts_with("point,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,0.00\n"));
+    assert!(files["points-1.csv"].starts_with("name,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,0.00\n"));
     assert!(files["points-1.csv"].ends_with("\n999,-1.50,0.00,0.00,0.00\n"));
     assert!(files["program-1.txt"].starts_with("TAG TAG=001\nSPD V=05\nJMP TAG=001"));
     assert!(files["program-2.txt"].starts_with("OUT STN=0 PN01=.......1\nEND\n# 3 NOP"));

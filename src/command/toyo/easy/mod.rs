@@ -89,9 +89,9 @@ impl rows::Kind for Numbered {
     };
     const IDS: Ids = ids!("toyo.easy");
     const FIELDS: &'static [Field] = &[
-        Field { name: "start_tag", heading: "start tag", is_number: true },
-        Field { name: "loops", heading: "loops", is_number: true },
-        Field { name: "end_tag", heading: "end tag", is_number: true },
+        Field::number("start_tag", "start tag"),
+        Field::number("loops", "loops"),
+        Field::number("end_tag", "end tag"),
     ];
     const ZERO_IS_BLANK: bool = true;
 

@@ -1,39 +1,50 @@
 //! `toyo palletizing`: the sixteen palletizing programs, of sixteen records each.
 
-mod get;
 mod progress;
-mod set;
 
+use std::hash::{Hash, Hasher};
+
+use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::complete;
 use super::eeprom::Cell;
-use super::items::in_a_word;
-use super::link::{Link, wrong};
+use super::items::read_each;
+use super::link::{Link, Toyo, wrong};
 use super::numbers;
 use super::programs::{Copy, Kind, Select};
-use super::stores::Store;
+use super::rows::{EepromRow, Listed, is_zero};
 use super::values::{self, Shown};
 use crate::client::toyo::Letters;
+use crate::command::ValueKind;
 use crate::command::commands;
+use crate::command::frame::store::{Answers, Dump, Field, Get, Ids, List, Restore, Set, Store, Words, ids};
 use crate::controller::nearest::nearest;
-use crate::controller::toyo::field::{Field, Value};
-use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::field::{self, Value};
+use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::palletizing::RECORDS;
 use crate::controller::toyo::table::{Command, Pallet};
 use crate::failure::Failure;
-use crate::output::view::{self, Table, Tone};
+use crate::output::Screen;
+use crate::output::view;
 
 commands! {
     /// What can be done with palletizing programs.
     pub enum Palletizing {
-        /// Read the records of a program, also into a TOML file
-        Get(get::Get),
-        /// Write a record, or those of a TOML file: 1 source-p1 x=100
-        Set(set::Set),
+        /// Read the records of a program: 3 source-p1
+        Get(Get<Records>),
+        /// List the records of a program that hold something
+        List(List<Records>),
+        /// Write a record: 1 source-p1 x=100
+        Set(Set<Records>),
         /// Copy a program to another number
         Copy(Copy<Numbered>),
+        /// Save a program to a CSV file: FILE 3
+        Dump(Dump<Records>),
+        /// Write a program from a CSV file: FILE 3
+        Restore(Restore<Records>),
         /// Select the program that `run palletizing` starts
         Select(Select<Numbered>),
         /// Progress of the running program
@@ -53,7 +64,7 @@ impl Kind for Numbered {
     const RUN: &'static str = "toyo run palletizing";
     const COMMANDS: [Command; 3] = [Command::Cppl, Command::Spln, Command::Rpld];
 
-    fn field() -> &'static Field {
+    fn field() -> &'static field::Field {
         field()
     }
 
@@ -63,7 +74,7 @@ impl Kind for Numbered {
 }
 
 /// The number of a program, 1 to 16.
-fn field() -> &'static Field {
+fn field() -> &'static field::Field {
     &Command::Rplt.row().requests[0].fields[0]
 }
 
@@ -72,102 +83,177 @@ fn parse_program(text: &str) -> Result<i32, String> {
     numbers::number(field(), text)
 }
 
-/// A record by its name or number.
-fn parse_record(text: &str) -> Result<&'static Pallet, String> {
-    Pallet::named(&text.to_lowercase()).ok_or_else(|| {
-        let near = nearest(text, RECORDS.iter().map(|record| record.name));
-        let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
-        format!("there is no such record{near}")
-    })
-}
-
 /// What reads records of a program.
 pub fn reads(program: i32, records: &[&Pallet]) -> Result<Vec<Request>, Failure> {
     let read = |record: &&Pallet| Request::read_pallet(program, record);
     records.iter().map(read).collect::<Result<_, _>>().map_err(|error| wrong(&error))
 }
 
-/// The letters by which coordinates of these records are told, if there are any. A file of records has axes 1 to 4 as x,
-/// y, z and r: it is refused where the machine has other letters.
-async fn letters(link: &mut Link, records: &[&Pallet], is_file: bool) -> Result<Letters, Failure> {
-    if !records.iter().any(|record| values::has_coordinates(&record.layout)) {
-        return Ok(Letters::USUAL);
-    }
-    let letters = link.letters().await?;
-    if is_file && !letters.are_usual() {
-        let message = format!("a file of records means X, Y and Z of the usual axes: {}", values::machine(&letters));
-        return Err(Failure::usage(message).hint(
-            "`toyo palletizing set PROGRAM RECORD` takes coordinates by their letters; `armctl backup` keeps all",
-        ));
-    }
-    Ok(letters)
-}
-
-/// A record of a program as something that is stored.
-pub fn store(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Store, Failure> {
-    let cell = Cell {
+/// A record of a program with its values.
+pub fn cell(program: i32, record: &'static Pallet, values: Vec<Value>) -> Result<Cell, Failure> {
+    Ok(Cell {
         read: Request::read_pallet(program, record).map_err(|error| wrong(&error))?,
         write: Request::write_pallet(program, record, &values).map_err(|error| wrong(&error))?,
         wanted: record.layout.record(values).map_err(|error| wrong(&error))?,
-    };
-    Ok(Store::new(record.name, cell))
+    })
 }
 
-/// The block that writes a record; `?` stands for values that are kept.
-fn sketch(program: i32, record: &Pallet, values: &[Option<Value>]) -> String {
-    let body = record.layout.sketch(values).unwrap_or_default();
-    format!("@WPLT {program:02} SNO={:02} {body}", record.number)
+/// The records of a program.
+#[derive(Debug)]
+pub struct Records {
+    program: i32,
+    letters: Letters,
+}
+
+/// Which program.
+#[derive(Debug, Clone, Args)]
+pub struct ProgramOptions {
+    /// Program, 1 to 16
+    #[arg(value_parser = parse_program)]
+    program: i32,
 }
 
 /// A record of a program.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Entry {
-    /// 1 to 16.
-    record: u8,
-    /// `source-p0`.
-    name: &'static str,
-    /// What it holds.
-    about: &'static str,
-    values: Vec<Shown>,
-    /// Whether it was answered, or stored.
-    ok: bool,
-    /// Why it was not.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<Failure>,
+#[derive(Debug, Clone, Copy)]
+pub struct Key(&'static Pallet);
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.number == other.0.number
+    }
 }
 
-impl Entry {
-    fn of(pallet: &'static Pallet, record: &Record, letters: Letters) -> Self {
-        let values = values::shown_by(record, &letters);
-        let (record, name, about) = (pallet.number, pallet.name, pallet.about);
-        Self { record, name, about, values, ok: true, error: None }
+impl Eq for Key {}
+
+impl Hash for Key {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.number.hash(state);
+    }
+}
+
+/// What a record has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct About {
+    /// 1 to 16.
+    program: i32,
+    /// Number of the record, 1 to 16.
+    record: u8,
+    /// What it holds.
+    about: &'static str,
+    #[serde(flatten)]
+    listed: Listed,
+}
+
+impl Store for Records {
+    type Family = Toyo;
+    type Key = Key;
+    type Wire = Record;
+    type Value = Vec<Shown>;
+    type More = About;
+    type Options = ProgramOptions;
+
+    const WORDS: Words = Words {
+        nouns: ["record", "records"],
+        placeholder: "RECORD",
+        range: "Records by name or number: start source-p0 6",
+        reading: None,
+        writing: Some(
+            "All values of a record in their order, or some by name, which keeps the others: `palletizing set 1 source-p1 \
+             100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. What the controller holds \
+             already is not written: its EEPROM takes about a million rewrites.",
+        ),
+    };
+    const IDS: Ids = ids!("toyo.palletizing");
+    const COMPLETE: ValueKind = complete::RECORD;
+
+    fn keys(text: &str) -> Result<Vec<Key>, String> {
+        let found = Pallet::named(&text.to_lowercase()).ok_or_else(|| {
+            let near = nearest(text, RECORDS.iter().map(|record| record.name));
+            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            format!("there is no such record{near}")
+        });
+        Ok(vec![Key(found?)])
     }
 
-    /// What was answered.
-    fn answered(pallet: &'static Pallet, answer: &Result<Record, Failure>, letters: Letters) -> Self {
-        match answer {
-            Ok(record) => Self::of(pallet, record, letters),
-            Err(failure) => Self {
-                record: pallet.number,
-                name: pallet.name,
-                about: pallet.about,
-                values: Vec::new(),
-                ok: false,
-                error: Some(failure.clone()),
-            },
-        }
+    fn all() -> Vec<Key> {
+        RECORDS.iter().map(Key).collect()
     }
 
-    fn table(entries: &[Self]) -> Table {
-        let mut table = Table::new(&["record", "name", "value"], "no records");
-        for Self { record, name, values, error, .. } in entries {
-            let value = match error {
-                Some(error) => view::Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
-                None => values::in_a_line(values).into(),
-            };
-            table.row([(*record).into(), (*name).into(), value]);
-        }
-        table
+    fn name(Key(record): Key) -> String {
+        record.name.to_owned()
+    }
+
+    async fn open(link: &mut Link, options: &ProgramOptions) -> Result<Self, Failure> {
+        Ok(Self { program: options.program, letters: link.letters().await? })
+    }
+
+    fn place(&self) -> String {
+        format!(" of palletizing program {}", self.program)
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::text("value", "value")]
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
+        vec![values::as_typed(&values::shown_by(record, &self.letters))]
+    }
+
+    fn headings(&self) -> Vec<&'static str> {
+        vec!["record", "value"]
+    }
+
+    fn cells(&self, Key(pallet): Key, record: &Record) -> Vec<view::Cell> {
+        let value = values::in_a_line(&values::shown_by(record, &self.letters));
+        vec![pallet.number.into(), value.into()]
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &self.letters)
+    }
+
+    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
+        Some(values::shown_by(record, &self.letters))
+    }
+
+    fn more(&self, Key(pallet): Key, record: Option<&Record>) -> About {
+        let Pallet { number, about, .. } = *pallet;
+        About { program: self.program, record: number, about, listed: Listed::of(record) }
+    }
+
+    fn is_blank(&self, record: &Record) -> bool {
+        is_zero(record, record.values().len())
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+        let records: Vec<&Pallet> = keys.iter().map(|Key(record)| *record).collect();
+        Ok(Answers::of(read_each(link, screen, "reading records", &reads(self.program, &records)?).await?))
+    }
+}
+
+impl EepromRow for Records {
+    const IS_MIXED: bool = true;
+
+    fn letters(&self) -> Letters {
+        self.letters
+    }
+
+    fn body(&self, Key(record): Key) -> Layout {
+        record.layout
+    }
+
+    fn request(&self, Key(record): Key) -> Result<Request, Failure> {
+        Request::read_pallet(self.program, record).map_err(|error| wrong(&error))
+    }
+
+    fn cell(&self, Key(record): Key, values: Vec<Value>) -> Result<Cell, Failure> {
+        cell(self.program, record, values)
+    }
+
+    /// The block that writes a record; `?` stands for values that are kept.
+    fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
+        let body = record.layout.sketch(values).unwrap_or_default();
+        format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)
     }
 }
 
@@ -210,27 +296,27 @@ mod tests {
     fn a_program_goes_through_a_file_and_is_copied() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-        let (first, second) = (path("first.toml"), path("second.toml"));
-        std::fs::write(
-            &first,
-            "16 = 7\nstart = { tag = 5, mode = '1-M' }\nsource-pieces = { p1 = 3, p2 = 0, p3 = 0 }\n",
-        )
-        .unwrap();
+        let (first, second) = (path("first.csv"), path("second.csv"));
+        std::fs::write(&first, "name,value\nend,7\nstart,tag=5 mode=1-M\nsource-pieces,p1=3\n").unwrap();
         let mut bench = Bench::new("sim:");
-        let stored = bench.data(&["palletizing", "set", "2", "--from", &first]);
-        let names: Vec<_> = stored["records"].as_array().unwrap().iter().map(|record| &record["name"]).collect();
-        assert_eq!(names, ["start", "source-pieces", "end"]);
-        assert_eq!(stored["cells_written"], 3);
-        assert_eq!(bench.data(&["palletizing", "set", "2", "--from", &first])["cells_unchanged"], 3);
+        let written = |report: &serde_json::Value| {
+            let items = report["items"].as_array().unwrap().iter();
+            items.map(|item| (item["name"].clone(), item["written"].clone())).collect::<Vec<_>>()
+        };
+        let restored = |bench: &mut Bench| written(&bench.data(&["palletizing", "restore", &first, "2"]));
+        let all = |is_written: bool| ["end", "start", "source-pieces"].map(|name| (name.into(), is_written.into()));
+        assert_eq!(restored(&mut bench), all(true));
+        assert_eq!(restored(&mut bench), all(false));
         let copied = bench.data(&["palletizing", "copy", "2", "9"]);
         assert_eq!((&copied["cells_written"], &copied["cells_unchanged"]), (&3.into(), &13.into()));
-        bench.data(&["palletizing", "get", "2", "--toml", &first, "--force"]);
-        bench.data(&["palletizing", "get", "9", "--toml", &second]);
+        bench.data(&["palletizing", "dump", &first, "2", "--force"]);
+        bench.data(&["palletizing", "dump", &second, "9"]);
         let text = std::fs::read_to_string(&first).unwrap();
         assert_eq!(text, std::fs::read_to_string(&second).unwrap());
-        assert!(text.contains("start = { tag = 5, mode = \"1-M\" }"), "{text}");
-        assert_eq!(bench.data(&["palletizing", "set", "1", "--from", &second])["cells_written"], 3);
-        assert_eq!(bench.run(&["palletizing", "get", "9", "--toml", &second]).unwrap_err().kind.exit(), 1);
+        assert!(text.starts_with("name,value\nstart,tag=5 mode=1-M\n"), "{text}");
+        let restored = bench.data(&["palletizing", "restore", &second, "1"]);
+        assert_eq!(written(&restored).iter().filter(|(_, is_written)| *is_written == true).count(), 3, "{restored}");
+        assert_eq!(bench.run(&["palletizing", "dump", &second, "9"]).unwrap_err().kind.exit(), 1);
     }
 
     #[test]

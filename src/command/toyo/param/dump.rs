@@ -7,8 +7,7 @@ use jiff::Timestamp;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::entry::{Key, is_refused, read_keys};
-use super::singles;
+use super::{Key, read, singles};
 use crate::command::toyo::link::Link;
 use crate::command::toyo::link::Toyo;
 use crate::command::toyo::numbers::Numbers;
@@ -18,7 +17,7 @@ use crate::command::{Command, Context, Report};
 use crate::controller::toyo::bulk::{Setting, parameters};
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::table::parameters::PARAMETERS;
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::output::view::View;
 use crate::output::{Screen, escape};
 
@@ -26,7 +25,7 @@ use crate::output::{Screen, escape};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Parameters, and the tables of speeds, times, MVM groups and torque limits; points go to a file of \
-                        their own by `point list --csv`. Each value stands there by its name, with its unit, for \
+                        their own by `point dump`. Each value stands there by its name, with its unit, for \
                         people and for `param restore`. The file is whole or is not written. It takes about 20 s at \
                         9600 baud."
 )]
@@ -67,10 +66,10 @@ impl Command for Dump {
 /// All parameters, and all rows of the tables but points.
 fn keys() -> Vec<Key> {
     let tables = PARAMETERS.iter().filter(|parameter| parameter.id != POINTS);
-    let rows = tables
-        .filter_map(|table| Some((table, table.row()?)))
-        .flat_map(|(table, field)| Numbers::of(&[], field).into_iter().map(move |row| (table, Some(row))));
-    singles().map(|parameter| (parameter, None)).chain(rows).collect()
+    let rows = tables.filter_map(|table| Some((table, table.row()?))).flat_map(|(table, field)| {
+        Numbers::of(&[], field).into_iter().map(move |row| Key { parameter: table, row: Some(row) })
+    });
+    singles().map(Key::single).chain(rows).collect()
 }
 
 /// What was read.
@@ -112,7 +111,7 @@ impl DumpReport {
     /// Reads all parameters, and all tables but that of points. A dry run notes them and ends.
     pub async fn read(link: &mut Link, screen: &Screen) -> Result<Self, Failure> {
         let keys = keys();
-        let contents = read_keys(link, screen, &keys).await?;
+        let contents = read(link, screen, &keys).await?;
         let mut kept = Self::default();
         for (key, content) in keys.into_iter().zip(contents) {
             kept.add(key, content);
@@ -125,13 +124,11 @@ impl DumpReport {
         format!("{}{}", parameters::write(&self.settings), self.remarks())
     }
 
-    fn add(&mut self, (parameter, row): Key, answer: Result<Record, Failure>) {
-        let key = key_text((parameter, row));
-        if is_refused(&answer) {
-            return self.refused.push(key);
-        }
+    fn add(&mut self, key: Key, answer: Result<Record, Failure>) {
+        let (parameter, key) = (key.parameter, key_text(key));
         let content = match answer {
             Ok(content) => content,
+            Err(failure) if failure.kind == Kind::Refused => return self.refused.push(key),
             Err(failure) => return self.failed.push(Failed { key, error: failure }),
         };
         if !content.is_listed() {
@@ -166,7 +163,7 @@ impl DumpReport {
 }
 
 /// `P01`, or a row as `T2.5`.
-pub fn key_text((parameter, row): Key) -> String {
+pub fn key_text(Key { parameter, row }: Key) -> String {
     match row {
         Some(row) => format!("{}.{row}", parameter.id),
         None => parameter.id.to_owned(),

@@ -10,11 +10,8 @@ const MOST_STEPS: i32 = 5000;
 /// From more steps than that on, there is no room for easy programs.
 const BESIDE_EASY: i32 = 2000;
 
-/// What follows from a change of a parameter, to be said before it is confirmed.
-pub fn consequence(parameter: &Parameter) -> Option<String> {
-    let is_machine = parameter.group() == Group::Machine;
-    is_machine.then(|| consequence_of(&[parameter]))
-}
+/// What to do after a machine parameter was changed.
+pub const POWER_CYCLE: &str = "switch the controller's power off and on: until then only communication works";
 
 /// What follows from a change of several machine parameters.
 pub fn consequence_of(parameters: &[&Parameter]) -> String {

@@ -1,31 +1,47 @@
 //! `toyo param`: parameters, one or all.
 
 mod dump;
-mod entry;
-mod get;
-mod list;
 mod machine;
 mod restore;
-mod set;
 
-pub use dump::{DumpReport, Failed, Unfit};
-pub use machine::consequence_of;
-pub use restore::store;
+pub use dump::{DumpReport, Failed, Unfit, key_text};
+pub use machine::{POWER_CYCLE, consequence_of};
 
+use std::hash::{Hash, Hasher};
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::complete;
+use super::eeprom::Cell;
+use super::items::{Answers as Records, read_each_twice};
+use super::link::{Link, Toyo, wrong};
+use super::rows::{EepromRow, Listed};
+use super::stores::{parameter_cell, parameter_sketch};
+use super::values::{self, Shown};
+use crate::client::toyo::Letters;
+use crate::command::ValueKind;
 use crate::command::commands;
+use crate::command::frame::store::{Answers, Differing, Field, Get, Ids, List, Set, Single, Store, Words, ids};
 use crate::controller::nearest::nearest;
-use crate::controller::toyo::table::Parameter;
+use crate::controller::toyo::field::Value;
+use crate::controller::toyo::layout::{Layout, Record};
+use crate::controller::toyo::request::Request;
 use crate::controller::toyo::table::parameters::PARAMETERS;
+use crate::controller::toyo::table::{Group, Parameter};
+use crate::failure::{Failure, Kind};
+use crate::output::Screen;
+use crate::output::view;
 
 commands! {
     /// What can be done with parameters.
     pub enum Param {
-        /// Read parameters by name or id: soft-limit-plus P01 M09
-        Get(get::Get),
+        /// Read parameters by name, id or group: soft-limit-plus P01 axis
+        Get(Get<Parameters>),
         /// Change a parameter: soft-limit-plus 100 200 0 0
-        Set(set::Set),
-        /// Read all parameters
-        List(list::List),
+        Set(Set<Parameters>),
+        /// Read all parameters, or a group of them
+        List(List<Parameters>),
         /// Save all parameters and tables as TOML
         Dump(dump::Dump),
         /// Write parameters from a file
@@ -33,20 +49,75 @@ commands! {
     }
 }
 
+/// All parameters, and the rows of the parameters that are tables.
+#[derive(Debug)]
+pub struct Parameters;
+
+/// A parameter, or a row of one that is a table.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// The parameter.
+    pub parameter: &'static Parameter,
+    /// The row of a table.
+    pub row: Option<i32>,
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        (self.parameter.id, self.row) == (other.parameter.id, other.row)
+    }
+}
+
+impl Eq for Key {}
+
+impl Hash for Key {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.parameter.id, self.row).hash(state);
+    }
+}
+
+impl Key {
+    const fn single(parameter: &'static Parameter) -> Self {
+        Self { parameter, row: None }
+    }
+}
+
+/// What a parameter has besides.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct About {
+    /// `P01`.
+    pub id: &'static str,
+    /// `mode`, `axis`, `machine`, `special` or `table`.
+    pub group: &'static str,
+    /// What it holds.
+    pub about: &'static str,
+    /// Controllers that have it; none if all have.
+    pub only_on: &'static [&'static str],
+    #[serde(flatten)]
+    listed: Listed,
+}
+
+/// Groups of parameters, for all of them.
+const GROUPS: [Group; 4] = [Group::Mode, Group::Axis, Group::Machine, Group::Special];
+
 /// Parameters that have no rows.
 fn singles() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
 }
 
-/// A parameter by its name or id.
-fn parse_name(name: &str) -> Result<&'static Parameter, String> {
+/// A parameter by its name or id, or all of a group.
+fn parse(name: &str) -> Result<Vec<Key>, String> {
+    if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
+        return Ok(singles().filter(|parameter| parameter.group() == *group).map(Key::single).collect());
+    }
     match Parameter::named(name) {
         Some(parameter) if parameter.row().is_some() => {
             Err(format!("{} is a table; `toyo {} get` reads its rows", parameter.name, command_of(parameter)))
         }
-        Some(parameter) => Ok(parameter),
+        Some(parameter) => Ok(vec![Key::single(parameter)]),
         None => {
             let known = singles().flat_map(|parameter| [parameter.name, parameter.id]);
+            let known = known.chain(GROUPS.iter().map(|group| group.name()));
             let near = nearest(name, known).map_or(String::new(), |near| format!("; did you mean {near}?"));
             Err(format!("there is no such parameter{near}"))
         }
@@ -61,6 +132,156 @@ fn command_of(table: &Parameter) -> &'static str {
         "T3" => "accel-table",
         "T4" => "mvm",
         _ => "torque-table",
+    }
+}
+
+/// Reads parameters and rows; each answers for itself. What is refused is asked for once more, as a controller that is busy
+/// refuses, too.
+pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
+    let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
+    let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;
+    let rare = |key: &Key, failure: Failure| match &failure.hint {
+        Some(hint) if failure.kind == Kind::Refused && !key.parameter.only_on.is_empty() => {
+            let (id, models) = (key.parameter.id, key.parameter.only_on.join(", "));
+            let hint = format!("only some controllers have {id}: {models}; or {hint}");
+            failure.hint(hint)
+        }
+        _ => failure,
+    };
+    let answers = read_each_twice(link, screen, "reading parameters", &requests).await;
+    match (answers, keys) {
+        (Ok(answers), _) => {
+            Ok(keys.iter().zip(answers).map(|(key, answer)| answer.map_err(|failure| rare(key, failure))).collect())
+        }
+        (Err(failure), [key, ..]) => Err(rare(key, failure)),
+        (Err(failure), []) => Err(failure),
+    }
+}
+
+impl Store for Parameters {
+    type Family = Toyo;
+    type Key = Key;
+    type Wire = Record;
+    type Value = Vec<Shown>;
+    type More = About;
+    type Options = Single;
+
+    const WORDS: Words = Words {
+        nouns: ["parameter", "parameters"],
+        placeholder: "NAME",
+        range: "Names or ids in any case: soft-limit-plus, P01; or a group: mode, axis, machine, special",
+        reading: Some(
+            "`param list` shows the names of those that this controller has. In JSON, each value has its unit, and what \
+             stands on the line beside what it means.",
+        ),
+        writing: Some(
+            "All values in their order, or some by name, which keeps the others: `param set soft-limit-plus 100 200 0 0`, \
+             `param set P01 ax2=150`. Words as on the line or by what they mean: `param set pendant-language english`. A bit \
+             of a port is STATION/PORT/BIT: 0/01/3.\n\nWhat the controller holds already is not written: its EEPROM takes \
+             about a million rewrites. Machine parameters (E): after a change only communication works until the power was \
+             switched off and on.",
+        ),
+    };
+    const IDS: Ids = ids!("toyo.param");
+    const COMPLETE: ValueKind = complete::PARAMETER;
+
+    fn keys(text: &str) -> Result<Vec<Key>, String> {
+        parse(text)
+    }
+
+    fn all() -> Vec<Key> {
+        singles().map(Key::single).collect()
+    }
+
+    fn name(key: Key) -> String {
+        if key.row.is_some() { key_text(key) } else { key.parameter.name.to_owned() }
+    }
+
+    fn asked(key: Key) -> String {
+        if key.row.is_some() { key_text(key) } else { format!("{} ({})", key.parameter.id, key.parameter.name) }
+    }
+
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self)
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::text("value", "value")]
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
+        vec![values::as_typed(&values::shown(record))]
+    }
+
+    fn headings(&self) -> Vec<&'static str> {
+        vec!["id", "value"]
+    }
+
+    fn cells(&self, key: Key, record: &Record) -> Vec<view::Cell> {
+        let body = values::shown(record);
+        vec![view::Cell::from(key.parameter.id).whole(), values::in_a_line(&body).into()]
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &Letters::USUAL)
+    }
+
+    fn value(&self, record: &Record) -> Option<Vec<Shown>> {
+        Some(values::shown(record))
+    }
+
+    fn more(&self, key: Key, record: Option<&Record>) -> About {
+        let Parameter { id, about, only_on, .. } = key.parameter;
+        About { id, group: key.parameter.group().name(), about, only_on, listed: Listed::of(record) }
+    }
+
+    fn is_undefined(failure: &Failure) -> bool {
+        failure.kind == Kind::Refused
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
+        Ok(Answers::of(read(link, screen, keys).await?))
+    }
+}
+
+impl EepromRow for Parameters {
+    const IS_MIXED: bool = true;
+
+    fn body(&self, key: Key) -> Layout {
+        key.parameter.body()
+    }
+
+    fn request(&self, key: Key) -> Result<Request, Failure> {
+        Request::read_parameter(key.parameter, key.row).map_err(|error| wrong(&error))
+    }
+
+    fn cell(&self, key: Key, values: Vec<Value>) -> Result<Cell, Failure> {
+        let values = key.row.map(Value::Number).into_iter().chain(values).collect();
+        parameter_cell(key.parameter, values).map_err(|error| {
+            Failure::usage(format!("{}: {error}", key.parameter.name))
+                .hint("the controller holds a value that may not be written; give all values")
+        })
+    }
+
+    fn sketch(&self, key: Key, values: &[Option<Value>]) -> String {
+        parameter_sketch(key.parameter, key.row, values)
+    }
+
+    fn check(&self, key: Key, values: &[Value]) -> Result<(), Failure> {
+        machine::check(key.parameter, values)
+    }
+
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
+        let changed: Vec<&Parameter> =
+            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
+        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
+        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
+        warnings.chain(machine).collect()
+    }
+
+    fn afterwards(&self, written: &[Key]) -> Option<String> {
+        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 }
 

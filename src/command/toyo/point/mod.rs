@@ -1,53 +1,79 @@
 //! `toyo point`: rows of the coordinate table, which each task has for itself.
 
-mod get;
-mod list;
-mod set;
 mod teach;
 
-pub use list::AXES;
 pub use teach::Teach;
 
+use std::path::Path;
+
+use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::items::{Answers, read_each};
-use super::link::{self, Link};
+use super::eeprom::Cell;
+use super::items::{Answers as Records, read_each};
+use super::link::{Link, Toyo, wrong};
 use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::rows::Listed;
-use super::tasks;
-use super::values::NOT_IN_MANUAL;
+use super::rows::{EepromRow, Listed, is_zero, texts};
+use super::stores::{parameter_cell, parameter_sketch};
+use super::{complete, tasks, values};
 use crate::client::toyo::Letters;
-use crate::command::commands;
-use crate::command::frame::names;
-use crate::command::robot::item::{Columns, Item, Items};
+use crate::command::ValueKind;
+use crate::command::frame::store::{Answers, Field, Ids, Store, Words, ids, table_commands};
+use crate::command::frame::teach::printed_position;
 use crate::command::robot::position::Position;
-use crate::controller::names::{Kind, Names};
+use crate::controller::Risk;
+use crate::controller::names::Kind;
 use crate::controller::toyo::bulk::points::table;
-use crate::controller::toyo::field::Field;
-use crate::controller::toyo::layout::Record;
+use crate::controller::toyo::field::{self, Value};
+use crate::controller::toyo::layout::{Layout, Record};
 use crate::controller::toyo::names as names_of;
 use crate::controller::toyo::request::Request;
 use crate::failure::Failure;
 use crate::output::Screen;
-use crate::output::view::Cell;
 
-commands! {
+table_commands! {
     /// What can be done with points.
-    pub enum Point {
-        /// Read points: 1-10,20
-        Get(get::Get),
-        /// Write a point, or all that a CSV file has
-        Set(set::Set),
-        /// Read all points, also into a CSV file
-        List(list::List),
+    Point of Points {}
+}
+
+/// Every point has four coordinates, whatever axes there are.
+pub const AXES: usize = 4;
+
+/// The coordinate table of a task.
+#[derive(Debug)]
+pub struct Points {
+    letters: Letters,
+    wanted: Option<u8>,
+    /// The task whose points they are, once that is known.
+    task: u8,
+}
+
+impl Points {
+    /// The table of a task, or of the current one.
+    pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
+        Ok(Self { letters: link.letters().await?, wanted: task, task: task.unwrap_or_default() })
+    }
+
+    /// The letters of the axes.
+    pub fn letters(&self) -> Letters {
+        self.letters
+    }
+
+    /// The task that was selected.
+    pub fn task(&self) -> u8 {
+        self.task
     }
 }
 
-/// What every command of points says in its help.
-const OTHER_TASK: &str = "Each task has its own points. With --task, that task is made the current one for a while, which \
-                          is a change: a read-only robot refuses it.";
+/// Whose points.
+#[derive(Debug, Clone, Args)]
+pub struct TaskOptions {
+    /// Task, 1 to 4, instead of the current one; it is selected meanwhile, which a read-only robot refuses
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub task: Option<u8>,
+}
 
 /// What a point has besides.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
@@ -58,42 +84,9 @@ pub struct OfTask {
     listed: Listed,
 }
 
-/// A point that was read, or why it was not.
-fn item(task: u8, point: i32, answer: Result<&Record, Failure>, letters: Letters) -> Item<Position, OfTask> {
-    let listed = Listed::of(answer.as_ref().ok().copied());
-    let place = answer.map(|record| record.is_listed().then(|| Coordinates::of(record, letters)));
-    let cells = match (place.as_ref().ok().copied().flatten(), &listed.raw) {
-        (Some(place), _) => place.mm().map(|mm| Cell::number(format!("{mm:.2}"))).into(),
-        (None, raw) => raw.iter().map(|raw| format!("{raw} ({NOT_IN_MANUAL})").into()).collect(),
-    };
-    let position = place.map(|place| place.map(|place| place.position()));
-    Item { cells, ..Item::with("point", point.to_string(), OfTask { task, listed }, position) }
-}
-
-/// What was answered for these points.
-fn items(task: u8, points: &[i32], answers: &Answers, letters: Letters, names: &Names) -> Items<Position, OfTask> {
-    let items = points.iter().zip(answers).map(|(point, answer)| {
-        let address = names_of::address_of(Kind::Point, *point).unwrap_or_default();
-        let label = names::label(names, Kind::Point, &address);
-        item(task, *point, answer.as_ref().map_err(Clone::clone), letters).labelled(label)
-    });
-    Items::new(columns(letters), items.collect())
-}
-
-/// With the columns of a CSV file that `point set --from` reads.
-fn columns(letters: Letters) -> Columns {
-    let letters = letters.all();
-    Columns { name: "point", values: (0..4).map(|axis| heading(axis, &letters[axis])).collect(), empty: "no points" }
-}
-
 /// The number of a point, 1 to 999.
-fn field() -> Field {
+fn field() -> field::Field {
     table().key.fields[0].named("point")
-}
-
-/// Points on a command line.
-fn parse_points(text: &str) -> Result<Numbers, String> {
-    named(Kind::Point, text, |text| Numbers::parse(&field(), text))
 }
 
 /// A point on a command line: its number, or its name.
@@ -101,20 +94,144 @@ pub fn parse_point(text: &str) -> Result<i32, String> {
     named(Kind::Point, text, |text| number(&field(), text))
 }
 
-/// Reads points of a task, or of the current one, one after the other; says which task that is. A dry run notes them
-/// and ends.
-pub async fn read_all(
-    link: &mut Link,
-    screen: &Screen,
-    task: Option<u8>,
-    points: &[i32],
-) -> Result<(u8, Answers), Failure> {
-    let requests: Result<Vec<Request>, _> =
-        points.iter().map(|point| Request::read_parameter(table(), Some(*point))).collect();
-    let requests = requests.map_err(|error| link::wrong(&error))?;
-    let task = tasks::choose(link, task).await?;
-    let read = read_each(link, screen, "reading points", &requests).await;
-    Ok((task, tasks::done(link, read).await?))
+/// What reads a point.
+fn request(point: i32) -> Result<Request, Failure> {
+    Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
+}
+
+/// Reads points of the selected task; each answers for itself.
+pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
+    let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
+    read_each(link, screen, "reading points", &requests).await
+}
+
+impl Store for Points {
+    type Family = Toyo;
+    type Key = i32;
+    type Wire = Record;
+    type Value = Position;
+    type More = OfTask;
+    type Options = TaskOptions;
+
+    const WORDS: Words = Words {
+        nouns: ["point", "points"],
+        placeholder: "POINT",
+        range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
+        reading: Some("999 points take a minute and a half at 9600 baud."),
+        writing: Some(
+            "Values are x, y, z and r in mm, all in this order or some by name: z=12.5 keeps the others. Names are the \
+             letters that the teach pendant shows (E01); where those are not X, Y, Z and R in this order, names are needed. \
+             ax1 to ax4 are axes 1 to 4 on every machine. @FILE takes what `position --json` printed, @- what comes from \
+             stdin, `here` the current position. What the controller holds already is not written: its EEPROM takes about a \
+             million rewrites.",
+        ),
+    };
+    const IDS: Ids = ids!("toyo.point");
+    const LABELS: Option<Kind> = Some(Kind::Point);
+    const COMPLETE: ValueKind = complete::POINT;
+
+    fn keys(text: &str) -> Result<Vec<i32>, String> {
+        Ok(Numbers::of(&[Numbers::parse(&field(), text)?], &field()))
+    }
+
+    fn all() -> Vec<i32> {
+        Numbers::of(&[], &field())
+    }
+
+    fn name(point: i32) -> String {
+        point.to_string()
+    }
+
+    fn address(point: i32) -> String {
+        names_of::address_of(Kind::Point, point).unwrap_or_default()
+    }
+
+    async fn open(link: &mut Link, options: &TaskOptions) -> Result<Self, Failure> {
+        Self::of_task(link, options.task).await
+    }
+
+    fn risk_of_reading(options: &TaskOptions) -> Risk {
+        if options.task.is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
+        self.task = tasks::choose(link, self.wanted).await?;
+        Ok(())
+    }
+
+    async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
+        tasks::done(link, outcome).await
+    }
+
+    fn place(&self) -> String {
+        format!(" of task {}", self.task)
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        const NUMBERED: [&str; AXES] = ["ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
+        let letters = self.letters.all();
+        let field = |(axis, alias): (usize, &'static str)| Field {
+            name: format!("{}_mm", self.letters.name(axis)).into(),
+            alias: Some(alias),
+            heading: heading(axis, &letters[axis]),
+            is_number: true,
+        };
+        NUMBERED.into_iter().enumerate().map(field).collect()
+    }
+
+    fn texts(&self, record: &Record) -> Vec<String> {
+        texts(record, AXES)
+    }
+
+    fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
+        values::difference(old, new, &self.letters)
+    }
+
+    fn value(&self, record: &Record) -> Option<Position> {
+        record.is_listed().then(|| Coordinates::of(record, self.letters).position())
+    }
+
+    fn more(&self, _point: i32, record: Option<&Record>) -> OfTask {
+        OfTask { task: self.task, listed: Listed::of(record) }
+    }
+
+    fn is_blank(&self, record: &Record) -> bool {
+        is_zero(record, AXES)
+    }
+
+    async fn read(&self, link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Answers<Record>, Failure> {
+        Ok(Answers::of(read(link, screen, points).await?))
+    }
+}
+
+impl EepromRow for Points {
+    fn letters(&self) -> Letters {
+        self.letters
+    }
+
+    fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
+        let [only] = words else { return Ok(words.to_vec()) };
+        let Some(file) = only.strip_prefix('@') else { return Ok(words.to_vec()) };
+        let text = printed_position(Path::new(file))?;
+        Ok(text.split_whitespace().map(ToOwned::to_owned).collect())
+    }
+
+    fn body(&self, _point: i32) -> Layout {
+        table().body()
+    }
+
+    fn request(&self, point: i32) -> Result<Request, Failure> {
+        request(point)
+    }
+
+    fn cell(&self, point: i32, values: Vec<Value>) -> Result<Cell, Failure> {
+        let values = std::iter::once(Value::Number(point)).chain(values).collect();
+        parameter_cell(table(), values).map_err(|error| wrong(&error))
+    }
+
+    fn sketch(&self, point: i32, values: &[Option<Value>]) -> String {
+        parameter_sketch(table(), Some(point), values)
+    }
 }
 
 #[cfg(test)]

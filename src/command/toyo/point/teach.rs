@@ -2,18 +2,17 @@
 
 use clap::Args;
 
-use super::set::{WORK, store};
-use super::{OTHER_TASK, parse_point};
+use super::{AXES, Points, TaskOptions, parse_point};
 use crate::command::frame::dry_run::{Known as _, unknown};
+use crate::command::frame::store::{Store as _, Writable as _, overwritten};
 use crate::command::frame::teach::Taught;
 use crate::command::toyo::complete;
-use crate::command::toyo::link::{self, Link, Toyo};
+use crate::command::toyo::link::{Link, Toyo};
 use crate::command::toyo::position::{Coordinates, UNIT};
-use crate::command::toyo::stores::{self, StoreResult, parameter_sketch};
-use crate::command::toyo::tasks;
+use crate::command::toyo::rows::EepromRow as _;
+use crate::command::toyo::values::Changes;
 use crate::command::{Command, Context};
 use crate::controller::Risk;
-use crate::controller::toyo::bulk::points::table;
 use crate::controller::toyo::field::Value;
 use crate::controller::toyo::layout::Record;
 use crate::controller::toyo::request::Request;
@@ -24,19 +23,16 @@ use crate::gate::{Confirmation, outdated};
 /// Stores where the axes are in a point, and reads it back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = format!(
-        "What is stored is what `toyo position` tells at that moment, with servo power on or off; before a return to the \
-         origin that means nothing, and is refused. `toyo point set 5 here` and `toyo point teach 5` are the same.\n\n\
-         {OTHER_TASK}"
-    )
+    after_help = "What is stored is what `toyo position` tells at that moment, with servo power on or off; before a return \
+                  to the origin that means nothing, and is refused. `toyo point set 5 here` and `toyo point teach 5` are \
+                  the same."
 )]
 pub struct Teach {
     /// Row of the coordinate table, 1 to 999, or a name
     #[arg(value_name = "POINT", value_parser = parse_point, add = complete::POINT)]
     point: i32,
-    /// Task, 1 to 4, instead of the current one
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
-    task: Option<u8>,
+    #[command(flatten)]
+    options: TaskOptions,
 }
 
 /// How a position reads in words.
@@ -60,45 +56,46 @@ impl Command for Teach {
             )
             .hint("`toyo home` returns to the origin; nothing was stored"));
         }
-        let task = tasks::choose(context.link, self.task).await?;
+        let mut points = Points::of_task(context.link, self.options.task).await?;
+        points.select(context.link).await?;
         let link = &mut *context.link;
-        let taught = self.teach(Context { link, ..context }, task).await;
-        tasks::done(context.link, taught).await
+        let taught = self.teach(Context { link, ..context }, &points).await;
+        points.deselect(context.link, taught).await
     }
 }
 
 impl Teach {
-    async fn teach(&self, context: Context<'_, Toyo>, task: u8) -> Result<Taught, Failure> {
+    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<Taught, Failure> {
         let Context { link, screen, authority, .. } = context;
-        let name = self.point.to_string();
-        let read = Request::read_parameter(table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
-        let letters = link.letters().await?;
+        let point = self.point;
         let here = stands(link).await.known()?;
-        let found = link.ask(&read).await.known()?;
+        let found = link.ask(&points.request(point)?).await.known()?;
         let Some((here, found)) = here.zip(found) else {
-            let sketch = parameter_sketch(table(), Some(self.point), &[None, None, None, None]);
-            link.plan_overwriting(&read, &sketch).await?;
+            points.plan(link, point, &Changes::of(vec![None; AXES])).await?;
             return Err(unknown());
         };
-        let place = Coordinates::of(&here, letters);
-        let old = Coordinates::of(&found, letters);
+        let place = Coordinates::of(&here, points.letters());
+        let old = Coordinates::of(&found, points.letters());
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(here.number(axis).unwrap_or_default()));
-        let values = std::iter::once(Value::Number(self.point)).chain(axes).collect();
-        let stores = [store(values, letters)?.over(Some(found))];
+        let new = points.cell(point, axes.into())?.wanted;
         let is_asked = authority.asks();
-        authority.confirm(&stores::replacing(WORK, &stores, &format!(" of task {task}"))).await?;
+        let change = overwritten(points, &[(point, Some(&found), &new)]);
+        authority.confirm(&change).await?;
         if is_asked {
-            let now = Coordinates::of(&stands(link).await?, letters);
+            let now = Coordinates::of(&stands(link).await?, points.letters());
             if now != place {
                 let message = format!("the axes have moved since the question, to {}", shown(&now));
                 return Err(outdated(format!("{message}; nothing was stored")));
             }
         }
-        let fates = stores::store_all(link, screen, WORK, &stores, 0).await?;
+        let is_there = found == new;
+        if !is_there {
+            points.write(link, screen, point, (Some(&found), &new)).await?;
+        }
         // What was written has been read back and is that.
-        let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT))
-            .unchanged(fates == [StoreResult::Unchanged]);
-        Ok(taught.with("point", self.point).with("task", task))
+        let name = point.to_string();
+        let taught = Taught::new(name, Some(old.position()), place.position(), place.position().of_group(UNIT));
+        Ok(taught.unchanged(is_there).with("point", point).with("task", points.task()))
     }
 }
 

@@ -13,9 +13,8 @@ fn points_and_ranges_are_read_once_each() {
         ["@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001", "@CTSK TASK=?"]
     );
     assert_eq!(blocks(&["point", "list"]).unwrap().len(), 1 + 999);
-    assert_eq!(blocks(&["point", "list", "--from", "998"]).unwrap()[1..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
+    assert_eq!(blocks(&["point", "list", "998-999"]).unwrap()[1..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
     assert!(objection(&["point", "get", "1000"]).contains("1000 is out of range (a number, 1 to 999)"));
-    assert_eq!(blocks(&["point", "list", "--from", "5", "--to", "4"]).unwrap_err().kind.exit(), 2);
 }
 
 #[test]
@@ -32,8 +31,7 @@ fn a_point_is_compared_before_it_is_written() {
         blocks(&["point", "set", "7", "100", "0", "9000", "0"]).unwrap_err().message,
         "point 7: z: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
     );
-    assert!(objection(&["point", "set", "7"]).contains("<MM>"));
-    assert!(objection(&["point", "set", "7", "1", "2", "3", "4", "--resume=3"]).contains("cannot be used with"));
+    assert!(objection(&["point", "set", "7"]).contains("VALUE"));
 }
 
 #[test]
@@ -42,19 +40,23 @@ fn points_go_through_a_file_and_back() {
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (first, second) = (path("first.csv"), path("second.csv"));
     let text =
-        "point,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,-0.05\n2,0.00,0.00,0.00,0.00\n3,-8000.00,1.00,0.00,9.00\n";
+        "name,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,-0.05\n2,0.00,0.00,0.00,0.00\n3,-8000.00,1.00,0.00,9.00\n";
     std::fs::write(&first, text).unwrap();
     let mut bench = Bench::new("sim:");
-    let stored = bench.data(&["point", "set", "--from", &first]);
-    assert_eq!((&stored["cells_written"], &stored["cells_unchanged"]), (&2.into(), &1.into()), "{stored}");
-    assert_eq!((&stored["items"][0]["written"], &stored["items"][1]["written"]), (&true.into(), &false.into()));
-    let saved = bench.data(&["point", "list", "--to", "3", "--csv", &second]);
-    assert_eq!((&saved["saved"], &saved["task"]), (&3.into(), &1.into()));
-    assert_eq!(std::fs::read_to_string(&second).unwrap(), text);
-    assert_eq!(bench.run(&["point", "list", "--csv", &second]).unwrap_err().kind.exit(), 1);
-    let again = bench.data(&["point", "set", "--from", &first, "--resume=2"]);
-    assert_eq!((&again["items"][0]["new"], &again["cells_unchanged"]), (&serde_json::Value::Null, &2.into()));
-    assert_eq!(bench.run(&["point", "set", "--from", &first, "--resume=9"]).unwrap_err().kind.exit(), 2);
+    let written = |report: serde_json::Value| {
+        let items = report["items"].as_array().unwrap().iter();
+        items.map(|item| item["written"].as_bool().unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(written(bench.data(&["point", "restore", &first])), [true, false, true]);
+    let saved = bench.data(&["point", "dump", &second, "1,3"]);
+    assert_eq!(saved["saved"], 2);
+    let without_blank: String =
+        text.lines().filter(|line| !line.starts_with("2,")).map(|line| format!("{line}\n")).collect();
+    assert_eq!(std::fs::read_to_string(&second).unwrap(), without_blank);
+    assert_eq!(bench.run(&["point", "dump", &second]).unwrap_err().kind.exit(), 1);
+    assert_eq!(written(bench.data(&["point", "restore", &first, "3"])), [false]);
+    assert_eq!(written(bench.data(&["point", "copy", "1", "5-6"])), [true, true]);
+    assert_eq!(bench.data(&["point", "get", "6"])["items"][0]["value"]["x_mm"], 100.0);
 }
 
 #[test]
@@ -70,9 +72,9 @@ fn one_coordinate_is_changed_alone() {
 #[test]
 fn every_mistake_of_a_file_is_told_and_nothing_sent() {
     let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), "point,x_mm,y_mm,z_mm,r_mm\n1,0,0,0\n1000,0,0,0,0\n").unwrap();
+    std::fs::write(file.path(), "name,x_mm,y_mm,z_mm,r_mm\n1,0,0,0\n1000,0,0,0,0\n").unwrap();
     let name = file.path().to_str().unwrap();
-    let failure = blocks(&["point", "set", "--from", name]).unwrap_err();
+    let failure = blocks(&["point", "restore", name]).unwrap_err();
     assert_eq!(failure.kind.exit(), 2);
     let lines: Vec<&str> = failure.message.lines().collect();
     assert_eq!(lines.len(), 2);
@@ -82,7 +84,7 @@ fn every_mistake_of_a_file_is_told_and_nothing_sent() {
 fn five_points() -> tempfile::NamedTempFile {
     let file = tempfile::NamedTempFile::new().unwrap();
     let rows: String = (1..=5).map(|row| format!("{row},{row},0,0,0\n")).collect();
-    std::fs::write(file.path(), format!("point,x_mm,y_mm,z_mm,r_mm\n{rows}")).unwrap();
+    std::fs::write(file.path(), format!("name,x_mm,y_mm,z_mm,r_mm\n{rows}")).unwrap();
     file
 }
 
@@ -91,12 +93,20 @@ fn a_worn_cell_ends_it_with_an_account() {
     let (mut bench, _) = Bench::with_faults("eeprom_limit = 1", |_, _| Fault::None);
     bench.data(&["point", "set", "3", "9", "9", "9", "9"]);
     let points = five_points();
-    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
-    assert_eq!(failure.kind.exit(), 5);
-    let (message, hint) = (failure.message, failure.hint.unwrap());
-    assert!(message.contains("holds something else; done: points 1 to 2 (2 written, 0 unchanged)"), "{message}");
-    assert!(message.ends_with("written or not: point 3; not written: points 4 to 5"), "{message}");
-    assert!(hint.ends_with("then --resume=3 goes on there"), "{hint}");
+    let (report, failure) = bench.run(&["point", "restore", points.path().to_str().unwrap()]).unwrap();
+    let failure = failure.unwrap();
+    assert_eq!(failure.kind.exit(), 9);
+    assert!(failure.message.starts_with("3 of 5 failed: point 3: "), "{failure}");
+    assert!(failure.message.contains("holds something else"), "{failure}");
+    assert_eq!(outcomes(&report), [(true, true), (true, true), (false, false), (false, false), (false, false)]);
+    let last = report["items"][4]["error"]["message"].as_str().unwrap();
+    assert!(last.starts_with("not written: "), "{last}");
+}
+
+/// Whether each point was answered for, and written.
+fn outcomes(report: &serde_json::Value) -> Vec<(bool, bool)> {
+    let flag = |item: &serde_json::Value, key: &str| item[key].as_bool().unwrap();
+    report["items"].as_array().unwrap().iter().map(|item| (flag(item, "ok"), flag(item, "written"))).collect()
 }
 
 #[test]
@@ -104,9 +114,10 @@ fn a_refusal_on_the_way_says_why_and_what_is_done() {
     let event = "[[event]]\nat_ms = 1200\ndo = \"pendant on\"\n";
     let (mut bench, _) = Bench::with_faults(event, |_, _| Fault::None);
     let points = five_points();
-    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
-    assert_eq!(failure.kind.exit(), 3);
-    assert!(failure.message.contains("the teach pendant is ON; done: points 1 to "), "{failure}");
+    let (report, failure) = bench.run(&["point", "restore", points.path().to_str().unwrap()]).unwrap();
+    assert!(failure.unwrap().message.contains("the teach pendant is ON"));
+    let written = outcomes(&report).iter().filter(|(_, is_written)| *is_written).count();
+    assert!((1..5).contains(&written), "{report}");
 }
 
 #[test]
@@ -116,10 +127,10 @@ fn what_was_accepted_and_not_read_back_is_open() {
         _ => Fault::None,
     });
     let points = five_points();
-    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
-    assert_eq!(failure.kind.exit(), 6);
-    assert!(failure.message.contains("was accepted, but not read back: "), "{failure}");
-    assert!(failure.message.ends_with("written or not: point 3; not written: points 4 to 5"), "{failure}");
+    let (report, failure) = bench.run(&["point", "restore", points.path().to_str().unwrap()]).unwrap();
+    assert!(failure.unwrap().message.contains("was accepted, but not read back: "));
+    let kinds: Vec<_> = report["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
+    assert_eq!(kinds[2..], ["outcome_unknown", "no_answer", "no_answer"]);
     assert_eq!(heard.borrow().iter().filter(|block| block.starts_with("@WPAR")).count(), 3);
 }
 
@@ -128,7 +139,7 @@ fn a_silent_controller_had_nothing_written() {
     let (mut bench, _) =
         Bench::with_faults("", |block, _| if block == "@RPAR T1 PT=001" { Fault::Lost } else { Fault::None });
     let points = five_points();
-    let failure = bench.run(&["point", "set", "--from", points.path().to_str().unwrap()]).unwrap_err();
+    let failure = bench.run(&["point", "restore", points.path().to_str().unwrap()]).unwrap_err();
     assert_eq!(failure.kind.exit(), 4);
     assert!(failure.message.ends_with("; nothing was written"), "{failure}");
 }
@@ -204,14 +215,14 @@ fn a_file_has_the_letters_of_the_machine() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let (letters, numbers, saved) = (path("letters.csv"), path("numbers.csv"), path("saved.csv"));
-    std::fs::write(&letters, "point,x_mm,y_mm,z_mm,r_mm\n1,1.00,2.00,3.00,4.00\n").unwrap();
-    std::fs::write(&numbers, "point,ax3_mm\n1,9.00\n").unwrap();
+    std::fs::write(&letters, "name,x_mm,y_mm,z_mm,r_mm\n1,1.00,2.00,3.00,4.00\n").unwrap();
+    std::fs::write(&numbers, "name,ax3_mm\n1,9.00\n").unwrap();
     let (mut bench, _) = Bench::with_faults(CROSSED, |_, _| Fault::None);
-    bench.data(&["point", "set", "--from", &letters]);
-    bench.data(&["point", "list", "--to", "1", "--csv", &saved]);
+    bench.data(&["point", "restore", &letters]);
+    bench.data(&["point", "dump", &saved, "1"]);
     let text = std::fs::read_to_string(&saved).unwrap();
-    assert_eq!(text, "point,x_mm,z_mm,y_mm,r_mm\n1,1.00,3.00,2.00,4.00\n");
-    bench.data(&["point", "set", "--from", &numbers]);
+    assert_eq!(text, "name,x_mm,z_mm,y_mm,r_mm\n1,1.00,3.00,2.00,4.00\n");
+    bench.data(&["point", "restore", &numbers]);
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["y_mm"], 9.0);
 }
 
@@ -219,15 +230,15 @@ fn a_file_has_the_letters_of_the_machine() {
 fn an_update_keeps_to_the_points_of_its_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("points.csv").to_str().unwrap().to_owned();
-    std::fs::write(&path, "comment,point,x_mm,y_mm,z_mm,r_mm\ngate,7,,,,\nbin,3,1,1,1,1\n").unwrap();
+    std::fs::write(&path, "comment,name,x_mm,y_mm,z_mm,r_mm\ngate,7,,,,\nbin,3,1,1,1,1\n").unwrap();
     let (mut bench, heard) = Bench::with_faults("", |_, _| Fault::None);
     bench.data(&["point", "set", "7", "1", "2", "3", "4"]);
     let asked = heard.borrow().len();
-    assert_eq!(bench.data(&["point", "list", "--csv", &path, "--update"])["saved"], 2);
-    let text = "comment,point,x_mm,y_mm,z_mm,r_mm\ngate,7,1.00,2.00,3.00,4.00\nbin,3,0.00,0.00,0.00,0.00\n";
+    assert_eq!(bench.data(&["point", "dump", &path, "--update"])["saved"], 2);
+    let text = "comment,name,x_mm,y_mm,z_mm,r_mm\ngate,7,1.00,2.00,3.00,4.00\nbin,3,0.00,0.00,0.00,0.00\n";
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
     let reads = heard.borrow()[asked..].iter().filter(|block| block.starts_with("@RPAR T1")).count();
     assert_eq!(reads, 2);
-    bench.data(&["point", "list", "--csv", &path, "--update", "--to", "3"]);
+    bench.data(&["point", "dump", &path, "1-3", "--update"]);
     assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 5);
 }

@@ -35,7 +35,7 @@ pub struct Check {
     /// Steps that the task has room for
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
-    /// Points that are taught (CSV, as `point list --csv` writes them): a move to another one is told
+    /// Points that are taught (CSV, as `point dump` writes them): a move to another one is told
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// A name that the files have for a point, a counter or a timer, as robots.toml has it: pick=PT1 (repeatable)
@@ -83,10 +83,15 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
         Some(Severity::Error | Severity::Warning) => return,
         // It depends on what only a controller has, or another file has the program of the task.
         Some(Severity::Note) => Severity::Note,
-        None if *code == NO_TASK => Severity::Note,
+        None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
         None => Severity::Warning,
     };
-    let error = errors::explain(*code).in_a_line();
+    let what = match code {
+        Some(code) => {
+            format!("a controller stops here after {after_s:.3} s: error {}", errors::explain(*code).in_a_line())
+        }
+        None => format!("everything waits here after {after_s:.3} s"),
+    };
     let at = findings.iter().position(|finding| finding.line > *line).unwrap_or(findings.len());
     findings.insert(
         at,
@@ -94,7 +99,7 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
             severity,
             line: *line,
             column: 1,
-            message: format!("at the desk a controller stops here after {after_s:.3} s: error {error}"),
+            message: format!("at the desk {what}"),
             hint: Some("`toyo sim run` shows the steps before; counters begin at 0, inputs are off".to_owned()),
         },
     );
@@ -251,6 +256,35 @@ b.txt: 2 steps, 1 label
         );
         let failure = verdict.failure().unwrap();
         assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
+    }
+
+    /// What shows only when the steps run.
+    #[test]
+    fn a_run_finds_what_the_steps_do_not_show() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        let findings = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            let check = Check { files: vec![path.clone()], room: 5000, points: None, name: Vec::new(), strict: false };
+            let screen = Screen::new(crate::output::Format::Json, crate::output::ColorChoice::Never, true, 0);
+            let verdict = check.run(&screen).unwrap();
+            let told = verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("at the desk"));
+            told.map(|remark| (remark.severity, remark.line, remark.message.clone())).collect::<Vec<_>>()
+        };
+        let error = |code: &str| format!("at the desk a controller stops here after 0.001 s: error {code}");
+        assert_eq!(
+            findings("CNT+ CN1=9999\nCNT+ CN1=1\nEND\n"),
+            [("warning", 2, error("A7: calculation error"))],
+            "a counter that is too large"
+        );
+        assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
+        assert_eq!(
+            findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
+            [("note", 2, "at the desk everything waits here after 0.001 s".to_owned())]
+        );
+        for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
+            assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");
+        }
     }
 
     #[test]

@@ -35,7 +35,7 @@ pub struct Run {
     /// Program of another task, such as 2=gate.txt; a TSTR starts it (repeatable)
     #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
     task: Vec<(usize, PathBuf)>,
-    /// Points (CSV), as `point list --csv` writes them; of another task than 1 with its number before: 2=gate.csv
+    /// Points (CSV), as `point dump` writes them; of another task than 1 with its number before: 2=gate.csv
     /// (repeatable)
     #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
     points: Vec<(usize, PathBuf)>,

@@ -6,7 +6,7 @@ use crate::failure::{Failure, Kind};
 
 /// The program of the manual's sample session (TO 3-1), and its point.
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
-const POINTS: &str = "point,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
+const POINTS: &str = "name,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 
 /// A folder with files, in which programs are run.
 struct Desk {
@@ -141,7 +141,7 @@ fn parameters_and_other_tasks_come_from_files() {
         ("a.txt", "TSTR TASK=2\nIN STN=0 PN1=.......1 AND\nMOVP a PT=1 CN=0 S V=5 POST\nEND\n"),
         ("b.txt", "OUT STN=0 PN2=1.......\nEND\n"),
         ("points.csv", POINTS),
-        ("more.csv", "point,x_mm,y_mm,z_mm,r_mm\n1,1,2,3,4\n"),
+        ("more.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,1,2,3,4\n"),
         ("params.toml", "[speed-table]\n5 = 10.0\n"),
     ]);
     let words_of = ["./a.txt", "--task", "2=./b.txt", "--points", "./points.csv", "--points", "2=./more.csv"];
@@ -156,13 +156,13 @@ fn faulty_files_are_wrong_arguments() {
     let desk = Desk::new(&[
         ("a.txt", "EMD\n"),
         ("good.txt", "END\n"),
-        ("points.csv", "point,x_mm\n1,0\n"),
+        ("points.csv", "name,x_mm\n1,0\n"),
         ("params.toml", "[speed-table]\n5 = 0\n"),
         ("state.toml", "axes = 9\n"),
     ]);
     for (words, told) in [
         (&["./a.txt"][..], "a.txt:1:1: there is no instruction 'EMD'"),
-        (&["./good.txt", "--points", "./points.csv"], "points.csv:1:11: column y_mm is missing"),
+        (&["./good.txt", "--points", "./points.csv"], "points.csv:1:10: column y_mm is missing"),
         (&["./good.txt", "--params", "./params.toml"], "params.toml:2:5: speed: 0.0 is out of range"),
         (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: a controller has 1 to 4 axes"),
     ] {

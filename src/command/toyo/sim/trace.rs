@@ -83,17 +83,17 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Where task 1 was when the controller stopped with an error.
+    /// Where task 1 was when the controller stopped with an error, or everything waited.
     pub fn stop(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }
 }
 
-/// Where the controller stopped a program with an error.
+/// Where a program stopped with an error, or waited for something that never came.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
-    /// The error.
-    pub code: u8,
+    /// The error; `None` if the program waited.
+    pub code: Option<u8>,
     /// Time of the program until then.
     pub after_s: f64,
     /// Line of the file, from 1.
@@ -190,7 +190,8 @@ impl Recorder {
         let ports = self.ports.iter().filter(|(_, bits)| **bits != 0);
         let after_s = at.as_secs_f64();
         let line = steps.iter().find(|at| at.task == 1).map(|at| at.line);
-        let stop = if let End::Error(code) = end { line.map(|line| Stop { code, after_s, line }) } else { None };
+        let code = if let End::Error(code) = end { Some(code) } else { None };
+        let stop = line.filter(|_| code.is_some() || end == End::Waits).map(|line| Stop { code, after_s, line });
         Trace {
             stop,
             end: end.name(),

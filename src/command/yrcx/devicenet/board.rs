@@ -1,4 +1,4 @@
-//! The node of a controller, as it answers messages. Nothing is polled.
+//! Explicit messages to the DeviceNet node of a controller. It is not polled.
 
 use std::time::Duration;
 
@@ -25,12 +25,12 @@ use crate::transport::devicenet::settings::{Purpose, Settings};
 use crate::transport::devicenet::wire::{Request, class, connection};
 use crate::transport::image::LinkError;
 
-/// Vendor number of the maker of YRCX.
+/// Vendor id of the manufacturer of YRCX.
 pub const MAKER: u16 = 636;
-/// How long to listen for the polls of another master.
+/// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);
 
-/// A node that is talked to when something is asked. The adapter is opened then.
+/// DeviceNet node of a controller. The adapter opens with the first request.
 #[derive(Debug)]
 pub struct Board {
     node: DeviceNet,
@@ -43,7 +43,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// The node of a URL.
+    /// Node of a URL.
     pub(super) fn new(at: &At<'_>) -> Result<Self, LinkError> {
         Ok(Self {
             node: options(at)?.clone(),
@@ -56,12 +56,12 @@ impl Board {
         })
     }
 
-    /// What its URL says.
+    /// Options of the URL.
     pub fn node(&self) -> &DeviceNet {
         &self.node
     }
 
-    /// The adapter, with this program on the bus.
+    /// The adapter, with this program as a node.
     pub async fn network(&mut self) -> Result<Network, Failure> {
         if let Some(network) = &self.network {
             return Ok(network.clone());
@@ -72,13 +72,13 @@ impl Board {
         Ok(network)
     }
 
-    /// Every node that answers.
+    /// All nodes that answer.
     pub async fn nodes(&mut self) -> Result<Vec<Node>, Failure> {
         let found = self.network().await?.find().await;
         Ok(found.map_err(|error| self.failure(error))?.into_iter().map(Node::from).collect())
     }
 
-    /// The connection for messages; it is opened where there is none.
+    /// The explicit connection; opened if necessary.
     async fn connection(&mut self) -> Result<&Connection, Failure> {
         if self.connection.is_none() {
             let network = self.network().await?;
@@ -105,7 +105,7 @@ impl Board {
         Ok(data.and_then(|data| data.first_chunk().copied()).map(u16::from_le_bytes))
     }
 
-    /// Who it is.
+    /// Reads the identity object.
     pub async fn identity(&mut self) -> Result<Identity, Failure> {
         let of = |attribute| Request::get(class::IDENTITY, 1, attribute);
         let vendor = self.word(of(1)).await?;
@@ -125,13 +125,13 @@ impl Board {
         })
     }
 
-    /// Bytes of its images: from it, to it.
+    /// Reads the image sizes: from the node, to the node.
     pub async fn sizes(&mut self) -> Result<(Option<u16>, Option<u16>), Failure> {
         let of = |attribute| Request::get(class::CONNECTION, connection::POLL_INSTANCE.into(), attribute);
         Ok((self.word(of(7)).await?, self.word(of(8)).await?))
     }
 
-    /// What it shows, by messages; `None` if it shows it in polls only.
+    /// Reads the image with messages; `None` if the node only sends it in polls.
     pub async fn image(&mut self) -> Result<Option<Image>, Failure> {
         let mac = self.node.mac;
         let request = match produced(self.connection().await?, mac).await {
@@ -142,17 +142,17 @@ impl Board {
         Ok(self.get(request).await?.and_then(|image| Image::from_link(&image)))
     }
 
-    /// What passes between it and another master.
+    /// Listens to the exchange with another master.
     pub async fn overheard(&mut self) -> Result<Option<Image>, Failure> {
         let mac = self.node.mac;
         let seen = self.network().await?.listen(mac, LISTEN).await.input;
         Ok(seen.and_then(|seen| Image::from_link(&seen.image)))
     }
 
-    /// Lets go of the node.
+    /// Releases the connection of the node.
     pub async fn release(&mut self) {
         if let Some(connection) = self.connection.take() {
-            // A node that does not answer lets go by itself.
+            // If the node does not answer, its connection times out.
             let _ = connection.close().await;
         }
     }
@@ -161,7 +161,7 @@ impl Board {
         not_open(&self.label, self.scheme, &LinkError::from(error))
     }
 
-    /// The failure of a node that is not on the bus, where others are.
+    /// Failure for a missing node, with the nodes that are present.
     pub fn absent(&self, nodes: &[Node]) -> Failure {
         let others: Vec<String> = nodes.iter().map(|node| node.mac.to_string()).collect();
         let others = if others.is_empty() { "nobody does".to_owned() } else { format!("MAC {} do", others.join(", ")) };
@@ -224,7 +224,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// For people.
+    /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
         vec![
             ("MAC ID", u32::from(self.mac).into()),

@@ -1,4 +1,4 @@
-//! DeviceNet as one of the fieldbuses.
+//! Registration of DeviceNet as a fieldbus.
 
 use futures_util::FutureExt as _;
 

@@ -1,4 +1,4 @@
-//! The layers of a node for `armctl robots check`: from the adapter to what the controller shows.
+//! Layers of `armctl robots check` for a DeviceNet node: from the adapter to the image of the controller.
 
 use super::board::{Board, MAKER};
 use crate::command::face::layers::Layers;
@@ -6,10 +6,10 @@ use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::devicenet::can::BusState;
 
-/// In the order in which they are looked at.
+/// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner", "identity", "sizes", "inputs"];
 
-/// Looks at them; what the controller shows, where it could be read.
+/// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     let node = board.node().clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
@@ -79,7 +79,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
 
 const OWNED: &str = "commands want its scan stopped first; what only looks works beside it";
 
-/// Beside another master there is only what passes.
+/// With another master on the bus, only listening is possible.
 async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     match board.overheard().await {
         Err(failure) => layers.fail("inputs", &failure),
@@ -92,7 +92,7 @@ async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     None
 }
 
-/// The name of a size.
+/// Name of an image size.
 pub(super) fn profile(sizes: (Option<u16>, Option<u16>)) -> Option<&'static str> {
     match sizes {
         (Some(48), Some(48)) => Some("Normal: 48 bytes each way"),

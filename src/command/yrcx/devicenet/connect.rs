@@ -1,4 +1,4 @@
-//! Links over DeviceNet, as a URL wants them.
+//! DeviceNet links with the options of a URL.
 
 use std::time::Duration;
 
@@ -12,23 +12,22 @@ use crate::transport::devicenet::scanner::Identity;
 use crate::transport::devicenet::settings::{Images, Profile, Purpose as For, Settings};
 use crate::transport::image::{Cause, ImageLink, LinkError};
 
-/// How long to wait for the images of another master: its polls may be slow.
+/// Time to wait for images of another master, whose polls can be slow.
 const LISTEN: Duration = Duration::from_secs(1);
-/// Silence after which another master's polls have ended.
+/// Silence after which the polls of another master have ended.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Least pause between two looks by messages.
+/// Minimum interval of reads with messages.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Vendors have numbers from the ODVA; this program's maker has none.
+/// Vendor id of this program. ODVA has not assigned one.
 const UNREGISTERED_VENDOR: u16 = 0xFFFF;
 
-/// The sizes of images that a controller may be set to.
+/// Image sizes that a controller can be set to.
 pub(super) fn profiles() -> Vec<Profile> {
     [("Normal", Image::BYTES), ("Compact", Image::SIGNAL_BYTES)]
         .map(|(name, size)| Profile { name, resting: resting().to_link(size) })
         .to_vec()
 }
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let node = options(&at)?;
     if purpose == Purpose::Look {
@@ -42,8 +41,8 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Polled::open(&network, settings).await?))
 }
 
-/// Sees what the controller shows without owning it: what passes between it and its master; where it has none, by messages,
-/// which begin no polls.
+/// Opens a link that only reads: it listens to the exchange with another master. Without one, it reads with messages,
+/// which start no polls.
 async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     let silent = Network::open(&Adapter { identity: None, ..adapter(node) }, at.tap.clone()).await?;
     if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, PATIENCE).await {
@@ -64,19 +63,18 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
 const NOT_SHOWN: &str = "nobody polls the controller, and it shows its signals to nobody who only looks: open a session, \
      `armctl session open`, and look through that";
 
-/// The adapter, with this program as its master.
+/// The adapter, with this program as master.
 pub(super) fn adapter(node: &DeviceNet) -> Adapter {
     let serial = 0x4152_0000 | crate::transport::session::process() & 0xFFFF;
     let identity = Identity { mac: node.master, vendor: UNREGISTERED_VENDOR, serial };
     Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
 }
 
-/// What the URL says.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of DeviceNet", at.bus))))
 }
 
-/// A request leaves twice before its silence is told.
+/// Half of the robot's timeout, because a request is sent twice before it fails.
 pub(super) fn request_timeout(at: &At<'_>) -> Duration {
     (at.robot.timeout.value / 2).clamp(Duration::from_millis(100), Duration::from_secs(1))
 }

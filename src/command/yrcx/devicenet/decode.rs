@@ -1,4 +1,4 @@
-//! DeviceNet in a capture: images of polls, and the messages that begin and end them.
+//! DeviceNet decoder for captures: images in polls, and explicit messages.
 
 use std::collections::HashMap;
 
@@ -11,11 +11,11 @@ use crate::transport::devicenet::monitor::{Monitor, describe};
 use crate::transport::devicenet::wire::{Answer, Format, Header, Id, Mac, Request, general, service};
 use crate::transport::tap::Direction;
 
-/// What is known of the bus.
+/// State of the decoder.
 #[derive(Debug, Default)]
 pub struct Decoder {
     monitor: Monitor,
-    /// The request that was sent to each node last, with the number of its packet.
+    /// Last request to each node: packet number and master.
     asked: HashMap<Mac, (u64, Mac)>,
 }
 
@@ -46,12 +46,12 @@ impl Decoder {
         }
     }
 
-    /// The master that asked a node last.
+    /// Master of the last request to a node.
     fn master(&self, mac: Mac) -> Option<Mac> {
         self.asked.get(&mac).map(|(_, master)| *master)
     }
 
-    /// An explicit message.
+    /// Handles an explicit message.
     fn say(&self, message: &Message<'_>, frame: &Frame, direction: Direction, mac: Mac, images: &mut Images) {
         let Some((first, body)) = frame.data().split_first() else { return };
         let text = if Header::parse(*first).is_fragment {
@@ -77,7 +77,7 @@ impl BusDecoder for Decoder {
     fn finish(&mut self, _images: &mut Images) {}
 }
 
-/// Master and slave, as the table of links has them.
+/// Names of master and slave in the table of links.
 fn link(master: Option<Mac>, slave: Mac) -> (String, String) {
     (master.map_or_else(|| "master".to_owned(), |mac| format!("MAC {mac}")), format!("MAC {slave}"))
 }
@@ -86,7 +86,7 @@ fn is_taken(frame: &Frame) -> bool {
     frame.data().first().is_some_and(|first| first & 0x80 != 0)
 }
 
-/// An explicit message in words.
+/// Text of an explicit message.
 fn explicit(body: &[u8]) -> Option<String> {
     if let Some(request) = Request::parse(Format::Byte8Byte8, body) {
         let what = service_name(request.service);

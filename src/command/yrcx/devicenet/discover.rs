@@ -1,4 +1,4 @@
-//! Which nodes of DeviceNet answer behind an adapter.
+//! Discovery of DeviceNet nodes on an adapter.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ pub struct Search {
     adapters: Vec<(String, Bus)>,
 }
 
-/// The URL of an adapter; a MAC ID is put behind it to make it that of a node.
+/// Parses the URL of an adapter. A MAC ID is appended, so that it is valid as the URL of a node.
 fn wired(text: &str) -> Result<(String, Bus), String> {
     let sign = if text.contains('?') { '&' } else { '?' };
     let bus = bus_of(&format!("{text}{sign}mac=63")).map_err(|failure| failure.message)?;

@@ -1,5 +1,5 @@
-//! Controllers on DeviceNet, and `yrcx devicenet`: nodes of the bus, by messages. For diagnosis: nothing is polled, so
-//! nothing that the controller would miss when it ends.
+//! Controllers on DeviceNet, and `yrcx devicenet`: diagnosis of the nodes with explicit messages. No polls are started,
+//! so the end of the command does not affect the controller.
 
 mod board;
 pub mod bus;
@@ -19,12 +19,11 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::devicenet::BUS;
 
-/// The board of a link that is for it alone.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(BUS)
 }
 
-/// Why `--unit` means nothing here.
+/// Reason why `--unit` is rejected.
 const NO_UNIT: &str = "the node is that of the whole controller";
 
 commands! {

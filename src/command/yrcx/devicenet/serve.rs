@@ -1,4 +1,4 @@
-//! A simulated controller behind SLCAN adapters, for others.
+//! Server for a simulated controller behind SLCAN adapters.
 
 use std::iter;
 use std::net::SocketAddr;
@@ -76,7 +76,7 @@ impl Serve for ServeArgs {
             target,
             address,
             console: Box::new(move |line| {
-                // The link lives as long as the console.
+                // The symbolic link exists as long as the console.
                 let _ = &link;
                 console(&hub, line)
             }),
@@ -84,7 +84,7 @@ impl Serve for ServeArgs {
     }
 }
 
-/// Puts the link to the pseudo-terminal where it is wanted.
+/// Creates the symbolic link to the pseudo-terminal, if requested.
 #[cfg(unix)]
 fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Option<TerminalLink>, Failure> {
     let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };

@@ -1,4 +1,4 @@
-//! The simulated controller as a slave of DeviceNet.
+//! Simulated controller as a DeviceNet slave.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -19,12 +19,12 @@ use crate::transport::devicenet::wire::Mac;
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::image::ImagePeer;
 
-/// What `bus=` and `--bus` call the size of four bytes.
+/// Name of the four-byte size in `bus=` and `--bus`.
 const COMPACT: &str = "devicenet-compact";
-/// The MAC ID of a simulated controller, unless another is given.
+/// Default MAC ID of a simulated controller.
 pub(super) const MAC: u8 = 5;
 
-/// A simulator behind an SLCAN adapter on the loopback, with what the URL wants to go wrong.
+/// Starts a simulator behind an SLCAN adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let (faults, fault) = wrongs(sim, faults, fault)?;
     let setup = Setup::stand_in(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
@@ -33,20 +33,17 @@ pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     Ok(served.context("the simulator on the loopback")?)
 }
 
-/// The URL of a simulated controller behind that adapter.
+/// URL of a simulated controller behind that adapter.
 pub fn target(place: &str) -> String {
     format!("{}://{place}?mac={MAC}", SLCAN.name)
 }
 
-/// Bytes of the images of a simulator of this name: the whole image, or its signals alone.
+/// Image size of a simulator with this name in bytes: the whole image, or only its signals.
 pub fn size(simulator: Option<&str>) -> u16 {
     if simulator == Some(COMPACT) { 4 } else { 48 }
 }
 
 /// Serves a controller as a slave.
-///
-/// # Errors
-/// When the ports cannot be had.
 pub fn serve(
     start: Start,
     setup: Setup,
@@ -61,12 +58,12 @@ pub fn serve(
     Hub::start(bitrate, Some(device), listen, faults.map(Faults::pair))
 }
 
-/// Faults of frames on their way.
+/// Parses faults of frames.
 pub fn faults(text: &str) -> Result<FaultSpec, String> {
     simulated::faults_of_frames(text, "CAN")
 }
 
-/// What a slave does wrong, by its name.
+/// Finds a fault of the slave by name.
 pub fn fault(text: &str) -> Result<DeviceFault, String> {
     fault_by_name(&DeviceFault::ALL, text)
 }

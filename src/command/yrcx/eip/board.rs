@@ -1,4 +1,4 @@
-//! The network board of a controller, as it answers messages. There is no connection for images.
+//! Explicit messages to the network board of a controller, without an I/O connection.
 
 use std::net::SocketAddrV4;
 
@@ -26,13 +26,13 @@ use crate::transport::eip::status;
 use crate::transport::eip::wire;
 use crate::transport::image::LinkError;
 
-/// The attribute of an assembly that is its image.
+/// Attribute 3 of an assembly: its data.
 const IMAGE: u32 = 3;
-/// The assemblies of a YRCX: to it, from it.
+/// Usual assemblies of a YRCX: output, input.
 const USUAL_OUTPUT: u32 = 150;
 const USUAL_INPUT: u32 = 100;
 
-/// A session for messages with a board.
+/// Explicit messaging session with a board.
 #[derive(Debug)]
 pub struct Board {
     client: Client,
@@ -41,23 +41,23 @@ pub struct Board {
 }
 
 impl Board {
-    /// Finds a board's address; it is talked to when something is asked.
+    /// Resolves the address of the board. It connects with the first request.
     pub(super) async fn open(at: &At<'_>) -> Result<Self, LinkError> {
         let (client, eip) = connect::client(at).await?;
         Ok(Self { client, eip, label: at.robot.label() })
     }
 
-    /// What its URL says.
+    /// Options of the URL.
     pub fn settings(&self) -> &eip::Eip {
         &self.eip
     }
 
-    /// Where it is.
+    /// TCP address.
     pub fn address(&self) -> SocketAddrV4 {
         self.client.target()
     }
 
-    /// Who it is; `None` if it does not say.
+    /// Reads the identity; `None` if the board does not support it.
     pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
@@ -66,7 +66,7 @@ impl Board {
         }
     }
 
-    /// What it says that it can do; `None` if it does not say.
+    /// Reads the services; `None` if the board does not support it.
     pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>, Failure> {
         match self.client.services().await {
             Ok(services) => Ok(services.map(|services| {
@@ -78,16 +78,16 @@ impl Board {
         }
     }
 
-    /// Reads an attribute, or all of an instance.
+    /// Reads an attribute, or all attributes of an instance.
     pub async fn get(&mut self, object: Object) -> Result<Vec<u8>, Failure> {
         let answer = self.client.ask(object.reading(), &object.get()).await;
         let answer = answer.map_err(|error| self.failure(error))?;
         if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
     }
 
-    /// Changes an attribute, once. If the answer is lost, nobody knows what became of it.
+    /// Writes an attribute, only once. If the answer is lost, the outcome is unknown.
     pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<(), Failure> {
-        // Whether anybody is there is found out with something harmless.
+        // A harmless request first shows whether the board answers.
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
             Ok(answer) => answer,
@@ -103,7 +103,7 @@ impl Board {
         if answer.status.is_ok() { Ok(()) } else { Err(self.refused(SETTING, object, &answer)) }
     }
 
-    /// What the controller shows.
+    /// Reads the image of the controller.
     pub async fn image(&mut self) -> Result<Image, Failure> {
         let object = Object { class: ASSEMBLY, instance: self.eip.input, attribute: Some(IMAGE) };
         let bytes = self.get(object).await?;
@@ -114,7 +114,7 @@ impl Board {
         })
     }
 
-    /// Finds assemblies and their sizes by reading; `identity` is what the board says of itself.
+    /// Finds assemblies and their sizes by reading; `identity` is that of the board.
     pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let exchanged = Instances { output: thought.input, input: thought.output, ..thought };
@@ -123,14 +123,14 @@ impl Board {
         Ok(Probed::of(&found.map_err(|error| self.failure(error))?, &self.eip, identity))
     }
 
-    /// Finds what makes a connection by asking for some, too; likewise.
+    /// Finds the connection parameters, also by requesting connections; `identity` is that of the board.
     pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let found = probe::probe(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
     }
 
-    /// What can be read of the assemblies of the URL: from the controller, to it.
+    /// Reads the assemblies of the URL: input, output.
     pub async fn assemblies(&mut self) -> Result<[(u32, Presence); 2], Failure> {
         let Instances { output, input, .. } = self.thought();
         let mut found = [(input, Presence::Unknown), (output, Presence::Unknown)];
@@ -140,7 +140,7 @@ impl Board {
         Ok(found)
     }
 
-    /// The instances of the URL, which are those of an owner only if it says nothing else.
+    /// Instances of the URL. For a URL without output, the usual one is used.
     fn thought(&self) -> Instances {
         let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { USUAL_OUTPUT };
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
@@ -176,31 +176,31 @@ const SETTING: &str = "Set_Attribute_Single";
 /// An object of a board, or one of its attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Object {
-    /// Its class.
+    /// Class.
     pub class: u32,
-    /// Which one; 0 is the class itself.
+    /// Instance; 0 is the class itself.
     pub instance: u32,
-    /// The attribute; all of them if none.
+    /// Attribute; `None` means all.
     pub attribute: Option<u32>,
 }
 
 impl Object {
-    /// The bytes of the message that reads it.
+    /// Encoded read request.
     pub fn get_bytes(self) -> Vec<u8> {
         self.get().request()
     }
 
-    /// The bytes of the message that sets it.
+    /// Encoded write request.
     pub fn set_bytes(self, value: &[u8]) -> Vec<u8> {
         self.set(value).request()
     }
 
-    /// The service that reads it.
+    /// Name of the read service.
     pub fn reading(self) -> &'static str {
         if self.attribute.is_some() { "Get_Attribute_Single" } else { "Get_Attributes_All" }
     }
 
-    /// Whether it is what the controller is shown, or may be.
+    /// Whether it is an assembly, which can contain the output image.
     pub fn is_assembly(self) -> bool {
         self.class == ASSEMBLY
     }
@@ -223,7 +223,7 @@ impl Object {
 }
 
 impl std::fmt::Display for Object {
-    /// "class 0x04 (assembly), instance 100, attribute 3".
+    /// Format: "class 0x04 (assembly), instance 100, attribute 3".
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "class {:#04x}", self.class)?;
         if let Some((_, name)) = CLASSES.iter().find(|(class, _)| *class == self.class) {
@@ -234,7 +234,7 @@ impl std::fmt::Display for Object {
     }
 }
 
-/// Classes that boards have (volume 1, chapter 5; volume 2, chapter 5).
+/// Names of classes (volume 1, chapter 5; volume 2, chapter 5).
 const CLASSES: [(u32, &str); 7] = [
     (0x01, "identity"),
     (0x02, "message router"),
@@ -245,7 +245,7 @@ const CLASSES: [(u32, &str); 7] = [
     (0xF6, "Ethernet link"),
 ];
 
-/// Vendor number of the maker of YRCX.
+/// Vendor id of the manufacturer of YRCX.
 pub const MAKER: u16 = 636;
 
 /// Who a board is. Its name is untrusted.
@@ -291,7 +291,7 @@ impl From<wire::Identity> for Identity {
     }
 }
 
-/// Bits of the status word: mask, value, what it says (volume 1, 5-2.2.1.5).
+/// Bits of the status word: mask, value, text (volume 1, 5-2.2.1.5).
 const STATUS: [(u16, u16, &str); 14] = [
     (0x0001, 0x0001, "owned by a master"),
     (0x0004, 0x0004, "configured"),
@@ -314,7 +314,7 @@ const STATES: [&str; 6] =
     ["nonexistent", "self test", "standby", "operational", "major recoverable fault", "major unrecoverable fault"];
 
 impl Identity {
-    /// Names and values.
+    /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
         let status = format!("{}: {}", self.status, self.status_text.join(", "));
         vec![
@@ -395,7 +395,7 @@ pub struct Connectable {
     pub target: String,
 }
 
-/// Extended status: somebody owns the outputs.
+/// Extended status: another originator owns the outputs.
 const OWNED: u16 = 0x0106;
 
 impl Probed {
@@ -423,7 +423,7 @@ impl Probed {
             let Instances { output, input, configuration } = connectable.instances;
             let config = configuration.map_or_else(|| "none".to_owned(), |instance| instance.to_string());
             let mut target = format!("eip://{}:{}?in={input}&out={output}&config={config}", eip.host, eip.port);
-            // The usual sizes need not be said.
+            // The default sizes are omitted.
             for (name, size) in [("in_size", connectable.input_size), ("out_size", connectable.output_size)] {
                 if let Some(size) = size.filter(|size| usize::from(*size) != Image::BYTES) {
                     target.push_str(&format!("&{name}={size}"));
@@ -444,13 +444,13 @@ impl Probed {
     }
 }
 
-/// Bytes in pairs of hexadecimal digits, as they are shown.
+/// Bytes as pairs of hexadecimal digits.
 pub fn shown(bytes: &[u8]) -> String {
     let digits: Vec<String> = bytes.iter().map(|byte| text::hex(&[*byte])).collect();
     digits.join(" ")
 }
 
-/// How a switch that is on for the worse is shown.
+/// A cell with a warning tone.
 pub fn warned(text: &str) -> Cell {
     Cell::from(text).tone(Tone::Warning)
 }

@@ -1,4 +1,4 @@
-//! EtherNet/IP as one of the fieldbuses.
+//! Registration of EtherNet/IP as a fieldbus.
 
 use futures_util::FutureExt as _;
 

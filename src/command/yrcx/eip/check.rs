@@ -1,4 +1,4 @@
-//! The layers of a network board for `armctl robots check`: from its name to what the controller shows.
+//! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
 
 use super::board::{Board, MAKER};
 use crate::command::face::layers::Layers;
@@ -6,10 +6,10 @@ use crate::controller::yrcx::image::Image;
 use crate::settings::target::eip::Eip;
 use crate::transport::eip::probe::Presence;
 
-/// In the order in which they are looked at.
+/// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
 
-/// Looks at them; what the controller shows, where it could be read.
+/// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
     match board.services().await {
@@ -58,7 +58,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     }
 }
 
-/// Whether the URL fits the board, as far as its assemblies tell: to ask for a connection could take command.
+/// Compares the URL with the assemblies of the board. It requests no connection, because that could take control.
 fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) {
     let layer = "connection";
     if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {

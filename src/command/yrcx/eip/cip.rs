@@ -1,4 +1,4 @@
-//! EtherNet/IP messages in words: what passes before images flow, and when they end.
+//! Texts of EtherNet/IP messages before, during and after a connection.
 
 use crate::controller::yrcx::describe::FieldNote;
 use crate::transport::eip::status::{describe, encapsulation};
@@ -7,22 +7,21 @@ use crate::transport::eip::wire::{
     WireError, service,
 };
 
-/// A message in words.
+/// A decoded message.
 #[derive(Debug)]
 pub struct EncapsulatedMessage {
-    /// In a line.
+    /// One-line text.
     pub text: String,
-    /// Its parts.
+    /// Fields of the message.
     pub fields: Vec<FieldNote>,
-    /// What is wrong with it.
+    /// Problem of the message.
     pub problem: Option<String>,
-    /// It answers something.
+    /// Whether it is an answer.
     pub is_answer: bool,
-    /// It opened a connection, with these ids to the controller and back.
+    /// Ids of a connection that it opened: to the controller, from the controller.
     pub opened: Option<(u32, u32)>,
 }
 
-/// Names of the commands of the encapsulation.
 const COMMANDS: [(Command, &str); 7] = [
     (Command::NOP, "NOP"),
     (Command::LIST_SERVICES, "ListServices"),
@@ -33,7 +32,6 @@ const COMMANDS: [(Command, &str); 7] = [
     (Command::SEND_RR_DATA, "SendRRData"),
 ];
 
-/// Names of the services that are of use here.
 const SERVICES: [(u8, &str); 6] = [
     (service::ATTRIBUTES_ALL, "read all attributes"),
     (service::ATTRIBUTE_SINGLE, "read an attribute"),
@@ -52,16 +50,16 @@ fn service_name(service: u8) -> String {
     known.map_or_else(|| format!("service {service:#04x}"), |(_, name)| (*name).to_owned())
 }
 
-/// Whether bytes begin like a message, as far as they are there.
+/// Whether the bytes can be the start of a message.
 pub fn may_be_message(bytes: &[u8]) -> bool {
     let Some(command) = bytes.first_chunk::<2>() else { return true };
     let command = Command(u16::from_le_bytes(*command));
     let is_known = command_name(command).is_some() || command == Command::SEND_UNIT_DATA;
-    // The options are always 0.
+    // The options field is always 0.
     is_known && bytes.get(20..HEADER_LEN).is_none_or(|options| options == [0; 4])
 }
 
-/// Explains a message. Never fails: what is wrong is told.
+/// Decodes a message. A problem is part of the result.
 pub fn explain(bytes: &[u8]) -> EncapsulatedMessage {
     let frame = match Frame::parse(bytes) {
         Ok(frame) => frame,
@@ -109,7 +107,7 @@ fn field(name: &str, raw: impl Into<String>, meaning: impl Into<String>) -> Fiel
     FieldNote::of_message("-", name, raw.into(), &meaning.into())
 }
 
-/// An answer of a device that was looked for.
+/// Decodes a ListIdentity answer.
 fn identity(frame: &Frame<'_>) -> EncapsulatedMessage {
     let message = plain("answer to ListIdentity".to_owned(), true);
     match Identity::parse(frame.data) {
@@ -130,7 +128,7 @@ fn identity(frame: &Frame<'_>) -> EncapsulatedMessage {
     }
 }
 
-/// A CIP message outside a connection.
+/// Decodes an unconnected CIP message.
 fn unconnected(frame: &Frame<'_>) -> EncapsulatedMessage {
     let message = match RrData::parse_answer(frame.data) {
         Ok(data) => data.message,

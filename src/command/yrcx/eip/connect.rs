@@ -1,4 +1,4 @@
-//! Links and messages over EtherNet/IP, as a URL wants them.
+//! EtherNet/IP links and message sessions with the options of a URL.
 
 use std::time::Duration;
 
@@ -13,7 +13,6 @@ use crate::transport::eip::settings::{Multiplier, Role, Settings};
 use crate::transport::eip::wire::Key;
 use crate::transport::image::{Cause, ImageLink, LinkError};
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let eip = options(&at)?;
     if purpose == Purpose::Look && eip.role == EipRole::Owner {
@@ -23,26 +22,25 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Class1::open(&eip.host, eip.port, settings, at.tap.into()).await?))
 }
 
-/// A session for messages with the board.
+/// Opens a message session with the board.
 pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
     let eip = options(at)?;
     let target = resolve(&eip.host, eip.port).await?;
     Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
 }
 
-/// What the URL says.
 fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
 }
 
-/// Instances for the heartbeats of a connection that only listens to inputs, as boards of several makers have them. The
-/// first of them is one whose loss a board does not tell its controller; the last one may be.
+/// Heartbeat instances of input-only connections on boards of several manufacturers, in the order in which they are
+/// tried. A board does not report the loss of the first to its controller. The loss of the last can be reported.
 const HEARTBEATS: [u32; 5] = [6, 238, 254, 198, 3];
-/// Least pause between two looks: boards answer messages when they have nothing better to do.
+/// Minimum interval of reads, because boards answer messages with low priority.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Sees what the controller shows without owning it: by messages, which leave nothing behind; where the board does not
-/// answer them, by a connection that only listens.
+/// Opens a link that only reads: with messages, which have no lasting effect. If the board refuses them, with an
+/// input-only connection.
 async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     let (client, _) = client(at).await?;
     let assembly = Assembly { instance: eip.input, size: eip.input_size };

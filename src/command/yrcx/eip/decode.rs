@@ -1,4 +1,4 @@
-//! EtherNet/IP in a capture: cyclic images, and the messages that open and close their connections.
+//! EtherNet/IP decoder for captures: cyclic images, and the messages that open and close connections.
 
 use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
@@ -13,15 +13,15 @@ use crate::transport::eip::PORT;
 use crate::transport::eip::wire::{Cyclic, Frames, RUN};
 use crate::transport::tap::Direction;
 
-/// What is known of connections.
+/// State of the decoder.
 #[derive(Debug, Default)]
 pub struct Decoder {
-    /// Directions of TCP streams, as long as they may be EtherNet/IP.
+    /// Directions of TCP streams; `None` if the stream is not EtherNet/IP.
     streams: HashMap<(SocketAddr, SocketAddr), Option<Frames>>,
-    /// Requests that were not answered yet, with the number of their packet, by client, controller and context.
+    /// Pending requests by client, controller and sender context, with the packet number.
     asked: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
-    /// Connections whose opening was seen, by controller and id: those to the controller, and those back with their
-    /// client, because what comes back may be sent to a group. The ids of the two directions may be the same.
+    /// Connections whose ForwardOpen was seen, by controller and id. Ids from the controller have their client, because
+    /// the images can go to a multicast group. Both directions can have the same id.
     forth: HashSet<(IpAddr, u32)>,
     back: HashMap<(IpAddr, u32), IpAddr>,
     flows: HashMap<(SocketAddr, SocketAddr, u32), Flow>,
@@ -30,14 +30,14 @@ pub struct Decoder {
 /// One direction of a connection.
 #[derive(Debug, Clone, Copy)]
 struct Flow {
-    /// Of the last datagram.
+    /// Sequence number of the last datagram.
     sequence: u32,
     lost: u64,
-    /// The run bit of the last header.
+    /// Run bit of the last header.
     run: Option<bool>,
 }
 
-/// Bytes of an image behind a run/idle header.
+/// Size of an image with its run/idle header.
 const WITH_HEADER: usize = Image::BYTES + 4;
 
 impl Decoder {
@@ -70,7 +70,7 @@ impl Decoder {
         self.streams.insert(ends, Some(frames));
     }
 
-    /// What follows is decoded without what was before.
+    /// Clears the state if it is too large. Decoding continues without history.
     fn forget_if_many(&mut self) {
         let known = [self.streams.len(), self.asked.len(), self.forth.len(), self.back.len(), self.flows.len()];
         if known.iter().any(|known| *known >= MOST) {
@@ -78,7 +78,7 @@ impl Decoder {
         }
     }
 
-    /// A message of the encapsulation.
+    /// Handles an encapsulation message.
     fn encapsulated(
         &mut self,
         message: &Message<'_>,
@@ -113,7 +113,7 @@ impl Decoder {
         });
     }
 
-    /// A cyclic datagram, if it is one.
+    /// Handles a cyclic datagram, if it is one.
     fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr, images: &mut Images) {
         self.forget_if_many();
         let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
@@ -121,7 +121,8 @@ impl Decoder {
         let is_forth = self.forth.contains(&(to.ip(), cyclic.id));
         let len = cyclic.body.len();
         let known = match (is_forth, client) {
-            // On one machine, equal ids fit both ways; then the size tells, as without an opening.
+            // If both ends are on one computer, equal ids match both directions. Then the size decides, as without a
+            // ForwardOpen.
             (true, Some(_)) | (false, None) => None,
             (true, None) => Some(Direction::Sent),
             (false, Some(_)) => Some(Direction::Received),
@@ -131,7 +132,7 @@ impl Decoder {
                 (known.unwrap_or(Direction::Sent), Some(u32::from_le_bytes(*header) & RUN == RUN), image)
             }
             (known, _) if len == Image::BYTES => (known.unwrap_or(Direction::Received), None, cyclic.body),
-            // Heartbeats of a connection that was seen to open; all others are not ours.
+            // A heartbeat of a known connection. Anything else does not belong to a YRCX.
             (Some(_), _) => {
                 images.count();
                 return;
@@ -149,7 +150,7 @@ impl Decoder {
         let flow = self.flows.entry((from, to, cyclic.id)).or_insert(flow);
         let missing = cyclic.sequence.wrapping_sub(flow.sequence).wrapping_sub(1);
         if missing > u32::MAX / 2 {
-            // Older than what came before, or the same again.
+            // Old or duplicate.
             return;
         }
         flow.lost += u64::from(missing);

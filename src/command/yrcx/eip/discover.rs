@@ -1,4 +1,4 @@
-//! Which boards of EtherNet/IP answer on a network.
+//! Discovery of EtherNet/IP boards on the network.
 
 use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -54,7 +54,8 @@ impl fieldbus::Search for Search {
             }
             let tap = tap.into();
             let mut asked = list_identity(self.bind, &targets, wait, &tap).await;
-            // Without a default route, as on a machine that is in the robots' network alone, each network is asked.
+            // Without a default route, for example on a computer that is only in the robot network, each local network
+            // is asked.
             if is_open && asked.as_ref().is_err_and(|error| error.kind() == ErrorKind::NetworkUnreachable) {
                 let networks = discovery::broadcasts().unwrap_or_default();
                 let networks: Vec<_> = networks.into_iter().map(|own| SocketAddrV4::new(own, PORT)).collect();

@@ -1,4 +1,4 @@
-//! `yrcx eip get` and `yrcx eip set`: explicit messages, as they are.
+//! `yrcx eip get` and `yrcx eip set`: raw explicit messages.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -116,7 +116,6 @@ impl Command for Set {
     }
 }
 
-/// Bytes as typed.
 #[derive(Debug, Clone)]
 struct Bytes(Vec<u8>);
 
@@ -128,7 +127,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
     }
 }
 
-/// A number of an object: 16 bits, decimal or hexadecimal with 0x.
+/// Parses an object number: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
     typed::unsigned::<u16>(text)
         .map(u32::from)
@@ -184,7 +183,8 @@ mod tests {
 
     #[test]
     fn messages_have_the_bytes_of_the_specification() {
-        // Volume 1, appendix C-1: service, words of the path, class, instance and attribute in 8 bits where they fit.
+        // Volume 1, appendix C-1: service, path length in words, then class, instance and attribute in 8 bits if they
+        // fit.
         let hex = |line: &[&str]| frames(line).unwrap()[0]["hex"].as_str().unwrap().to_owned();
         assert_eq!(hex(&["eip", "get", "4", "100", "3"]), "0e03200424643003");
         assert_eq!(hex(&["eip", "get", "0xF5", "1"]), "010220f52401");

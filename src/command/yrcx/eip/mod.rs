@@ -1,5 +1,5 @@
-//! Controllers on EtherNet/IP, and `yrcx eip`: the network board itself, by messages. For diagnosis: no connection for
-//! images is opened, so nothing that the controller would miss when it ends.
+//! Controllers on EtherNet/IP, and `yrcx eip`: diagnosis of the network board with explicit messages. No I/O connection
+//! is opened, so the end of the command does not affect the controller.
 
 mod board;
 pub mod bus;
@@ -20,12 +20,11 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::eip::SCHEME;
 
-/// The board of a link that is for it alone.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }
 
-/// Why `--unit` means nothing here.
+/// Reason why `--unit` is rejected.
 const NO_UNIT: &str = "the board is that of the whole controller";
 
 commands! {

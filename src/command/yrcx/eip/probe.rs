@@ -36,7 +36,7 @@ impl Command for Probe {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
-        // A board may accept what it should refuse.
+        // A board can accept a connection that it should refuse.
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 

@@ -1,4 +1,4 @@
-//! A simulated controller as an adapter with TCP and UDP ports, for others.
+//! Server for a simulated controller as an EtherNet/IP adapter.
 
 use std::net::SocketAddrV4;
 use std::path::Path;

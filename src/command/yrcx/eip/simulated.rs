@@ -1,4 +1,4 @@
-//! The simulated controller as an adapter of EtherNet/IP.
+//! Simulated controller as an EtherNet/IP adapter.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -20,7 +20,7 @@ use crate::transport::eip::wire::{Identity, Revision};
 use crate::transport::fault::{FaultSpec, Faults};
 use crate::transport::image::ImagePeer;
 
-/// A simulator as an adapter on the loopback, with what the URL wants to go wrong.
+/// Starts a simulator as an adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let (faults, mischief) = wrongs(sim, faults, mischief)?;
     let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
@@ -30,15 +30,12 @@ pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     Ok(server)
 }
 
-/// What the controller sends and takes, and its configuration: the numbers of an older controller of the maker.
+/// Input, output and configuration assembly: the numbers of an older controller of the manufacturer.
 const INPUT: u32 = 100;
 const OUTPUT: u32 = 150;
 const CONFIGURATION: u32 = 1;
 
 /// Serves a controller as an adapter.
-///
-/// # Errors
-/// When the ports cannot be had.
 pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
@@ -50,7 +47,7 @@ pub fn serve(start: Start, listen: Listen, faults: Option<FaultSpec>) -> io::Res
     )
 }
 
-/// The state of a device that works (volume 2, 2-4.2.2).
+/// State "operational" (volume 2, 2-4.2.2).
 const OPERATIONAL: u8 = 3;
 
 fn identity() -> Identity {
@@ -67,7 +64,7 @@ fn identity() -> Identity {
     }
 }
 
-/// What an adapter does wrong, by its name.
+/// Finds a fault of the adapter by name.
 pub fn mischief(text: &str) -> Result<AdapterFault, String> {
     fault_by_name(&AdapterFault::ALL, text)
 }
@@ -78,7 +75,7 @@ pub struct Controller(pub Simulated);
 
 impl Application for Controller {
     fn image_out(&mut self, now: Duration, _instance: u32, image: &[u8], run: bool) {
-        // What a master shows while it idles is not meant yet, or not any more.
+        // Ignore the image of an idle master.
         if run {
             self.0.input(now, Some(image));
         }

@@ -1,4 +1,4 @@
-//! Stations of a line, as they answer questions that own nobody.
+//! Requests to PROFIBUS stations that do not lock them.
 
 use std::time::Duration;
 
@@ -26,7 +26,7 @@ use crate::transport::profibus::request::Requester;
 use crate::transport::profibus::survey::{Found, Survey, Unknown};
 use crate::transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATION, Station as StationKind};
 
-/// A line that is asked when something is asked.
+/// The line of a URL. The port opens with the first request.
 #[derive(Debug)]
 pub struct Board {
     profibus: Profibus,
@@ -35,41 +35,41 @@ pub struct Board {
     tap: Tap,
 }
 
-/// Repetitions of questions to stations that may not be there.
+/// Number of repetitions, because a station can be missing.
 const RETRIES: u8 = 1;
 
 impl Board {
-    /// The line of a URL.
+    /// Line of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
         let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
         Ok(Self { profibus: connect::options(at)?.clone(), label, timeout, tap: at.tap.clone() })
     }
 
-    /// A line without a robot.
+    /// Line without a robot.
     pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
         let profibus: &Profibus =
             bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
         Ok(Self { profibus: profibus.clone(), label: line.to_owned(), timeout: Duration::ZERO, tap })
     }
 
-    /// What its URL says.
+    /// Options of the URL.
     pub const fn settings(&self) -> &Profibus {
         &self.profibus
     }
 
-    /// Who is on the line.
+    /// Finds all stations.
     pub async fn scan(&self) -> Result<Vec<Station>, Failure> {
         let all = (0..=MAX_STATION).filter(|station| *station != self.profibus.master).collect();
         let found = self.ask(all, RETRIES).await?;
         Ok(found.iter().map(Station::from).collect())
     }
 
-    /// The station of the URL; `None` if it does not answer.
+    /// Reads the station of the URL and its image; `None` if it does not answer.
     pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
         Ok(self.found().await?.map(|found| (Station::from(&found), self.image(&found))))
     }
 
-    /// What passes between the station and another master; nothing is sent.
+    /// Listens to the exchange of the station with another master. Nothing is sent.
     pub async fn overheard(&self) -> Result<Option<Image>, Failure> {
         let failed = |error: &LinkError| not_open(&self.label, &SCHEME, error);
         let listening = connect::listen(&self.profibus, self.tap.clone(), self.timeout).await;
@@ -81,7 +81,7 @@ impl Board {
         }
     }
 
-    /// How the station of the URL is doing.
+    /// Reads the diagnosis of the station in the URL.
     pub async fn diagnosis(&self) -> Result<Diagnosis, Failure> {
         let found = self.found().await?.ok_or_else(|| self.silent())?;
         found.diagnosis.map_err(|why| match why {
@@ -95,7 +95,7 @@ impl Board {
         })
     }
 
-    /// That the station of the URL does not answer.
+    /// Failure: the station of the URL does not answer.
     pub fn silent(&self) -> Failure {
         Failure::new(Kind::NoAnswer, format!("{} does not answer", self.name()))
             .hint("`yrcx profibus scan` lists who answers")
@@ -110,7 +110,7 @@ impl Board {
         Ok(self.ask(vec![self.profibus.station], retries).await?.into_iter().next())
     }
 
-    /// What the controller shows, where it exchanges data with somebody.
+    /// Image of the controller, if it exchanges data.
     fn image(&self, found: &Found) -> Option<Image> {
         let mut bytes = found.inputs.as_ref().ok().cloned()?;
         if self.profibus.is_big_endian {
@@ -200,12 +200,12 @@ impl From<&Found> for Station {
 }
 
 impl Station {
-    /// Whether its images have the size of the controller's.
+    /// Whether its images have the size of a YRCX.
     pub fn fits(&self) -> bool {
         self.in_size == Some(Image::BYTES) && self.out_size == Some(Image::BYTES)
     }
 
-    /// As fields of a view.
+    /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
         let bytes = |size: Option<usize>| Cell::maybe(size.map(|size| format!("{size} bytes")));
         vec![

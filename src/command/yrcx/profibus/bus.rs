@@ -1,4 +1,4 @@
-//! PROFIBUS DP as one of the fieldbuses.
+//! Registration of PROFIBUS DP as a fieldbus.
 
 use futures_util::FutureExt as _;
 

@@ -1,4 +1,5 @@
-//! The layers of a line for `armctl robots check`: from the adapter to what the controller shows. Nobody is owned.
+//! Layers of `armctl robots check` for a PROFIBUS line: from the adapter to the image of the controller. The station is
+//! not locked.
 
 use super::board::Board;
 use crate::command::face::layers::Layers;
@@ -6,17 +7,17 @@ use crate::controller::yrcx::image::Image;
 use crate::failure::Kind;
 use crate::transport::profibus::port::latency_timer;
 
-/// In the order in which they are looked at.
+/// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration", "owner", "inputs"];
 
-/// Looks at them; what the controller shows, where it exchanges data with a master that is not on this line.
+/// Checks the layers. Returns the image of the controller, if it exchanges data with a master that is not on this line.
 pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     let settings = board.settings().clone();
     if !settings.is_owner {
         return overheard(board, layers).await;
     }
     let answered = match board.station().await {
-        // The adapter, or the line that has another master.
+        // The adapter failed, or another master is on the line.
         Err(failure) => {
             layers.fail("name", &failure);
             return None;
@@ -85,7 +86,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     image
 }
 
-/// Where nothing may be sent there is only what passes.
+/// With role=listen, only listening is possible.
 async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
     let opens = format!("{} opens; nothing is sent, as role=listen wants it", board.settings().port);
     match board.overheard().await {

@@ -1,4 +1,4 @@
-//! Links over PROFIBUS, as a URL wants them.
+//! PROFIBUS links with the options of a URL.
 
 use std::path::Path;
 use std::time::Duration;
@@ -18,10 +18,9 @@ use crate::transport::profibus::port::{Port, Serial};
 use crate::transport::profibus::rates::Rate;
 use crate::transport::profibus::settings::Settings;
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profibus = options(&at)?;
-    // Who looks must not take the outputs, and a slave shows nobody else what it shows.
+    // A read must not take the outputs, and a slave sends its image only to its master.
     if purpose == Purpose::Look || !profibus.is_owner {
         return listen(profibus, at.tap, at.robot.timeout.value).await;
     }
@@ -29,7 +28,7 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Master::open(settings, swapped(profibus), opener(profibus)?, at.tap).await?))
 }
 
-/// Hears what another master and the slave exchange.
+/// Listens to the exchange of another master and the slave.
 pub(super) async fn listen(profibus: &Profibus, tap: Tap, timeout: Duration) -> Result<ImageLink, LinkError> {
     let (silence, opener) = (timeout.max(LISTEN), opener(profibus)?);
     let listening = Listening::open(profibus.station, Image::BYTES, swapped(profibus), opener, tap, silence).await;
@@ -40,15 +39,14 @@ const fn swapped(profibus: &Profibus) -> Swapped {
     Swapped { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } }
 }
 
-/// Least time to listen: longer than the longest cycle of a master.
+/// Minimum time to listen, longer than the longest cycle of a master.
 const LISTEN: Duration = Duration::from_secs(3);
 
-/// What the URL says.
 pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profibus, LinkError> {
     at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFIBUS", at.bus))))
 }
 
-/// Opens the adapter, again and again.
+/// Opens the adapter; can be called again after a loss.
 pub(super) fn opener(profibus: &Profibus) -> Result<Opener, LinkError> {
     let (path, rate) = (profibus.port.clone(), rate(profibus)?);
     Ok(Box::new(move || Ok(Box::new(Serial::open(&path, rate)?) as Box<dyn Port>)))
@@ -59,7 +57,7 @@ fn rate(profibus: &Profibus) -> Result<Rate, LinkError> {
     Rate::from_baud(profibus.baud).ok_or_else(unknown)
 }
 
-/// The settings of the link; those of the URL count more than those of a file.
+/// Link settings. URL options have priority over the GSD file.
 pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, LinkError> {
     let usual = Settings::new(profibus.station, rate(profibus)?, resting().to_link(Image::BYTES));
     let mut settings = Settings {
@@ -82,7 +80,7 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
     Ok(settings)
 }
 
-/// A file of the maker, and the module in it that is named, or that alone has the sizes of an image.
+/// Reads a GSD file and selects the named module, or the only one with the size of the image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let bytes = files::read(path, MAX_FILE)

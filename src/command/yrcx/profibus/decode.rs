@@ -1,4 +1,4 @@
-//! PROFIBUS in a capture: images, and the telegrams around them.
+//! PROFIBUS decoder for captures: images and other telegrams.
 
 use crate::command::decode::capture::DecodedMessage;
 use crate::command::yrcx::decode::images::{BusDecoder, Images, decoded};
@@ -11,13 +11,13 @@ use crate::transport::profibus::wire::{
 };
 use crate::transport::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 
-/// What is known of the line.
+/// State of the decoder.
 #[derive(Debug, Default)]
 pub struct Decoder {
     tokens: u64,
     /// Bytes that begin no telegram.
     noise: usize,
-    /// Packet of the request that waits for an answer, with its master and its slave.
+    /// Pending request: packet number, master, slave.
     asked: Option<(u64, u8, u8)>,
 }
 
@@ -54,7 +54,7 @@ impl BusDecoder for Decoder {
 }
 
 impl Decoder {
-    /// A telegram with a function code.
+    /// Handles a telegram with a function code.
     fn frame(&mut self, message: &Message<'_>, frame: &Frame, images: &mut Images) {
         let is_answer = matches!(frame.control, Control::Answer(..));
         let (direction, master, slave) = if is_answer {
@@ -84,7 +84,7 @@ impl Decoder {
         images.message(DecodedMessage { answers, raw: hex(message.bytes), ..decoded });
     }
 
-    /// A telegram that is not as it was sent; who sent it is not sure then.
+    /// Handles a damaged telegram. Its sender is not certain.
     fn damaged(&mut self, message: &Message<'_>, problem: &str, images: &mut Images) {
         let direction = if self.asked.is_some() { Direction::Received } else { Direction::Sent };
         let decoded = decoded(message, direction, self.link(), "a damaged telegram".to_owned());
@@ -92,19 +92,19 @@ impl Decoder {
         images.message(DecodedMessage { problem, raw: hex(message.bytes), ..decoded });
     }
 
-    /// Who talks just now, as far as it is known.
+    /// Master and slave of the pending request.
     fn link(&self) -> (String, String) {
         let unknown = || ("master".to_owned(), "slave".to_owned());
         self.asked.map_or_else(unknown, |(_, master, slave)| link(master, slave))
     }
 }
 
-/// Master and slave, as the table of links has them.
+/// Names of master and slave in the table of links.
 fn link(master: u8, slave: u8) -> (String, String) {
     (format!("station {master}"), format!("station {slave}"))
 }
 
-/// What the data of a telegram say.
+/// Text of the data of a telegram.
 fn about(frame: &Frame, service: Option<u8>) -> Option<String> {
     if frame.data.is_empty() {
         return None;

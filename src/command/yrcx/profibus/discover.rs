@@ -1,4 +1,4 @@
-//! Which stations answer on a line.
+//! Discovery of PROFIBUS stations on a line.
 
 use std::time::Duration;
 
@@ -21,7 +21,7 @@ pub struct Search {
     profibus: Option<String>,
 }
 
-/// The port of a URL is meant by the URL, too.
+/// Parses a port. The form of a URL is also accepted.
 #[expect(clippy::unnecessary_wraps, reason = "it parses a value for clap")]
 fn port(text: &str) -> Result<String, String> {
     let of_url = text.strip_prefix(SCHEME.name).and_then(|rest| rest.strip_prefix("://"));
@@ -54,7 +54,7 @@ fn found(station: &Station, line: &str, target: String) -> Result<Device, Failur
     Ok(Device {
         address: format!("station {} on {line}", station.station),
         target,
-        // No number tells the maker; the size of the images is all there is.
+        // The vendor is unknown, so the image size decides.
         is_yrcx: station.kind == "slave" && station.fits(),
         device,
         identity: fields(station)?,

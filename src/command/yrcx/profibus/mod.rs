@@ -1,4 +1,4 @@
-//! Controllers on PROFIBUS DP, and `yrcx profibus`: the line and its stations. For diagnosis: no slave is owned.
+//! Controllers on PROFIBUS DP, and `yrcx profibus`: diagnosis of the line and its stations. No slave is locked.
 
 mod board;
 pub mod bus;
@@ -18,12 +18,11 @@ use crate::command::commands;
 use crate::failure::Failure;
 use crate::settings::target::profibus::SCHEME;
 
-/// The board of a link that is for it alone.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }
 
-/// Why `--unit` means nothing here.
+/// Reason why `--unit` is rejected.
 const NO_UNIT: &str = "the station is that of the whole controller";
 
 commands! {

@@ -1,4 +1,4 @@
-//! A simulated controller as a slave behind a pseudo-terminal, for others.
+//! Server for a simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
 use std::path::Path;
 
@@ -58,7 +58,7 @@ impl fieldbus::Serve for ServeArgs {
             mischief: self.slave_fault,
         };
         let server = simulated::serve(start, options)?;
-        // From here on there may be a link to remove.
+        // From here on, Ctrl-C must remove the symbolic link.
         crate::command::frame::interrupt::catch_interrupts();
         let link = link.map(|link| TerminalLink::make(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
@@ -66,7 +66,7 @@ impl fieldbus::Serve for ServeArgs {
             target: server.url(name.as_deref()),
             address: None,
             console: Box::new(move |line| {
-                // The name goes when the server does.
+                // The symbolic link is removed with the server.
                 let _ = &link;
                 console(&server, line)
             }),

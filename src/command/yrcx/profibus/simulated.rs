@@ -1,4 +1,4 @@
-//! The simulated controller as a slave of PROFIBUS, behind a pseudo-terminal.
+//! Simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
 use std::io;
 use std::sync::{Arc, Mutex};
@@ -20,18 +20,18 @@ use crate::transport::profibus::slave::{Setup, Slave, SlaveFault};
 use crate::transport::sim::locked;
 use crate::transport::stream_server::StreamServer;
 
-/// How a slave is served.
+/// Options of a slave.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Its address.
+    /// Address.
     pub station: u8,
-    /// Its ident number.
+    /// Ident number.
     pub ident: u16,
-    /// Speed of the line.
+    /// Bit rate.
     pub rate: Rate,
-    /// Faults of characters on their way.
+    /// Faults of characters.
     pub faults: Option<LineFaultSpec>,
-    /// What the slave does wrong.
+    /// Fault of the slave.
     pub mischief: Option<SlaveFault>,
 }
 
@@ -43,19 +43,19 @@ impl Default for Options {
     }
 }
 
-/// A simulator as the URL wants it.
+/// Starts a simulator with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
     let faults = |text: &str| text.parse::<LineFaultSpec>().map_err(|error| error.to_string());
     let (faults, mischief) = wrongs(sim, faults, mischief)?;
     serve(start(sim.state.as_deref())?, Options { faults, mischief, ..Options::default() })
 }
 
-/// What a slave does wrong, by its name.
+/// Finds a fault of the slave by name.
 pub fn mischief(text: &str) -> Result<SlaveFault, String> {
     fault_by_name(&SlaveFault::ALL, text)
 }
 
-/// A slave that is served as long as this lives.
+/// A running slave. It stops when it is dropped.
 #[derive(Debug)]
 pub struct Server {
     slave: Arc<Mutex<Slave<Simulated>>>,
@@ -83,7 +83,7 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     let clock = tokio::time::Instant::now();
     let serve = move || {
         runtime.block_on(server.run(&mut peer, quits));
-        // A read of the terminal may still wait.
+        // A read of the terminal can still block.
         runtime.shutdown_background();
     };
     let thread = std::thread::Builder::new().name("profibus-slave".to_owned()).spawn(serve).map_err(failed)?;
@@ -91,13 +91,13 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
 }
 
 impl Server {
-    /// Its path.
+    /// Path of the port.
     pub fn port(&self) -> &str {
         &self.port
     }
 
-    /// The URL to reach it by, through another name of its port where there is one. Two processes share a processor, and a
-    /// terminal has no clock: waits are longer than on a line.
+    /// URL of the slave, optionally with another name of its port. The time limits are longer than on a real line,
+    /// because both ends share a processor and a pseudo-terminal has no timing.
     pub fn url(&self, name: Option<&str>) -> String {
         let (scheme, port) = (SCHEME.name, name.unwrap_or(&self.port));
         let (station, baud) = (self.options.station, self.options.rate.name);
@@ -105,20 +105,20 @@ impl Server {
         format!("{scheme}://{port}?station={station}&baud={baud}&slot={slot}ms")
     }
 
-    /// Does something with the slave.
+    /// Calls `act` with the slave.
     pub fn with<T>(&self, act: impl FnOnce(&mut Slave<Simulated>, Duration) -> T) -> T {
         act(&mut locked(&self.slave), self.clock.elapsed())
     }
 }
 
-/// Slot time on a machine that is busy with other things.
+/// Slot time on a busy computer.
 const SLOT: Duration = Duration::from_millis(60);
 
 impl Drop for Server {
     fn drop(&mut self) {
         drop(self.quit.take());
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,4 @@
-//! A station of PROFINET, as it answers questions that connect nobody.
+//! Requests to a PROFINET station without a connection.
 
 use std::net::Ipv4Addr;
 use std::time::Duration;
@@ -22,7 +22,7 @@ use crate::transport::profinet::layout::Layout;
 use crate::transport::profinet::settings::Station;
 use crate::transport::profinet::wire::dcp::{self, Block};
 
-/// A station that is asked when something is asked.
+/// Station of a URL. Each request opens the interface.
 #[derive(Debug)]
 pub struct Board {
     profinet: Profinet,
@@ -31,24 +31,24 @@ pub struct Board {
 }
 
 impl Board {
-    /// The station of a URL.
+    /// Station of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
         Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
-    /// What its URL says.
+    /// Options of the URL.
     pub const fn settings(&self) -> &Profinet {
         &self.profinet
     }
 
-    /// The interface that leads to it, and records what passes.
+    /// The interface, with a recorder.
     pub fn interface(&self) -> Result<Interface, Failure> {
         let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
         interface.tap = self.tap.clone();
         Ok(interface)
     }
 
-    /// Asks through the interface, which may take its time.
+    /// Runs a blocking request on the interface.
     pub async fn ask<T: Send + 'static>(
         &self,
         question: impl FnOnce(&Interface) -> Result<T, ProfinetError> + Send + 'static,
@@ -60,32 +60,32 @@ impl Board {
         }
     }
 
-    /// The station.
+    /// Finds the station.
     pub async fn station(&self) -> Result<Found, Failure> {
         let station = self.profinet.station.clone();
         self.ask(move |interface| commission::find(interface, &station)).await
     }
 
-    /// What it says of itself in its records.
+    /// Reads the records of the station.
     pub async fn identity(&self, found: Found) -> Result<Identity, Failure> {
         self.ask(move |interface| commission::identity(interface, &found)).await
     }
 
-    /// Another station that has this name, if one answers.
+    /// Finds another station with this name.
     pub async fn namesake(&self, name: &str, than: &Found) -> Result<Option<String>, Failure> {
         let (station, mac) = (Station::Name(name.to_owned()), than.mac);
         let other = self.ask(move |interface| commission::other(interface, &station, mac)).await?;
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
-    /// Who else has this address, if somebody answers.
+    /// Finds another owner of this IP address.
     pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
         Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
     }
 
-    /// Sets something at the station, and waits until it says so of itself.
+    /// Sets a value at the station, and waits until the station reports it.
     pub async fn set(
         &self,
         found: &Found,
@@ -98,7 +98,7 @@ impl Board {
             let answer = commission::change(interface, mac, what, &block);
             let is_open = matches!(answer, Err(ProfinetError::NoAnswer { .. }));
             match answer {
-                // A refusal is an answer as well.
+                // A refusal is also an answer.
                 Err(error @ ProfinetError::Dcp { .. }) => return Ok(Err(error)),
                 Err(error) if !is_open => return Err(error),
                 _ => {}
@@ -118,19 +118,19 @@ impl Board {
         }
     }
 
-    /// Connects with this layout until data flows, and takes leave; what the station says to it.
+    /// Connects with this layout until data flows, then disconnects. Returns the answer of the station.
     pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
         let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
         let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
         Ok(connect::attempt(&profinet, settings, self.tap.clone()).await)
     }
 
-    /// Why something did not come about.
+    /// Failure of a request.
     pub fn failure(&self, error: ProfinetError) -> Failure {
         self.failure_of(&LinkError::from(error))
     }
 
-    /// Likewise, of a link.
+    /// Failure of a link.
     pub fn failure_of(&self, error: &LinkError) -> Failure {
         not_open(&self.label, &SCHEME, error)
     }

@@ -1,4 +1,4 @@
-//! PROFINET IO as one of the fieldbuses.
+//! Registration of PROFINET IO as a fieldbus.
 
 use futures_util::FutureExt as _;
 
@@ -31,7 +31,7 @@ pub const BUS: Fieldbus = Fieldbus {
     },
 };
 
-/// The four bytes that a device says no with, however they are grouped.
+/// Explains a PNIOStatus: four bytes with any separators.
 fn explain(code: &str) -> Option<Explained> {
     let digits: String = code.chars().filter(|c| !matches!(c, ' ' | '-' | ':')).collect();
     let digits = digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")).unwrap_or(&digits);

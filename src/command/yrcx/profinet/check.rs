@@ -1,5 +1,5 @@
-//! The layers of a device for `armctl robots check`: from the interface to what the controller shows. Nobody is connected,
-//! except to a simulator: a connection that ends stops a controller.
+//! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. It
+//! connects only to a simulator, because the end of a connection stops a controller.
 
 use std::time::Duration;
 
@@ -17,10 +17,10 @@ use crate::transport::profinet::wire::connect::ExpectedSubmodule;
 use crate::transport::profinet::wire::frame::ETHER_TYPE;
 use crate::transport::profinet::wire::record::RealModule;
 
-/// In the order in which they are looked at.
+/// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station", "IP", "RPC", "modules", "data"];
 
-/// Looks at them; what the controller shows, where it could be seen.
+/// Checks the layers. Returns the image of the controller, if it can be read.
 pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
     match asked(board, layers).await {
         Ok(image) => image,
@@ -76,7 +76,7 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     Ok(None)
 }
 
-/// What the device answers to calls.
+/// Checks the records of the device.
 async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<(), (&'static str, Failure)> {
     let identity = board.identity(found.clone()).await.map_err(|failure| ("RPC", failure))?;
     match identity.im0 {
@@ -119,13 +119,13 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
     Ok(())
 }
 
-/// `; it has 0:0x1,1:0x101`.
+/// Format: `; it has 0:0x1,1:0x101`.
 fn listed(modules: &[RealModule]) -> String {
     let all: Vec<String> = modules.iter().map(|module| format!("{}:{:#x}", module.slot, module.ident)).collect();
     format!("; it has {}", all.join(","))
 }
 
-/// What of the real modules is not as in the layout.
+/// Differences between the layout and the real modules.
 fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     let mut mismatches = Vec::new();
     for module in layout.expected() {
@@ -146,7 +146,7 @@ fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     mismatches
 }
 
-/// Submodules of the head that are there and not in the layout.
+/// Submodules of the access point that the layout does not contain.
 fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
     let head = real.iter().find(|module| module.slot == 0)?;
     let left_out = head.submodules.iter().filter(|(subslot, _)| layout.find(0, *subslot).is_none());
@@ -155,7 +155,7 @@ fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
     (!left_out.is_empty()).then(|| left_out.join(","))
 }
 
-/// Connects to a simulator, for the first image.
+/// Connects to a simulator and reads the first image.
 async fn data(board: &Board, network: &Network, layers: &mut Layers) -> Result<Option<Image>, Failure> {
     let settings = connect::settings(board.settings(), Duration::ZERO);
     let Ok(settings) = settings else { return Ok(None) };

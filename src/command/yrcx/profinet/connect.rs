@@ -1,4 +1,4 @@
-//! Links over PROFINET, as a URL wants them.
+//! PROFINET links with the options of a URL.
 
 use std::path::Path;
 use std::time::Duration;
@@ -23,11 +23,10 @@ use crate::transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup, 
 use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::record::Parameter;
 
-/// Opens a link.
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profinet = options(at.bus)?;
     if purpose == Purpose::Look {
-        // A connection that only looks and ends is one whose loss stops the controller.
+        // A read would need a connection, and its end would stop the controller.
         let cause = Cause::new("a device of PROFINET shows its signals only to the controller it is connected to");
         return Err(LinkError::Refused(cause.advice("open a session, `armctl session open`, and look through that")));
     }
@@ -38,17 +37,17 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Link::open(&profinet.interface, settings, at.tap).await?))
 }
 
-/// Opens a connection until data flows, and takes leave at once.
+/// Opens a connection until data flows, then closes it.
 pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -> Result<(), ProfinetError> {
     if let Some(network) = Network::find(&profinet.interface) {
-        // The other end is in this process, and always hears of the end.
+        // The in-process device always receives the close, so its result does not matter.
         let _ = ImageLink::in_process(Box::new(network.open(settings)?)).close().await;
         return Ok(());
     }
     network::Network::shared(&profinet.interface)?.open(settings, tap).await?.close().await
 }
 
-/// The addresses of a station, which is asked: its name and its card.
+/// Addresses of a station from DCP: name and MAC address.
 pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
     let profinet = options(bus)?;
     let interface = Interface::find(&profinet.interface)?;
@@ -57,12 +56,11 @@ pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
     Ok(names.iter().map(|name| address(&profinet.interface, name)).collect())
 }
 
-/// What the URL says.
 pub(super) fn options(bus: &Bus) -> Result<&Profinet, LinkError> {
     bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is not a URL of PROFINET"))))
 }
 
-/// The settings of the link. Whoever only looks now and then needs no images in shorter intervals than `calm`.
+/// Link settings. `calm` is the minimum interval for a caller that reads rarely.
 pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, LinkError> {
     let Modules { layout, parameters, shortest, startup } = modules(profinet)?;
     let sizes = (layout.size(Direction::Input), layout.size(Direction::Output));
@@ -98,18 +96,17 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
     Ok(settings)
 }
 
-/// The next cycle that there is.
+/// Rounds up to a valid cycle time.
 fn whole(time: Duration) -> Duration {
     const LONGEST: u64 = 512;
     let millis = u64::try_from(time.as_millis()).unwrap_or(LONGEST).clamp(1, LONGEST);
     Duration::from_millis(millis.next_power_of_two())
 }
 
-/// What a device has, as far as it was told.
+/// Modules of a device, as far as known.
 struct Modules {
     layout: Layout,
     parameters: Vec<Parameter>,
-    /// Shortest cycle.
     shortest: Duration,
     startup: Startup,
 }
@@ -132,9 +129,9 @@ fn modules(profinet: &Profinet) -> Result<Modules, LinkError> {
     }
 }
 
-/// The modules of a file of the maker that alone make images of the controller's size.
+/// Modules of a GSDML file, if there is a unique selection with the image size of a YRCX.
 fn file(path: &Path) -> Result<Modules, LinkError> {
-    /// A unit of the shortest cycle.
+    /// Unit of the shortest cycle.
     const UNIT: Duration = Duration::from_nanos(31_250);
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let gsdml = read(path)?;
@@ -157,7 +154,6 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
     Err(LinkError::Settings(cause.advice(advice)))
 }
 
-/// Reads a file of the maker.
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let bytes = files::read(path, MOST_BYTES).map_err(|error| {

@@ -1,4 +1,4 @@
-//! PROFINET in a capture: images, and the calls, alarms and questions around them.
+//! PROFINET decoder for captures: images, calls, alarms and DCP.
 
 use std::collections::HashMap;
 
@@ -19,29 +19,28 @@ use crate::transport::profinet::wire::status::Status;
 use crate::transport::profinet::wire::{Mac, Uuid, block};
 use crate::transport::tap::Direction;
 
-/// What is known of the network.
+/// State of the decoder.
 #[derive(Debug, Default)]
 pub struct Decoder {
-    /// Calls that are not answered yet, by who called and how often.
+    /// Pending calls by activity and sequence number.
     calls: HashMap<(Uuid, u32), (u64, Vec<Request>)>,
-    /// Cyclic data, by the cards and the id of its frames.
+    /// Cyclic data by MAC addresses and frame id.
     streams: HashMap<(Mac, Mac, u16), Stream>,
-    /// Cyclic frames whose Connect is not in the file.
+    /// Number of cyclic frames whose Connect is not in the capture.
     unknown: u64,
     unreadable: u64,
 }
 
-/// Cyclic data in one direction.
+/// Cyclic data of one direction.
 #[derive(Debug)]
 struct Stream {
     direction: Direction,
     /// Controller and device.
     link: (String, String),
-    /// Bytes of a frame's data.
     length: usize,
-    /// Where the image is in it: offset and bytes, each with a status behind.
+    /// Offset and length of the image parts; a status follows each.
     places: Vec<(usize, usize)>,
-    /// What was last said of its data.
+    /// Last reported problem of the data.
     trouble: Option<String>,
 }
 
@@ -108,7 +107,7 @@ impl Decoder {
         }
     }
 
-    /// A datagram of a call. The controller calls the device, and the device the controller, to say that it is ready.
+    /// Handles a datagram of a call. The controller calls the device; the device calls back with ApplicationReady.
     fn call(&mut self, message: &Message<'_>, ends: (String, String), datagram: &Datagram<'_>, images: &mut Images) {
         let header = &datagram.header;
         let (key, name) = ((header.activity, header.sequence), name(header));
@@ -137,7 +136,7 @@ impl Decoder {
         images.message(DecodedMessage { answers, ..decoded(message, direction, link, text) });
     }
 
-    /// What an answer says; that to Connect tells where data is from then on.
+    /// Text of an answer. A Connect answer also defines the streams.
     fn answered(&mut self, header: &Header, body: &[u8], asked: Option<&(u64, Vec<Request>)>) -> String {
         let reply = match Reply::parse(body, header.order) {
             Ok(reply) => reply,
@@ -222,7 +221,7 @@ impl Stream {
         }
     }
 
-    /// The image in a frame, or why it has none that counts.
+    /// Image of a frame, or the reason why it is not valid.
     fn image(&self, payload: &[u8]) -> Result<Vec<u8>, String> {
         let cyclic = Cyclic::parse(payload, self.length).map_err(|error| error.to_string())?;
         if !cyclic.is_usable() {
@@ -240,7 +239,7 @@ impl Stream {
     }
 }
 
-/// Where the data of submodules is, in the order of their slots.
+/// Positions of the submodule data, in the order of the slots.
 fn places(iocr: &Iocr, modules: &[&ExpectedModule]) -> Vec<(usize, usize)> {
     let length = |slot: u16, subslot: u16| {
         let of_slot = modules.iter().filter(|module| module.slot == slot).flat_map(|module| &module.submodules);
@@ -257,7 +256,6 @@ fn say(message: &Message<'_>, direction: Direction, link: (String, String), text
     images.message(DecodedMessage { raw: hex(message.bytes), ..decoded(message, direction, link, text) });
 }
 
-/// The name of what is called.
 fn name(header: &Header) -> &'static str {
     match header.operation {
         operation::CONNECT => "Connect",
@@ -270,7 +268,7 @@ fn name(header: &Header) -> &'static str {
     }
 }
 
-/// Kinds of datagrams beside calls and answers.
+/// Names of packet types other than call and answer.
 fn kind_name(kind: u8) -> &'static str {
     match Kind(kind) {
         Kind::PING => "ping",
@@ -283,7 +281,7 @@ fn kind_name(kind: u8) -> &'static str {
     }
 }
 
-/// What is asked, and what of it the answer needs.
+/// Text of a call, and its blocks for the answer.
 fn request(header: &Header, body: &[u8]) -> (String, Vec<Request>) {
     let unread = |error| (format!(": cannot be read: {error}"), Vec::new());
     let call = match Call::parse(body, header.order) {
@@ -330,7 +328,7 @@ fn describe_connect(requests: &[Request]) -> String {
             Request::Ar(ar) => parts.push(format!("controller '{}'", ar.name)),
             Request::Iocr(iocr) if iocr.kind == 1 => {
                 let cycle = u32::from(iocr.send_clock) * u32::from(iocr.ratio);
-                // 31.25 us is the 32nd part of a millisecond.
+                // 31.25 us is 1/32 ms.
                 let ms = f64::from(cycle) / 32.0;
                 parts.push(format!("every {ms} ms, watchdog {} ms", ms * f64::from(iocr.watchdog)));
             }
@@ -368,7 +366,7 @@ fn alarm(priority: Priority, rta: &Rta) -> String {
     }
 }
 
-/// A frame of DCP in words.
+/// Text of a DCP frame.
 fn station(dcp: &Dcp) -> String {
     let service = match dcp.service {
         Service::Get => "DCP Get",
@@ -396,10 +394,10 @@ fn station(dcp: &Dcp) -> String {
     format!("{service}: {}", asked.join(", "))
 }
 
-/// A block of a question.
+/// Text of a block in a request.
 fn asked(service: Service, block: &dcp::Block) -> String {
     let name = setting_name(block.setting);
-    // What is set stands behind its qualifier.
+    // In a Set, the value follows its qualifier.
     let value = if service == Service::Set { block.data.get(2..).unwrap_or_default() } else { &block.data[..] };
     match block.setting {
         Setting::NAME | Setting::ALIAS | Setting::STATION_TYPE if !value.is_empty() => {

@@ -1,4 +1,4 @@
-//! Which stations answer on an interface.
+//! Discovery of PROFINET stations on an interface.
 
 use std::time::Duration;
 
@@ -53,14 +53,14 @@ impl fieldbus::Search for Search {
 }
 
 fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
-    // A name that two have leads nowhere.
+    // A duplicate name does not identify a station, so use the MAC address.
     let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has its name too"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };
     let name = if station.station.is_empty() { "no name" } else { &station.station };
     Ok(Device {
         address: station.ip.clone().unwrap_or_else(|| station.mac.clone()),
         target: format!("{}://{place}@{interface}", SCHEME.name),
-        // The number of the maker is not known: what the station is called is all there is.
+        // The vendor id is not known, so the station type decides.
         is_yrcx: ["RCX", "YAMAHA"].iter().any(|word| station.kind.to_uppercase().contains(word)),
         device: format!("{name}, {}", station.in_a_line()),
         identity: fields(station)?,

@@ -1,4 +1,4 @@
-//! `yrcx profinet` where there is no raw Ethernet: the maker's file alone.
+//! `yrcx profinet` on systems without raw Ethernet: only the GSDML file.
 
 mod gsdml;
 

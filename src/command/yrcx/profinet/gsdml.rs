@@ -110,7 +110,7 @@ impl From<&Head> for AccessPoint {
             station: head.dns_name.clone(),
             ident: format!("{:#x}", head.ident),
             startup: modes.into_iter().filter(|(_, has)| *has).map(|(mode, _)| mode).collect(),
-            // In units of 31.25 us.
+            // The unit is 31.25 us.
             cycle_us: u32::from(head.shortest) * 125 / 4,
             modules: head.modules.iter().map(Module::from).collect(),
             layout: chosen.as_ref().and_then(|chosen| head.layout(chosen).ok()).map(|layout| layout.to_string()),
@@ -168,7 +168,7 @@ impl Report for Described {
     }
 }
 
-/// `1 to 4, 7`.
+/// Format: `1 to 4, 7`.
 fn ranges(slots: &[u16]) -> String {
     let mut ranges: Vec<(u16, u16)> = Vec::new();
     for slot in slots {

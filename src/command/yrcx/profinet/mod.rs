@@ -1,5 +1,5 @@
-//! Controllers on PROFINET IO, of which this machine is the IO controller, and `yrcx profinet`: stations, their names and
-//! addresses, and the maker's file.
+//! Controllers on PROFINET IO with this computer as the IO controller, and `yrcx profinet`: stations, their names and
+//! addresses, GSDML files.
 
 mod board;
 pub mod bus;
@@ -30,15 +30,14 @@ use crate::transport::profinet::settings::Station;
 use crate::transport::profinet::wire::Mac;
 use crate::transport::profinet::wire::dcp::Block;
 
-/// The board of a link that is for it alone.
 fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
     link.board(SCHEME.bus)
 }
 
-/// Why `--unit` means nothing here.
+/// Reason why `--unit` is rejected.
 const NO_UNIT: &str = "the station is that of the whole controller";
 
-/// The station of a robot, before anybody is asked.
+/// Station of a robot's URL.
 fn station_of(robot: &Robot) -> Result<Station, Failure> {
     let other = || {
         Failure::usage(format!("{} is on another fieldbus than {}", robot.label(), SCHEME.bus))
@@ -53,14 +52,14 @@ fn station_of(robot: &Robot) -> Result<Station, Failure> {
     .ok_or_else(other)
 }
 
-/// In a dry run, notes the question for the station.
+/// In a dry run, notes the DCP request for the station.
 fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
     let question = commission::looking_for(&station_of(robot)?, 0);
     let hex = text::hex(&commission::identify(Mac::default(), &question));
     link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: which card the station has" }))
 }
 
-/// The frame that sets something, as far as it is known before anybody was asked.
+/// Frame of a DCP Set, as far as known before the station is found.
 fn frame_for(station: &Station, block: &Block) -> String {
     let (destination, is_known) = match station {
         Station::Name(_) => (Mac::default(), false),
@@ -69,8 +68,8 @@ fn frame_for(station: &Station, block: &Block) -> String {
     unknown(&text::hex(&commission::set(Mac::default(), destination, 0, block)), is_known)
 }
 
-/// A frame without what is not known before: the cards of this machine and of a station that is known by its name, and the
-/// number of the question (bytes 0, 6 and 18).
+/// Replaces unknown digits of a frame by `?`: MAC address of this computer, MAC address of a station known by name, and
+/// Xid (bytes 6, 0 and 18).
 fn unknown(hex: &str, is_destination_known: bool) -> String {
     let is_unknown =
         |digit| (!is_destination_known && digit < 12) || (12..24).contains(&digit) || (36..44).contains(&digit);

@@ -45,7 +45,7 @@ impl Command for Probe {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
-        // The end of a connection stops the robot, though nothing here sets it in motion.
+        // The end of a connection stops the robot, although the command starts no motion.
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
@@ -70,14 +70,14 @@ impl Command for Probe {
     }
 }
 
-/// Layouts that may fit, the one of the target first.
+/// Candidate layouts, the one of the target first.
 fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
-    // A target that does not tell a layout is what this is for.
+    // The command is for targets without a layout.
     let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
     let guessed = match &identity.modules {
         Ok(real) => guess::layouts(real, bytes),
-        // The answer to it tells what the device has.
+        // The answer contains the modules of the device.
         Err(_) => vec![Layout::two_modules(1, 2)],
     };
     let mut layouts: Vec<Layout> = Vec::new();
@@ -89,7 +89,7 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     layouts
 }
 
-/// Most connections that are tried.
+/// Limit of connection attempts.
 const MOST: usize = 10;
 
 async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
@@ -104,7 +104,7 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
         }
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
-            // Data flows, nobody is there any more, or this machine is not ready for it.
+            // Success, no device, or a problem of this computer.
             Ok(())
             | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
             Err(_) => false,

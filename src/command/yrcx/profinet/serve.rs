@@ -1,4 +1,4 @@
-//! A simulated controller as an IO device on a real interface, for others.
+//! Server for a simulated controller as an IO device on a network interface.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `yrcx profinet blink`, `set-name`, `set-ip` and `reset`: what is set at a station by DCP.
+//! `yrcx profinet blink`, `set-name`, `set-ip` and `reset`: values set by DCP.
 
 use std::net::Ipv4Addr;
 
@@ -18,7 +18,7 @@ use crate::settings::target::profinet;
 use crate::transport::profinet::commission::Found;
 use crate::transport::profinet::wire::dcp::{Block, IpSuite, Station};
 
-/// What a station that a controller is connected to makes of a new name or address.
+/// Effect of a new name or address on a station with a connected controller.
 const ENDS: &str = "If a controller is connected to it, that may end the connection, which stops the robot.";
 
 /// Makes the light of the station blink for about three seconds, to find it in the cabinet.
@@ -70,19 +70,19 @@ fn suite(text: &str) -> Result<IpSuite, String> {
     profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
 }
 
-/// Something to be set.
+/// A value to set.
 struct Task<C: Fn(&Found) -> Change> {
     id: &'static str,
     risk: Risk,
-    /// What the frame does.
+    /// Name of the frame in messages.
     what: &'static str,
     block: Block,
     change: C,
-    /// What the station says of itself once it is done.
+    /// Whether the station reports the new value.
     is_so: Box<dyn Fn(&Station) -> bool + Send>,
 }
 
-/// Sets it, once what is lost by that was confirmed; `check` says whether it can be. A dry run notes the frames.
+/// Sets the value after `check` and a confirmation of what is overwritten. A dry run notes the frames.
 async fn set<C: Fn(&Found) -> Change>(
     context: Context<'_, Yrcx>,
     task: Task<C>,
@@ -104,7 +104,7 @@ async fn set<C: Fn(&Found) -> Change>(
     board_of(link)?.set(&found, task.what, task.block, task.is_so).await
 }
 
-/// Lost by it is what is kept for good.
+/// A permanent value overwrites the old one.
 const fn risk(temporary: bool) -> Risk {
     if temporary { Risk::Write } else { Risk::Destroy }
 }
@@ -227,7 +227,7 @@ impl Command for SetIp {
     }
 }
 
-/// Somebody else has it.
+/// Failure: another station has the name or address.
 fn taken(what: &str, other: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("{what} is taken: {other} has it"))
         .hint("nothing was set; `armctl robots discover --interface IFACE` lists names and addresses")

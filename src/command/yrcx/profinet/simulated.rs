@@ -1,4 +1,4 @@
-//! The simulated controller as an IO device.
+//! Simulated controller as a PROFINET IO device.
 
 use std::time::Duration;
 
@@ -15,12 +15,13 @@ use crate::transport::profinet::simulated::Network;
 use crate::transport::profinet::wire::Mac;
 use crate::transport::profinet::wire::record::Im0;
 
-/// The name of a simulated station, unless another is given.
+/// Default name of a simulated station.
 pub(super) const NAME: &str = "yrcx-sim";
-/// Modules of a simulated device, 48 bytes each way. The numbers are stand-ins: the maker's are not public.
+/// Modules of a simulated device, 48 bytes in each direction. The numbers are placeholders, because those of the
+/// manufacturer are not public.
 const MODULES: (u32, u32) = (0x101, 0x102);
 
-/// A network in this process with a simulator on it, with what the URL wants to go wrong.
+/// In-process network with a simulator, with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     let (faults, fault) = wrongs(sim, |text| faults_of_frames(text, "Ethernet"), fault)?;
     let controller = controller(start(sim.state.as_deref())?);
@@ -33,17 +34,17 @@ pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     Ok(Network::new(device, faults))
 }
 
-/// The URL of a simulated station behind an interface.
+/// URL of a simulated station on an interface.
 pub fn target(interface: &str) -> String {
     format!("{}://{NAME}@{interface}?layout={}", SCHEME.name, layout())
 }
 
-/// The modules of a simulated device.
+/// Layout of a simulated device.
 pub fn layout() -> Layout {
     Layout::two_modules(MODULES.0, MODULES.1)
 }
 
-/// What a simulated device says of itself; vendor and device are numbers that nobody has.
+/// Configuration of a simulated device, with unassigned vendor and device ids.
 pub fn setup(name: &str, layout: Layout) -> Setup {
     let id = (0xFFFF, 1);
     Setup {
@@ -66,12 +67,12 @@ pub fn setup(name: &str, layout: Layout) -> Setup {
     }
 }
 
-/// A device with a controller behind it.
+/// Application of a device: a simulated controller.
 pub fn controller(start: Start) -> Controller {
     Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)))
 }
 
-/// What a device does wrong, by its name.
+/// Finds a fault of the device by name.
 pub fn fault(text: &str) -> Result<Fault, String> {
     fault_by_name(&Fault::ALL, text)
 }

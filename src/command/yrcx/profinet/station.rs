@@ -1,4 +1,4 @@
-//! What a station says of itself.
+//! Report of a PROFINET station.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -32,7 +32,7 @@ pub struct Station {
     pub remarks: Vec<String>,
 }
 
-/// Bits of the role.
+/// Names of the role bits.
 const ROLES: [&str; 4] = ["device", "controller", "multidevice", "supervisor"];
 
 impl From<&Found> for Station {
@@ -63,7 +63,7 @@ impl From<&Found> for Station {
 }
 
 impl Station {
-    /// All of a network, each with a remark on what another has as well.
+    /// Converts all stations of a network, with a remark on duplicate names and addresses.
     pub fn all(found: &[Found]) -> Vec<Self> {
         let mut all: Vec<Self> = found.iter().map(Self::from).collect();
         for at in 0..all.len() {
@@ -80,7 +80,7 @@ impl Station {
         all
     }
 
-    /// For people.
+    /// Fields of a view.
     pub fn fields(&self) -> Vec<(&'static str, Cell)> {
         let known = |text: &str| Cell::maybe((!text.is_empty()).then_some(text));
         let mut fields = vec![
@@ -98,7 +98,7 @@ impl Station {
         fields
     }
 
-    /// `YRCX simulator, 0xffff:0x0001, 02:00:00:00:00:02`.
+    /// Format: `YRCX simulator, 0xffff:0x0001, 02:00:00:00:00:02`.
     pub fn in_a_line(&self) -> String {
         let id = self.vendor.iter().zip(&self.device).map(|(vendor, device)| format!("{vendor}:{device}"));
         let mut parts: Vec<String> =

@@ -1,4 +1,4 @@
-//! The easy programs as TOML, a program a line: `1 = { start = 10, loop = 5, end = 20 }`.
+//! Easy programs in TOML, one per line: `1 = { start = 10, loop = 5, end = 20 }`.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -8,15 +8,15 @@ use crate::findings::Finding;
 use crate::toyo::field::{Field, Value};
 use crate::toyo::table::Command;
 
-/// An easy program: its number, and its values.
+/// Number and values of an easy program.
 pub type Filled = (i32, Vec<Value>);
 
-/// The fields of a program, behind its number and what is always 0.
+/// The fields of a program, without its number and the constant 0.
 pub fn fields() -> &'static [Field] {
     Command::Wesy.row().requests[0].fields.get(2..).unwrap_or_default()
 }
 
-/// Programs as TOML.
+/// Formats programs as TOML.
 pub fn write(programs: &[Filled]) -> String {
     let mut text = "# Easy programs: from the start tag to the end tag, and how often\n".to_owned();
     for (program, values) in programs {
@@ -25,7 +25,7 @@ pub fn write(programs: &[Filled]) -> String {
     text
 }
 
-/// Programs in a TOML file: each once, whole, and in range; in their order.
+/// Parses programs from TOML, in their order. Each must be unique, complete and in range.
 pub fn read(bytes: &[u8]) -> Result<Vec<Filled>, Vec<Finding>> {
     reading::read(bytes, programs)
 }

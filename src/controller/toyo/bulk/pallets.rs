@@ -1,4 +1,4 @@
-//! A palletizing program as TOML, a record a line.
+//! Palletizing program in TOML, one record per line.
 //!
 //! ```toml
 //! # 1: start program and mode; M-1 from a matrix to one place, …
@@ -7,8 +7,8 @@
 //! source-p0 = { x = 100.00, y = 20.00, z = 0.00 }
 //! ```
 //!
-//! Numbers may stand in place of names. Records may be missing; one that is there has all its values, as a write sends
-//! them all.
+//! Numbers are accepted instead of names. Records may be missing, but each record needs all its values, because a
+//! write sends them all.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ use crate::toyo::table::palletizing::RECORDS;
 /// A record with all its values.
 pub type Filled = (&'static Pallet, Vec<Value>);
 
-/// Records as TOML; each with its number, what it is, and its units in a comment.
+/// Formats records as TOML; a comment gives number, purpose and units.
 pub fn write(records: &[(&'static Pallet, Record)]) -> String {
     let mut text = String::new();
     for (pallet, record) in records {
@@ -34,7 +34,7 @@ pub fn write(records: &[(&'static Pallet, Record)]) -> String {
     text
 }
 
-/// Records in a TOML file: each once, known, whole, and in range; in their order.
+/// Parses records from TOML, in their order. Each must be known, unique, complete and in range.
 pub fn read(bytes: &[u8]) -> Result<Vec<Filled>, Vec<Finding>> {
     reading::read(bytes, records)
 }

@@ -1,4 +1,4 @@
-//! Parameters and tables as TOML: names in place of ids, numbers in their units, words as on the line.
+//! Parameters and tables in TOML: names instead of ids, numbers in their units, words as in the protocol.
 //!
 //! ```toml
 //! [parameters]
@@ -12,7 +12,7 @@
 //! 5 = 250.0
 //! ```
 //!
-//! Ids may stand in place of names. Whatever has a name must have all its values, as a write sends them all.
+//! Ids are accepted instead of names. Each entry needs all its values, because a write sends them all.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -27,10 +27,10 @@ use crate::toyo::program::MOST_STEPS;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;
 
-/// The table of all that has no rows.
+/// TOML table of the parameters without rows.
 const SINGLE: &str = "parameters";
 
-/// Settings as TOML, in the manual's order; each with its id, what it is, and its unit in a comment.
+/// Formats settings as TOML in the order of the manual; a comment gives id, purpose and unit.
 pub fn write(settings: &[Setting]) -> String {
     let mut text = String::new();
     let of = |parameter: &'static Parameter| settings.iter().filter(move |setting| setting.parameter == parameter);
@@ -54,7 +54,7 @@ pub fn write(settings: &[Setting]) -> String {
     text
 }
 
-/// Settings in a TOML file: each once, known, whole, and in range.
+/// Parses settings from TOML. Each must be known, unique, complete and in range.
 pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
     reading::read(bytes, |reading, document| {
         let mut reader = Reader { reading, settings: Vec::new(), seen: HashMap::new() };
@@ -63,12 +63,10 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Placed>, Vec<Finding>> {
     })
 }
 
-/// What a parameter is, for people.
 fn comment(parameter: &Parameter) -> String {
     format!("# {}: {}{}", parameter.id, parameter.about, reading::comment(parameter.fields()))
 }
 
-/// The values of a setting.
 fn toml(setting: &Setting) -> String {
     let Setting { parameter, values } = setting;
     reading::toml(parameter.fields(), values.get(parameter.key.fields.len()..).unwrap_or_default())
@@ -87,7 +85,7 @@ impl Reader<'_, '_> {
             let at = self.reading.key(document, name);
             match (Parameter::named(name), item.as_table_like()) {
                 (None, Some(table)) if name == SINGLE => self.parameters(table),
-                // An id with a point in it is a table in a table.
+                // TOML reads an id with a point as a table within a table.
                 (None, Some(table)) if name.eq_ignore_ascii_case("T4") => self.sheets(table),
                 (Some(parameter), Some(table)) if parameter.row().is_some() => self.rows(parameter, table),
                 (Some(parameter), None) if parameter.row().is_some() => {
@@ -153,7 +151,6 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// One parameter, or one row.
     fn setting(&mut self, parameter: &'static Parameter, row: Option<Value>, item: &Item, at: SourceLocation) {
         let before = self.reading.findings.errors();
         let mut values: Vec<Value> = row.into_iter().collect();
@@ -168,7 +165,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The tasks share the steps there are (TO 2-4, E22).
+    /// The tasks share a fixed total number of steps (TO 2-4, E22).
     fn steps_fit(&mut self) {
         for (setting, line) in self.settings.iter().filter(|(setting, _)| setting.parameter.id == "E22") {
             let steps = setting.values.iter().map(|value| if let Value::Number(steps) = value { *steps } else { 0 });

@@ -1,7 +1,7 @@
-//! Rows of the coordinate table as CSV: `point,x_mm,y_mm,z_mm,r_mm`, a point a line.
+//! Coordinate table in CSV: `name,x_mm,y_mm,z_mm,r_mm`, one point per line.
 //!
-//! Columns come in any order, and cells may be quoted. Where all coordinates are wanted, a column may only be missing for an
-//! axis that the controller does not have; such a coordinate is 0. Millimetres have at most two decimals.
+//! Columns can be in any order, and cells can be quoted. Complete points may lack a column only for an axis that the
+//! controller does not have; its coordinate is 0. Millimetres have at most two decimals.
 
 use std::collections::HashMap;
 
@@ -11,64 +11,55 @@ use crate::sheet::{self, Column, Dialect, Row, Sheet};
 use crate::toyo::field::{Field, Value};
 use crate::toyo::table::Parameter;
 
-/// The columns, in the order of the fields of the table.
-const COLUMNS: [&str; 5] = ["point", "x_mm", "y_mm", "z_mm", "r_mm"];
+/// The columns, in the field order of the table.
+const COLUMNS: [&str; 5] = ["name", "x_mm", "y_mm", "z_mm", "r_mm"];
 
 /// The coordinate table.
 ///
 /// # Panics
-/// If the table of parameters lacks it, which a test shows.
+/// If it is missing in the parameter table; a test checks that.
 pub fn table() -> &'static Parameter {
     Parameter::named("T1").expect("the coordinate table is in the table of parameters")
 }
 
-/// Where axes have numbers: the columns that mean the same on every machine.
-const NUMBERED_COLUMNS: [&str; 5] = ["point", "ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
+/// Columns with axis numbers instead of letters: they have the same meaning on every machine.
+const NUMBERED_COLUMNS: [&str; 5] = ["name", "ax1_mm", "ax2_mm", "ax3_mm", "ax4_mm"];
 
-/// The names of axes 1 to 4: the letters that the pendant shows, or numbers.
-pub type Names = [&'static str; 4];
-
-/// The columns of axes with these names.
-pub fn columns_by(names: Names) -> Vec<Column> {
-    let axes = names.iter().map(|name| Column::number(format!("{name}_mm")));
-    std::iter::once(Column::number(COLUMNS[0])).chain(axes).collect()
-}
-
-/// The columns of so many axes (1 to 4).
+/// The columns for 1 to 4 axes.
 pub fn columns(axes: usize) -> Vec<Column> {
     COLUMNS[..=axes.clamp(1, 4)].iter().map(|name| Column::number(*name)).collect()
 }
 
 /// Points as cells under all columns.
-pub fn rows(points: &[Setting]) -> Vec<Vec<String>> {
+fn rows(points: &[Setting]) -> Vec<Vec<String>> {
     let cells = |point: &Setting| {
         table().layout.fields.iter().zip(&point.values).map(|(field, value)| plain(field, value)).collect()
     };
     points.iter().map(cells).collect()
 }
 
-/// Points as CSV, with columns that mean the same on every machine.
+/// Formats points as CSV, with axis numbers as columns.
 pub fn write_numbered(points: &[Setting]) -> String {
     let columns = NUMBERED_COLUMNS.map(Column::number);
     sheet::write(Dialect::COMMAS, &columns, &rows(points))
 }
 
-/// Points as CSV, with the columns of so many axes (1 to 4).
+/// Formats points as CSV, with the columns of 1 to 4 axes.
 pub fn write(points: &[Setting], axes: usize) -> String {
     sheet::write(Dialect::COMMAS, &columns(axes), &rows(points))
 }
 
-/// A point of a file: its number and coordinates; none where the file has no column for it.
+/// A point of a file; `None` for a coordinate without a column.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Partial {
-    /// Its number, then x, y, z and r.
+    /// Number, then x, y, z and r.
     pub values: Vec<Option<Value>>,
-    /// Its line, from 1.
+    /// Line, from 1.
     pub line: usize,
 }
 
 impl Partial {
-    /// The number of the point.
+    /// Number of the point.
     pub fn row(&self) -> i32 {
         match self.values.first() {
             Some(Some(Value::Number(row))) => *row,
@@ -77,7 +68,7 @@ impl Partial {
     }
 }
 
-/// Points in a CSV file, for a controller of so many axes (1 to 4): each once, all coordinates in range.
+/// Parses points from CSV for a controller with 1 to 4 axes. Each must be unique and have all coordinates in range.
 pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
     let points = read_wanted(bytes, COLUMNS, axes, &COLUMNS[..=axes.clamp(1, 4)])?;
     let whole = |Partial { values, line }: Partial| {
@@ -85,14 +76,6 @@ pub fn read(bytes: &[u8], axes: usize) -> Result<Vec<Placed>, Vec<Finding>> {
         (Setting { parameter: table(), values }, line)
     };
     Ok(points.into_iter().map(whole).collect())
-}
-
-/// The same of a file that may have some of the coordinates: one of them at least, of axes with these names. Numbers are
-/// understood on every machine.
-pub fn read_partial(bytes: &[u8], names: Names) -> Result<Vec<Partial>, Vec<Finding>> {
-    let columns = names.map(|name| format!("{name}_mm"));
-    let names = [COLUMNS[0], &columns[0], &columns[1], &columns[2], &columns[3]];
-    read_wanted(bytes, names, COLUMNS.len() - 1, &COLUMNS[..1])
 }
 
 /// The points that a file has, in its order; coordinates may be missing.
@@ -117,7 +100,7 @@ pub fn numbers(bytes: &[u8]) -> Result<Vec<i32>, Vec<Finding>> {
     if findings.errors() == 0 { Ok(points) } else { Err(findings.into_errors()) }
 }
 
-/// Whether the columns of a file have the numbers of axes.
+/// Whether the columns of a file have axis numbers.
 fn has_numbers(bytes: &[u8]) -> bool {
     let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
     String::from_utf8_lossy(head).to_ascii_lowercase().contains(NUMBERED_COLUMNS[1].trim_end_matches("1_mm"))
@@ -129,7 +112,7 @@ fn read_wanted(bytes: &[u8], names: [&str; 5], axes: usize, wanted: &[&str]) -> 
     let expected = format!("the first line is {}", names[..=axes.clamp(1, 4)].join(","));
     let mut points = Vec::new();
     if let Some(sheet) = Sheet::read(bytes, &expected, &mut findings) {
-        // A row that is wrong hides no other mistake.
+        // An error in one row does not hide errors in others.
         let before = findings.errors();
         let places = sheet.columns(&names, &expected, &mut findings);
         for (name, _) in names.iter().zip(&places).filter(|(name, place)| place.is_none() && wanted.contains(name)) {
@@ -214,7 +197,7 @@ mod tests {
 
     #[test]
     fn what_is_written_reads_back() {
-        let text = "point,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,-0.05\n999,-8000.00,8000.00,0.00,0.00\n";
+        let text = "name,x_mm,y_mm,z_mm,r_mm\n1,100.00,20.00,0.00,-0.05\n999,-8000.00,8000.00,0.00,0.00\n";
         assert_eq!(rows(text, 4), [(1, vec![10_000, 2000, 0, -5], 2), (999, vec![-800_000, 800_000, 0, 0], 3)]);
         let points: Vec<Setting> = read(text.as_bytes(), 4).unwrap().into_iter().map(|(point, _)| point).collect();
         assert_eq!(write(&points, 4), text);
@@ -225,57 +208,40 @@ mod tests {
 
     #[test]
     fn columns_and_quotes_are_free() {
-        let text = "\u{FEFF}\r\nY_mm , \"x_mm\", point\r\n\r\n1.5,\"2\", 7\r\n,,\r\n";
+        let text = "\u{FEFF}\r\nY_mm , \"x_mm\", name\r\n\r\n1.5,\"2\", 7\r\n,,\r\n";
         assert_eq!(rows(text, 2), [(7, vec![200, 150, 0, 0], 4)]);
     }
 
     #[test]
-    fn some_coordinates_may_be_left_out() {
-        let points = read_partial(b"comment;point;y_mm\nabove;7;1,5\n", ["x", "y", "z", "r"]).unwrap();
-        let value = |number| Some(Value::Number(number));
-        assert_eq!(points, [Partial { values: vec![value(7), None, value(150), None, None], line: 2 }]);
-        let error = |text: &str| read_partial(text.as_bytes(), ["x", "y", "z", "r"]).unwrap_err()[0].message.clone();
-        assert_eq!(error("point,comment\n1,a\n"), "there is no column of coordinates");
-        assert_eq!(error("x_mm\n1\n"), "column point is missing");
-    }
-
-    #[test]
     fn columns_are_those_of_the_letters_or_of_the_numbers() {
-        let value = |number| Some(Value::Number(number));
-        let letters = ["x", "z", "y", "r"];
-        let read = |text: &str| read_partial(text.as_bytes(), letters).unwrap()[0].values.clone();
-        assert_eq!(read("point,z_mm,y_mm\n7,1,2\n"), [value(7), None, value(100), value(200), None]);
-        assert_eq!(read("point,ax3_mm\n7,1\n"), [value(7), None, None, value(100), None]);
-        assert!(read_partial(b"point,ax3_mm,z_mm\n7,1,2\n", letters).is_err());
-        assert_eq!(columns_by(letters)[2].name, "z_mm");
-        let points = super::read(b"point,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
+        let points = read(b"name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n", 4).unwrap();
         let points: Vec<Setting> = points.into_iter().map(|(point, _)| point).collect();
-        assert_eq!(write_numbered(&points), "point,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n");
+        assert_eq!(write_numbered(&points), "name,ax1_mm,ax2_mm,ax3_mm,ax4_mm\n1,1.00,2.00,3.00,4.00\n");
     }
 
     #[test]
     fn an_axis_that_is_there_needs_its_column() {
         assert_eq!(
-            errors("point,x_mm,y_mm,z_mm\n1,0,0,0"),
+            errors("name,x_mm,y_mm,z_mm\n1,0,0,0"),
             ["line 1, column 21: error: column r_mm is missing \
-                 (the first line is point,x_mm,y_mm,z_mm,r_mm)"]
+                 (the first line is name,x_mm,y_mm,z_mm,r_mm)"]
         );
-        assert_eq!(rows("point,x_mm\n1,0.01", 1), [(1, vec![1, 0, 0, 0], 2)]);
+        assert_eq!(rows("name,x_mm\n1,0.01", 1), [(1, vec![1, 0, 0, 0], 2)]);
     }
 
     #[test]
     fn mistakes_are_told_with_their_place() {
         for (text, expected) in [
-            ("", "line 1, column 1: error: the file is empty (the first line is point,x_mm,y_mm,z_mm,r_mm)"),
+            ("", "line 1, column 1: error: the file is empty (the first line is name,x_mm,y_mm,z_mm,r_mm)"),
             (
-                "point,x_mm,y_mm,z_mm,r_mm,x_mn\n",
+                "name,x_mm,y_mm,z_mm,r_mm,x_mn\n",
                 "line 1, column 27: error: there is no column 'x_mn' (did you mean x_mm?)",
             ),
-            ("point,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 27: error: column X_MM is there twice"),
+            ("name,x_mm,y_mm,z_mm,r_mm,X_MM\n", "line 1, column 27: error: column X_MM is there twice"),
         ] {
             assert_eq!(errors(text), [expected]);
         }
-        let header = "point,x_mm,y_mm,z_mm,r_mm\n";
+        let header = "name,x_mm,y_mm,z_mm,r_mm\n";
         for (row, expected) in [
             ("1,0,0,0", "line 2, column 1: error: 4 cells under 5 columns"),
             ("1,0,0,0,", "line 2, column 9: error: r_mm is empty (without its column, a coordinate stays as it is)"),

@@ -1,4 +1,4 @@
-//! What parameters, points and programs have in common as TOML: values with names, and the place of every mistake.
+//! Shared TOML reader of parameters, points and programs: named values, with positions for errors.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use crate::nearest::nearest;
 use crate::source;
 use crate::toyo::field::{Field, Form, Value};
 
-/// What fields are, for people: `, mm` or `; J Japanese, E English`.
+/// Comment that describes fields: `, mm` or `; J Japanese, E English`.
 pub(super) fn comment(fields: &[Field]) -> String {
     let mut comment = String::new();
     let mut told: Vec<String> = Vec::new();
@@ -32,7 +32,7 @@ pub(super) fn comment(fields: &[Field]) -> String {
     comment
 }
 
-/// Values of fields: one alone, several as a table.
+/// Formats values: one field as a plain value, several as an inline table.
 pub(super) fn toml(fields: &[Field], values: &[Value]) -> String {
     let quoted = |field: &Field, value: &Value| match value {
         Value::Number(_) => plain(field, value),
@@ -50,7 +50,7 @@ pub(super) fn toml(fields: &[Field], values: &[Value]) -> String {
     text
 }
 
-/// Reads a TOML file; `walk` finds what is in it. Without any errors, what it returns counts.
+/// Parses TOML and passes the document to `walk`. Its result is returned only without errors.
 pub(super) fn read<T>(bytes: &[u8], walk: impl FnOnce(&mut Reading<'_>, &Table) -> T) -> Result<T, Vec<Finding>> {
     let mut findings = Findings::default();
     let text = source::lines(bytes, &mut findings).join("\n");
@@ -69,14 +69,14 @@ pub(super) fn read<T>(bytes: &[u8], walk: impl FnOnce(&mut Reading<'_>, &Table) 
     found.filter(|_| reading.findings.errors() == 0).ok_or_else(|| reading.findings.into_errors())
 }
 
-/// A TOML file that is being read.
+/// State of a TOML reader.
 pub(super) struct Reading<'t> {
     places: Places<'t>,
     pub findings: Findings,
 }
 
 impl Reading<'_> {
-    /// The values of all fields of something that is called `name`.
+    /// The values of all fields of the entry `name`.
     pub fn values(&mut self, name: &str, fields: &'static [Field], item: &Item, at: SourceLocation) -> Vec<Value> {
         match (fields, item, item.as_table_like()) {
             ([field], Item::Value(value), _) => self.value(field, value).into_iter().collect(),
@@ -114,7 +114,7 @@ impl Reading<'_> {
         values
     }
 
-    /// One value. Numbers are taken as they are written, so that no decimal is lost.
+    /// One value. Numbers are read from their text, so that no decimal is lost.
     fn value(&mut self, field: &Field, value: &Toml) -> Option<Value> {
         let span = value.span().unwrap_or_default();
         let text = match value {
@@ -129,7 +129,7 @@ impl Reading<'_> {
         read.map_err(|message| self.findings.error(self.places.place(&span), message, None)).ok()
     }
 
-    /// There is nothing of that name.
+    /// Reports an unknown name.
     pub fn unknown(
         &mut self,
         at: SourceLocation,
@@ -144,16 +144,16 @@ impl Reading<'_> {
         self.findings.error(at, format!("there is no {what} '{}'", name.escape_debug()), near);
     }
 
-    /// Where a key of a table is.
+    /// Position of a key.
     pub fn key(&self, table: &dyn TableLike, name: &str) -> SourceLocation {
         self.places.place(&table.key(name).and_then(toml_edit::Key::span).unwrap_or_default())
     }
 }
 
-/// Lines of a text, to find places quickly.
+/// Line index of a text, for fast position lookup.
 struct Places<'t> {
     text: &'t str,
-    /// Where each line begins.
+    /// Start of each line.
     lines: Vec<usize>,
 }
 

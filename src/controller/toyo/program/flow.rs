@@ -1,10 +1,11 @@
-//! What runs after what: ends that are missing, steps that nothing reaches, jumps that only the controller knows.
+//! Control-flow checks of a program: missing end, unreachable steps, jumps with a target that is only known at run
+//! time.
 
 use super::tags::Resolved;
 use crate::findings::{Findings, SourceLocation};
 use crate::toyo::table::{Instruction, Op};
 
-/// Tells what looks wrong in a program without errors. A part of one may go on behind its last step.
+/// Reports suspicious control flow of a valid program. A part of a program may continue after its last step.
 pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings) {
     let steps = || resolved.program.steps.iter().zip(&resolved.places).map(|(step, at)| (step.instruction, *at));
     let mut before: Option<Op> = None;
@@ -15,7 +16,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
             let word = jump.row().word;
             findings.warning(at, format!("nothing reaches this step: {word} before it never goes on here"), None);
         }
-        // NOPs behind a jump are padding, and so is an END.
+        // A NOP or END after a jump is padding.
         if !(row.op == Op::Nop && before.is_some_and(never_goes_on)) {
             before = Some(row.op);
         }
@@ -40,7 +41,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
     limits(steps(), findings);
 }
 
-/// Instructions that not every controller has, each told once.
+/// Reports instructions that only some controllers have, each once.
 fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, findings: &mut Findings) {
     let mut told: Vec<Op> = Vec::new();
     for (row, at) in steps.filter(|(row, _)| !row.only_on.is_empty()) {
@@ -51,12 +52,12 @@ fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, fi
     }
 }
 
-/// Whether the next step is never what runs next.
+/// Whether the next step never runs directly after it.
 const fn never_goes_on(op: Op) -> bool {
     matches!(op, Op::Jmp | Op::Ret | Op::End | Op::Loop)
 }
 
-/// Whether the tag that it jumps to is not written in it.
+/// Whether the jump target is not in the instruction.
 const fn jumps_somewhere(op: Op) -> bool {
     matches!(op, Op::Brac | Op::Psel)
 }

@@ -1,4 +1,4 @@
-//! One instruction as a person writes it: short numbers, any case, labels for tags.
+//! Parser of one instruction in user notation: short numbers, any case, labels instead of tag numbers.
 
 use crate::findings::{Findings, SourceLocation};
 use crate::names::{Found, Names};
@@ -8,34 +8,33 @@ use crate::toyo::names;
 use crate::toyo::table::instructions::INSTRUCTIONS;
 use crate::toyo::table::{Instruction, Op};
 
-/// What stands in the place of a tag.
+/// Target of a jump.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Target {
     Number(i32),
     Label(String),
 }
 
-/// A tag that an instruction names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TagUse {
-    /// Which of its values.
+    /// Index of the value.
     pub index: usize,
     pub target: Target,
     pub at: SourceLocation,
 }
 
-/// An instruction whose tags are still to be found.
+/// An instruction with unresolved tags.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Draft {
     pub instruction: &'static Instruction,
     pub values: Vec<Value>,
     pub tags: Vec<TagUse>,
-    /// Where it begins.
+    /// Start of the instruction.
     pub at: SourceLocation,
 }
 
 impl Draft {
-    /// In the place of an instruction that has errors, so that steps still count.
+    /// Placeholder for an instruction with errors, so that the step count stays right.
     pub fn empty(at: SourceLocation) -> Self {
         Self { instruction: Op::Nop.row(), values: Vec::new(), tags: Vec::new(), at }
     }
@@ -47,7 +46,7 @@ impl Draft {
     }
 }
 
-/// Text of a line, from a place on.
+/// Read position in a line.
 #[derive(Clone, Copy)]
 pub(super) struct Cursor<'t> {
     line: &'t str,
@@ -55,7 +54,7 @@ pub(super) struct Cursor<'t> {
     at: usize,
 }
 
-/// Whether a field names a tag that must be there.
+/// Whether a field refers to a tag that must exist.
 pub(super) fn is_tag(field: &Field) -> bool {
     matches!(field.name, "tag" | "then" | "else")
 }
@@ -66,7 +65,7 @@ pub(super) fn is_label(word: &str) -> bool {
         && word.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
-/// Reads one instruction, from the cursor to the end of the code; errors are told. `None` if there are some.
+/// Parses one instruction up to the end of the code. Returns `None` after an error, which is added to the findings.
 pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findings) -> Option<Draft> {
     let before = findings.errors();
     let at = cursor.place();
@@ -122,7 +121,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
     (findings.errors() == before).then_some(draft)
 }
 
-/// RSMV passes, whatever is printed (ambiguity R4).
+/// RSMV always passes its point, whatever is printed (ambiguity R4).
 fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
     if draft.instruction.op != Op::Rsmv {
         return;
@@ -135,7 +134,7 @@ fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
     }
 }
 
-/// A tag by its number or a label.
+/// Parses a tag number or label.
 fn target(field: &Field, text: &str) -> Result<Target, String> {
     if is_label(text) {
         return Ok(Target::Label(text.to_owned()));
@@ -149,8 +148,8 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     }
 }
 
-/// `MOVP pick`: an instruction with a point, of which only the name is written. The rest is the least that it may be:
-/// absolute, without a counter, at the axis speed chosen last, with a stop there.
+/// Parses a point instruction with only a name, `MOVP pick`. Defaults: absolute, no counter, the axis speed of the
+/// last SPD, stop at the point.
 fn read_short(
     row: &'static Instruction,
     cursor: &mut Cursor<'_>,
@@ -172,14 +171,14 @@ fn read_short(
     Some(Draft { instruction: row, values, tags: Vec::new(), at })
 }
 
-/// What is wrong with `MOVP pikc`, and a hint, where there is no such name.
+/// Message and hint for `MOVP pikc`, a short form with an unknown name.
 fn unknown_short(row: &Instruction, text: &str, known: &Names) -> Option<(String, String)> {
     let point = row.layout.fields.iter().find(|field| field.name == "point")?;
     let is_first = row.layout.fields.first()?.read(text).is_ok();
     (is_label(text) && !is_first).then(|| unknown_name(point, text, known)).flatten()
 }
 
-/// The number that a name stands for in a field; `None` where the text is no name of what the field numbers.
+/// Number of a named point, counter or timer; `None` if the field does not have this name.
 fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, String> {
     let Some((kind, _)) = names::of_field(field.name) else { return Ok(None) };
     match known.find(&[kind], text) {
@@ -192,7 +191,7 @@ fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, Stri
     }
 }
 
-/// The value of a field, for which a name may stand; what is wrong, and a hint, where it is none.
+/// Parses a field value or a name. An error has a message and perhaps a hint.
 fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (String, Option<String>)> {
     if let Some(number) = by_name(field, text, known).map_err(|message| (message, None))? {
         return Ok(Value::Number(number));
@@ -225,7 +224,7 @@ fn value(field: &Field, text: &str) -> Result<Value, FieldError> {
     })
 }
 
-/// The front of what was written, for a message.
+/// Start of a text, for a message.
 pub(super) fn shown(text: &str) -> &str {
     text.char_indices().nth(20).map_or(text, |(end, _)| &text[..end])
 }
@@ -233,14 +232,14 @@ pub(super) fn shown(text: &str) -> &str {
 const BLANKS: [char; 2] = [' ', '\t'];
 
 impl<'t> Cursor<'t> {
-    /// At the first character of a line that ends where its code does.
+    /// At the first character of a line without its comment.
     pub fn new(line: &'t str, number: usize) -> Self {
         let mut cursor = Self { line, number, at: 0 };
         cursor.skip();
         cursor
     }
 
-    /// What is left, without blanks around.
+    /// The rest of the line without surrounding blanks.
     pub fn rest(&self) -> &'t str {
         self.line[self.at..].trim_matches(BLANKS)
     }
@@ -249,7 +248,7 @@ impl<'t> Cursor<'t> {
         SourceLocation { line: self.number, column: self.line[..self.at].chars().count() + 1 }
     }
 
-    /// Takes what stands before the next colon, and the colon; nothing where there is none.
+    /// Takes the text before the next colon, and the colon; `None` without a colon.
     pub fn before_colon(&mut self) -> Option<&'t str> {
         let taken = self.line[self.at..].split_once(':')?.0;
         self.take(taken.len());
@@ -257,12 +256,12 @@ impl<'t> Cursor<'t> {
         Some(taken)
     }
 
-    /// Takes a word up to the next blank, and the blanks behind it.
+    /// Takes a word and the blanks after it.
     pub fn word(&mut self) -> &'t str {
         self.until(&BLANKS)
     }
 
-    /// Takes the text of a field: a comparison, the eight characters of a port, or what has no blank or comparison in it.
+    /// Takes the text of a field: a comparison, eight characters of a port, or text without blanks and comparisons.
     fn value(&mut self, field: &Field) -> &'t str {
         match field.form {
             Form::Word(words) if words.iter().all(|word| word.text.starts_with(['=', '<', '>'])) => {
@@ -291,7 +290,7 @@ impl<'t> Cursor<'t> {
         self.at += rest.len() - rest.trim_start_matches(BLANKS).len();
     }
 
-    /// Passes the words of a form before a field. A name needs no key before it: `JMPC TAG=next parts>=5`.
+    /// Skips the words before a field. A name needs no key: `JMPC TAG=next parts>=5`.
     fn pass_to(&mut self, words: &str, field: Option<&Field>, known: &Names) -> Result<(), String> {
         if let Some(field) = field
             && let Some((_, prefix)) = names::of_field(field.name)
@@ -305,7 +304,7 @@ impl<'t> Cursor<'t> {
         self.pass(words)
     }
 
-    /// Passes the words of a form, in any case; blanks stand where they like. Stays where something else stands.
+    /// Skips words, in any case and with any blanks. Does not move if others are found.
     fn pass(&mut self, words: &str) -> Result<(), String> {
         let start = self.at;
         for expected in words.chars().filter(|c| *c != ' ') {
@@ -321,7 +320,7 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// Goes back to where the words should be.
+    /// Moves back to the position of the missing words.
     fn missing(&mut self, start: usize, words: &str) -> String {
         self.at = start;
         let words = words.trim();

@@ -1,4 +1,4 @@
-//! A program of a controller as text, which [`check`](super::check) reads back.
+//! Listing of a controller's program as text, which [`check`](super::check) parses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -9,63 +9,63 @@ use crate::toyo::layout::Record;
 use crate::toyo::names;
 use crate::toyo::table::{Op, Parameter};
 
-/// Rows of tables, by the id of the table and their number; those that are there are explained in comments.
+/// Table rows by table id and number, for comments.
 pub type Rows = BTreeMap<(&'static str, i32), Record>;
 
 /// A program as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listing {
-    /// A step a line, with line ends.
+    /// One step per line, with line ends.
     pub text: String,
-    /// NOPs at the end that are left out.
+    /// Number of omitted NOPs at the end.
     pub left_out: usize,
 }
 
-/// How steps become text.
+/// Format of a listing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Style {
     /// Number of the first step.
     pub first: usize,
-    /// Whether NOPs at the end are left out, as nothing follows them.
+    /// Whether NOPs at the end are omitted, because no step follows.
     pub is_whole: bool,
-    /// Whether step numbers stand before the instructions.
+    /// Whether lines begin with step numbers.
     pub is_numbered: bool,
 }
 
-/// Stands behind a step that the manual does not list; it is as it came.
+/// Comment of a step that is not in the manual; the step is kept as received.
 pub const NOT_IN_MANUAL: &str = "not in the manual";
 
-/// Fields of instructions that name a row of a table, with its id.
+/// Instruction fields that refer to a table row, with the table id.
 const TABLES: [(&str, &str); 5] =
     [("point", "T1"), ("speed", "T2"), ("ramp", "T3"), ("group", "T4.S1"), ("table", "T5")];
 
-/// The rows of tables that instructions name, for [`listing`].
+/// The table rows that steps refer to, for [`listing`].
 pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
     steps.iter().flat_map(rows_of).map(|(_, key)| key).collect()
 }
 
-/// Stands in place of a step that was not read. It is no instruction, so a text with it is no program.
+/// Placeholder of a step that was not read. It is not an instruction, so the text is not a valid program.
 pub const NOT_READ: &str = "?";
 
-/// Why steps were not read, by their index. Such a step is [`not_read`] among the others.
+/// Reasons of steps that were not read, by index. Their records are [`not_read`].
 pub type Unread = BTreeMap<usize, String>;
 
-/// In place of a step that was not read.
+/// Record of a step that was not read.
 pub fn not_read() -> Record {
     Record::unlisted(NOT_READ)
 }
 
-/// The text of steps that are all known.
+/// Formats steps that were all read.
 pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
     listing_with(steps, &Unread::new(), style, rows)
 }
 
-/// The text of steps, of which some were not read: it is no program then, and says so at its head and where they are.
+/// Formats steps of which some were not read. The header and the places of these steps say so.
 pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows) -> Listing {
     listing_named(steps, unread, style, rows, &Names::default())
 }
 
-/// The same, with the names of points, counters and timers in comments.
+/// Formats steps, with the names of points, counters and timers in comments.
 pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Rows, known: &Names) -> Listing {
     let Style { first, is_whole, is_numbered } = style;
     let used = used(steps).max(steps.len().min(1));
@@ -80,7 +80,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     }
     for (index, (record, own)) in shown.iter().zip(&texts).enumerate() {
         if let Some(why) = unread.get(&index) {
-            // Those that follow each other for one reason are told together.
+            // Consecutive steps with the same reason have one comment.
             if index.checked_sub(1).and_then(|before| unread.get(&before)) != Some(why) {
                 let last = (index..end).take_while(|index| unread.get(index) == Some(why)).last().unwrap_or(index);
                 let _ = match (index + first, last + first) {
@@ -106,7 +106,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     Listing { text, left_out }
 }
 
-/// What an instruction names, as people know it.
+/// Comments about the objects of an instruction.
 fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows, known: &Names) -> Vec<String> {
     if !record.is_listed() {
         return vec![NOT_IN_MANUAL.to_owned()];
@@ -124,7 +124,7 @@ fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows, known: &N
     steps.chain(labels(record, known)).chain(rows).collect()
 }
 
-/// What people call the points, counters and timers of an instruction: `point 1 is pick`.
+/// Names of the points, counters and timers of an instruction: `point 1 is pick`.
 fn labels(record: &Record, known: &Names) -> impl Iterator<Item = String> {
     record.pairs().filter_map(|(field, _)| {
         let (kind, _) = names::of_field(field.name)?;
@@ -134,7 +134,7 @@ fn labels(record: &Record, known: &Names) -> impl Iterator<Item = String> {
     })
 }
 
-/// The rows of tables that an instruction names. Row 0 is none.
+/// The table rows of an instruction. Row 0 means none.
 fn rows_of(record: &Record) -> impl Iterator<Item = (&'static str, (&'static str, i32))> {
     TABLES.iter().filter_map(|(name, id)| {
         let row = record.number(name).filter(|row| *row > 0)?;
@@ -142,7 +142,7 @@ fn rows_of(record: &Record) -> impl Iterator<Item = (&'static str, (&'static str
     })
 }
 
-/// The values of a row, its number apart.
+/// The values of a row, without its number.
 fn values_of(id: &str, row: &Record) -> String {
     let own = Parameter::named(id).map_or(0, |parameter| parameter.key.fields.len());
     let values = row.pairs().skip(own).map(|(field, value)| {
@@ -152,13 +152,13 @@ fn values_of(id: &str, row: &Record) -> String {
     values.collect::<Vec<_>>().join(", ")
 }
 
-/// Steps up to the last that is no NOP.
+/// Number of steps up to the last that is not a NOP.
 pub fn used(steps: &[Record]) -> usize {
     let is_nop = |record: &Record| record.layout() == Op::Nop.row().layout;
     steps.iter().rposition(|record| !is_nop(record)).map_or(0, |last| last + 1)
 }
 
-/// The step of every tag, the first where it is there twice; the steps count from `first`.
+/// The step of each tag, counted from `first`; the first one of a duplicate.
 pub fn tags(steps: &[Record], first: usize) -> BTreeMap<i32, usize> {
     let mut tags = BTreeMap::new();
     for (index, record) in steps.iter().enumerate().filter(|(_, record)| record.layout() == Op::Tag.row().layout) {

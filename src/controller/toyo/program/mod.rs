@@ -1,4 +1,4 @@
-//! Sequential programs as text: one instruction a line, labels in place of tag numbers, comments.
+//! Text format of sequential programs: one instruction per line, labels instead of tag numbers, comments.
 //!
 //! ```text
 //! # Brings parts to the tray.
@@ -9,10 +9,10 @@
 //!       END
 //! ```
 //!
-//! A file is the program of one task; its first instruction is step 1. A label makes a TAG step, and stands wherever an
-//! instruction names a tag. Numbers may be short, words and keys in any case. Every instruction may begin with its step
-//! number, as lists of controllers have it. Names of points, counters and timers may stand for their numbers: `PT=pick`,
-//! `JMPC TAG=next parts>=5`; `MOVP pick` alone goes there in the simplest way.
+//! A file is the program of one task; its first instruction is step 1. A label creates a TAG step, and can replace
+//! any tag number. Numbers can be short, words and keys in any case. An instruction may begin with its step number,
+//! as in listings. Names of points, counters and timers can replace their numbers: `PT=pick`, `JMPC TAG=next
+//! parts>=5`. `MOVP pick` moves to a point with default values.
 
 mod flow;
 mod instruction;
@@ -37,22 +37,22 @@ pub use crate::findings::{Finding, Severity};
 use crate::findings::{Findings, SourceLocation};
 use crate::names::Names;
 
-/// Most steps that the tasks have together (TO 2-4, E22).
+/// Maximum total of steps of all tasks (TO 2-4, E22).
 pub const MOST_STEPS: usize = 5000;
 
-/// A program that can be sent.
+/// A valid program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Program {
-    /// In their order; the first is step 1.
+    /// Steps in order, from step 1.
     pub steps: Vec<Step>,
-    /// In the order of their steps.
+    /// Labels, in the order of their steps.
     pub labels: Vec<Label>,
 }
 
-/// A step of a program. All its values are in range.
+/// A step of a program, with all values in range.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
-    /// Its row in the table.
+    /// Row of the instruction table.
     pub instruction: &'static Instruction,
     /// Its values.
     pub record: Record,
@@ -60,12 +60,12 @@ pub struct Step {
     pub line: usize,
 }
 
-/// A name for a tag.
+/// A name of a tag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
-    /// As written where it is defined.
+    /// Spelling of the definition.
     pub name: String,
-    /// Number of the tag, 1 to 999.
+    /// Tag number, 1 to 999.
     pub tag: i32,
     /// Its TAG step, from 1.
     pub step: usize,
@@ -73,46 +73,46 @@ pub struct Label {
     pub line: usize,
 }
 
-/// Result of a text.
+/// Result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// The program, unless a finding is an error.
+    /// The program; `None` after an error.
     pub program: Option<Program>,
-    /// What there is to say, in the order of the text.
+    /// All findings, in text order.
     pub findings: Vec<Finding>,
 }
 
 impl Step {
-    /// As it is sent after WSTX and its number, to the character: `MOVP a PT=001 CN=00 S V=00 POST`.
+    /// Text in the protocol after WSTX and step number: `MOVP a PT=001 CN=00 S V=00 POST`.
     pub fn text(&self) -> String {
         self.record.written()
     }
 }
 
 impl Checked {
-    /// The findings that keep the text from being a program.
+    /// The errors among the findings.
     pub fn errors(&self) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(|finding| finding.severity == Severity::Error)
     }
 }
 
-/// Steps among others of a task.
+/// A part of the program of a task.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
-    /// Its first step, from 1.
+    /// First step, from 1.
     pub first: usize,
-    /// Tags of the steps around it; `None` if they are not known, and any may be there.
+    /// Tags outside the part; `None` if they are unknown.
     pub tags: Option<BTreeSet<i32>>,
 }
 
-/// What a file is that is no program at all, and what takes it.
+/// Detects a file of another type, and the command for it.
 fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
     let first = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).find(|line| !line.is_empty())?;
     let first = first.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(first).to_ascii_lowercase();
     let cells = first.split(|byte| matches!(byte, b',' | b';' | b'\t')).count();
-    let names_point = first.starts_with(b"point") || first.starts_with(b"\"point");
-    if names_point && cells > 1 {
-        return Some(("this is a CSV file of points, not a program", "`toyo point set --from FILE` writes points"));
+    let is_table = first.starts_with(b"name") || first.starts_with(b"\"name");
+    if is_table && cells > 1 {
+        return Some(("this is a CSV file of points, not a program", "`toyo point restore FILE` writes points"));
     }
     if first.starts_with(b"[parameters]") || first.starts_with(b"# parameters of a toyo") {
         return Some(("this is a file of parameters, not a program", "`toyo param restore FILE` writes parameters"));
@@ -120,13 +120,12 @@ fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
     None
 }
 
-/// Reads the text of a program for a task with so many steps (TO 2-4, E22).
+/// Parses a program for a task of `room` steps (TO 2-4, E22).
 pub fn check(text: &[u8], room: usize) -> Checked {
     check_named(text, room, None, &Names::default())
 }
 
-/// Reads a whole [`listing`], in which steps may be marked as not in the manual: those are kept as they are, and are never
-/// sent.
+/// Parses a whole [`listing`]. Steps that are marked as not in the manual are kept and never sent.
 pub fn check_kept(text: &[u8], room: usize) -> Checked {
     let mut kept = BTreeMap::new();
     let mut lines = Vec::new();
@@ -149,17 +148,17 @@ pub fn check_kept(text: &[u8], room: usize) -> Checked {
     checked
 }
 
-/// Reads the text of a part of a program, for which there is room for so many steps.
+/// Parses a part of a program, with room for `room` steps.
 pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
     check_named(text, room, Some(part), &Names::default())
 }
 
-/// Reads the text of a program, or of a part of one, in which these names may stand.
+/// Parses a program or a part of one, with these names.
 pub fn check_named(text: &[u8], room: usize, part: Option<&Part>, names: &Names) -> Checked {
     check_known(text, room, part, names, &Known::default())
 }
 
-/// The same with what is known of the controller, against which the steps are checked as well.
+/// Parses a program, and also checks it against known data of the controller.
 pub fn check_known(text: &[u8], room: usize, part: Option<&Part>, names: &Names, known: &Known) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {

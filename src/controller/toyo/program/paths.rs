@@ -1,6 +1,7 @@
-//! What a controller would stop at that only shows when the steps are followed: subroutines, arcs, points, MVM groups.
+//! Checks along all execution paths: subroutines, arcs, points, MVM groups.
 //!
-//! Whether a condition holds is not known, so both ways are followed, and what is found may never happen: a warning.
+//! The results of conditions are unknown, so both branches are followed. A finding may never happen at run time, so
+//! it is a warning.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,19 +12,19 @@ use crate::findings::{Findings, SourceLocation};
 use crate::toyo::layout::Record;
 use crate::toyo::table::Op;
 
-/// What is known of the controller that a program is for.
+/// Known data of a controller.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Known {
-    /// The points that are there; `None` where they are not known.
+    /// Existing points; `None` if unknown.
     pub points: Option<BTreeSet<i32>>,
 }
 
-/// Subroutines that may be called in each other; the simulator has as many, and the manual has no number.
+/// Maximum nesting of subroutines in the simulator; the manual has no limit.
 const DEPTH: usize = 16;
-/// The last internal port that a controller shows (TO 2-8, MNIN; ambiguity R18).
+/// The last internal port that can be read (TO 2-8, MNIN; ambiguity R18).
 const INTERNAL_PORTS: i32 = 4;
 
-/// Tells what goes wrong on some way through the steps. Of a part, the steps around it are not known.
+/// Reports problems on any path. The steps outside a part are unknown.
 pub(super) fn check(resolved: &Resolved, is_part: bool, known: &Known, findings: &mut Findings) {
     let steps = &resolved.program.steps;
     let mut finder = Finder { steps, places: &resolved.places, findings };
@@ -42,7 +43,7 @@ struct Finder<'a> {
     findings: &'a mut Findings,
 }
 
-/// What runs after a step: the index of the next one, that of a jump, that of a call.
+/// Successors of a step: the index of the next step, of a jump target, of a subroutine.
 #[derive(Default)]
 struct Ways {
     next: bool,
@@ -61,7 +62,7 @@ impl Finder<'_> {
         self.steps.get(step).map(|step| step.instruction.op)
     }
 
-    /// Points that are not there, and rows that cannot be.
+    /// Missing points, and invalid rows.
     fn points(&mut self, known: &Known) {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
@@ -77,7 +78,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Internal ports that a controller does not show.
+    /// Internal ports that a controller cannot report.
     fn ports(&mut self) {
         for index in 0..self.steps.len() {
             let port = self.steps[index].record.number("port").filter(|port| *port > INTERNAL_PORTS);
@@ -111,7 +112,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Groups that nothing begins: their counters stand at 0, which is no place.
+    /// Groups without MINI: their counters are 0, which is not a position.
     fn groups(&mut self) {
         let group = |step: &Step, op: Op| (step.instruction.op == op).then(|| step.record.number("group")).flatten();
         let begun: BTreeSet<i32> = self.steps.iter().filter_map(|step| group(step, Op::Mini)).collect();
@@ -127,7 +128,7 @@ impl Finder<'_> {
         }
     }
 
-    /// A RET that no call leads to, subroutines that call themselves, and too many in each other.
+    /// RET without a call, recursion, and calls nested too deep.
     fn subroutines(&mut self) {
         let records: Vec<Record> = self.steps.iter().map(|step| step.record.clone()).collect();
         let tags: BTreeMap<i32, usize> = listing::tags(&records, 0);
@@ -164,7 +165,7 @@ impl Finder<'_> {
         }
     }
 
-    /// The steps that can be reached from a step without a call or a return, and the calls among them.
+    /// Steps that are reachable without a call or return, and the calls among them.
     fn reach(&self, from: usize, tags: &BTreeMap<i32, usize>) -> Reach {
         let mut reach = Reach::default();
         let mut open = vec![from];
@@ -198,24 +199,24 @@ impl Finder<'_> {
 
 const STOPS_AT_TABLE: &str = "a controller stops with error B6";
 
-/// What can be reached.
+/// Result of a reachability search.
 #[derive(Default)]
 struct Reach {
     steps: BTreeSet<usize>,
-    /// Calls, with the steps that they call.
+    /// Calls and their first steps.
     calls: BTreeMap<usize, usize>,
 }
 
-/// How deep calls go.
+/// Nesting of calls.
 #[derive(Clone, Copy)]
 enum Depth {
-    /// So many in each other.
+    /// Number of levels.
     Calls(usize),
-    /// Round and round, by this call.
+    /// Recursion through this call.
     Endless(usize),
 }
 
-/// How many subroutines are called in each other from one on.
+/// Nesting of calls from one subroutine on.
 fn depth(
     entry: usize,
     bodies: &BTreeMap<usize, Reach>,

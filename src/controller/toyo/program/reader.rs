@@ -1,4 +1,4 @@
-//! The lines of a file: step numbers, labels, instructions, comments.
+//! Line parser of a program: step numbers, labels, instructions, comments.
 
 use super::instruction::{Cursor, Draft, TagUse, Target, is_label, read as read_instruction, shown};
 use super::listing::NOT_READ;
@@ -8,25 +8,25 @@ use crate::names::Names;
 use crate::source;
 use crate::toyo::table::Op;
 
-/// What the lines of a file say.
+/// Parsed lines of a file.
 #[derive(Debug, Default)]
 pub(super) struct Read {
     pub steps: Vec<Draft>,
     pub labels: Vec<Defined>,
 }
 
-/// A label where it is defined.
+/// Definition of a label.
 #[derive(Debug)]
 pub(super) struct Defined {
     pub name: String,
-    /// The number that it was given.
+    /// Explicit tag number.
     pub tag: Option<i32>,
     /// Its TAG step, from 0.
     pub step: usize,
     pub at: SourceLocation,
 }
 
-/// Reads the lines, for a task or a part of it that has room for so many steps.
+/// Parses the lines of a task or of a part, with room for `room` steps.
 pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names, findings: &mut Findings) -> Read {
     let room = room.min(MOST_STEPS);
     let lines = source::lines(text, findings);
@@ -44,7 +44,7 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names,
             let message = format!("step {} is one too many: the task has room for {}", start + room, start + room - 1);
             reader.findings.error(at, message, Some("the machine parameter E22 (task-steps) says how many".to_owned()));
         }
-        // Beyond all that any task can have, there is nothing to learn.
+        // No task can have more steps.
         if after > MOST_STEPS {
             break;
         }
@@ -57,11 +57,11 @@ pub(super) fn read(text: &[u8], room: usize, part: Option<&Part>, names: &Names,
 
 struct Reader<'f> {
     read: Read,
-    /// The number of the first step.
+    /// Number of the first step.
     start: usize,
-    /// The same, as the file has it.
+    /// Number of the first step in the file.
     first: Option<usize>,
-    /// What may stand for points, counters and timers.
+    /// Names of points, counters and timers.
     names: &'f Names,
     findings: &'f mut Findings,
 }
@@ -104,7 +104,7 @@ impl Reader<'_> {
         self.read.steps.push(draft);
     }
 
-    /// Whether all characters of the code may be there; a file that is not UTF-8 was told already.
+    /// Whether the code has only valid characters. A file that is not UTF-8 was reported before.
     fn is_clean(&mut self, code: &str, line: usize) -> bool {
         let Some((column, wrong)) = code.chars().enumerate().find(|(_, c)| is_wrong(*c)) else { return true };
         if wrong != char::REPLACEMENT_CHARACTER {
@@ -115,7 +115,7 @@ impl Reader<'_> {
         false
     }
 
-    /// Numbers run on from the first one, whatever it is.
+    /// Step numbers must be consecutive, from any start.
     fn step_number(&mut self, cursor: &mut Cursor<'_>) {
         let at = cursor.place();
         let text = cursor.word();
@@ -130,7 +130,7 @@ impl Reader<'_> {
         if number != expected {
             let message = format!("step number {number} is expected to be {expected:04}: they run on by one");
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
-            // What follows is measured by this one.
+            // The following numbers are compared with this one.
             self.first = Some(number.saturating_sub(steps));
         } else if is_first && first != self.start {
             let start = self.start;
@@ -139,7 +139,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `name` or `name = 010`, behind which a colon was.
+    /// Parses a label before a colon: `name` or `name = 010`.
     fn label(&mut self, text: &str, at: SourceLocation) {
         let (name, tag) = match text.split_once('=') {
             Some((name, tag)) => (name.trim(), Some(tag.trim())),
@@ -162,12 +162,12 @@ impl Reader<'_> {
     }
 }
 
-/// Control characters, what is not UTF-8, and wide forms of ASCII.
+/// Control characters, invalid UTF-8, and full-width forms of ASCII.
 fn is_wrong(c: char) -> bool {
     (c.is_control() && c != '\t') || c == char::REPLACEMENT_CHARACTER || narrow(c).is_some()
 }
 
-/// The ASCII character that a wide one stands for, as Japanese keyboards have them.
+/// The ASCII form of a full-width character, as Japanese keyboards produce it.
 fn narrow(c: char) -> Option<char> {
     match c {
         '\u{3000}' => Some(' '),

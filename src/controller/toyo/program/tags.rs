@@ -1,4 +1,4 @@
-//! Which tag a label is, and whether every tag that is named is there, once.
+//! Resolution of labels to tags. Each tag must be defined exactly once.
 
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
@@ -11,16 +11,15 @@ use crate::nearest::nearest;
 use crate::toyo::field::Value;
 use crate::toyo::table::Op;
 
-/// A program with the places of its steps.
+/// A program with the positions of its steps.
 pub(super) struct Resolved {
     pub program: Program,
     pub places: Vec<SourceLocation>,
 }
 
-/// Greatest number of a tag.
 const MOST: usize = 999;
 
-/// Gives labels their tags, and steps the tags of their labels. Errors are told; the program counts only without any.
+/// Assigns tags to labels, and to the steps that use them. The program is valid only without errors.
 pub(super) fn resolve(read: Read, part: Option<&Part>, findings: &mut Findings) -> Resolved {
     let mut tags = Tags { part, ..Tags::default() };
     tags.collect(&read.labels, findings);
@@ -38,13 +37,13 @@ pub(super) fn resolve(read: Read, part: Option<&Part>, findings: &mut Findings) 
 
 #[derive(Default)]
 struct Tags<'p> {
-    /// In the order of the text.
+    /// Labels in text order.
     list: Vec<Known>,
-    /// By name in lower case.
+    /// Index by lower-case name.
     by_name: HashMap<String, usize>,
-    /// Where each tag is; there is no tag 0.
+    /// Position of each tag definition; tag 0 does not exist.
     defined: Vec<Option<SourceLocation>>,
-    /// What the text is a part of.
+    /// The part that the text belongs to.
     part: Option<&'p Part>,
 }
 
@@ -64,7 +63,7 @@ impl Known {
 }
 
 impl Tags<'_> {
-    /// Every label, once.
+    /// Collects the labels; each must be unique.
     fn collect(&mut self, labels: &[Defined], findings: &mut Findings) {
         for label in labels {
             match self.by_name.entry(label.name.to_lowercase()) {
@@ -86,7 +85,7 @@ impl Tags<'_> {
         }
     }
 
-    /// Numbers the labels that have none: from 1 on, past all numbers that the file names.
+    /// Numbers the labels without a tag: from 1, without any number in the file.
     fn number(&mut self, read: &Read, findings: &mut Findings) {
         let mut taken = vec![false; MOST + 1];
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
@@ -109,13 +108,13 @@ impl Tags<'_> {
         }
     }
 
-    /// Where tags are, each once.
+    /// Collects the positions of the tags; each must be unique.
     fn places(&mut self, steps: &[Draft], findings: &mut Findings) {
         self.defined = vec![None; MOST + 1];
         for draft in steps.iter().filter(|draft| draft.instruction.op == Op::Tag) {
             let Some(used) = draft.tags.first() else { continue };
             let Some(tag) = self.tag(&used.target) else { continue };
-            // A label that is there twice was told.
+            // A duplicate label was reported before.
             if self.known(&used.target).is_some_and(|known| known.at != draft.at) {
                 continue;
             }
@@ -134,7 +133,7 @@ impl Tags<'_> {
         }
     }
 
-    /// The step with its tags. A label that is not there is told here.
+    /// Inserts the tags of a step. Reports an undefined label.
     fn step(&mut self, draft: Draft, findings: &mut Findings) -> Option<Step> {
         let Draft { instruction, mut values, tags, at } = draft;
         for used in tags {
@@ -157,7 +156,7 @@ impl Tags<'_> {
         Some(Step { instruction, record: instruction.layout.record(values).ok()?, line: at.line })
     }
 
-    /// A jump uses its label, or needs its number.
+    /// A jump uses a label, or needs an existing tag number.
     fn jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
@@ -176,7 +175,7 @@ impl Tags<'_> {
         }
     }
 
-    /// The tags around a part, where they are known.
+    /// The tags outside a part, if known.
     fn around(&self) -> Option<&BTreeSet<i32>> {
         self.part.and_then(|part| part.tags.as_ref())
     }
@@ -193,7 +192,7 @@ impl Tags<'_> {
         self.by_name.get(&name.to_lowercase()).map(|index| &self.list[*index])
     }
 
-    /// Labels that nothing names. One with a number of its own may be named from elsewhere.
+    /// Reports unused labels. A label with an explicit number may be used from elsewhere.
     fn idle(&self, findings: &mut Findings) {
         for known in self.list.iter().filter(|known| !known.used && !known.given) {
             let hint = format!("if something outside names its tag, give it one: {}=10:", known.name);

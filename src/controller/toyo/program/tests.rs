@@ -12,7 +12,7 @@ fn findings(text: impl AsRef<[u8]>) -> Vec<String> {
     check(text.as_ref(), MOST_STEPS).findings.iter().map(ToString::to_string).collect()
 }
 
-/// The only finding of a text that has END behind it.
+/// The only finding of this line, followed by END.
 fn finding(line: &str) -> String {
     let found = findings(format!("{line}\nEND\n"));
     assert_eq!(found.len(), 1, "{found:?}");
@@ -272,7 +272,7 @@ fn a_listing_reads_back() {
         let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
         assert_eq!(program.steps.len(), steps.len() - 2);
         let same = program.steps.iter().zip(&steps).filter(|(step, record)| step.record == **record).count();
-        // But for RSMV, which passes.
+        // All except RSMV, which always passes.
         assert_eq!(same, program.steps.len() - 1);
     }
 }
@@ -289,7 +289,7 @@ fn what_is_not_in_the_manual_keeps_its_place_and_is_no_program() {
     assert!(program.steps[1].record.emit().is_err());
 }
 
-/// A value that a field may have.
+/// A valid value of a field.
 fn least(field: &crate::toyo::field::Field) -> crate::toyo::field::Value {
     use crate::toyo::field::{Form, Mask, Value};
     match field.form {
@@ -346,7 +346,7 @@ fn a_part_knows_the_tags_around_it() {
     let around = |tags: Option<&[i32]>| Part { first: 100, tags: tags.map(|tags| tags.iter().copied().collect()) };
     let part = |text: &str, tags| check_part(text.as_bytes(), 10, &around(tags));
     let text = "here: CAL TAG=5\nJMP TAG=here\n";
-    // Nothing is said of an end, which is elsewhere.
+    // No finding about a missing END, which is outside the part.
     let checked = part(text, Some(&[1, 2, 5]));
     assert_eq!(checked.findings, []);
     let program = checked.program.unwrap();
@@ -375,13 +375,13 @@ fn a_part_knows_the_tags_around_it() {
 
 #[test]
 fn a_file_of_something_else_is_told_in_one_sentence() {
-    let points = format!("point,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
+    let points = format!("name,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
     assert_eq!(
         findings(points),
-        ["line 1, column 1: error: this is a CSV file of points, not a program (`toyo point set --from FILE` writes \
+        ["line 1, column 1: error: this is a CSV file of points, not a program (`toyo point restore FILE` writes \
              points)"]
     );
-    assert_eq!(findings("\u{FEFF}\"Point\";\"x_mm\"\n").len(), 1);
+    assert_eq!(findings("\u{FEFF}\"Name\";\"x_mm\"\n").len(), 1);
     assert_eq!(findings("[parameters]\nP01 = 1\nP02 = 2\n").len(), 1);
-    assert_eq!(findings("point: NOP\nEND\n").len(), 1, "a label may be called so");
+    assert_eq!(findings("name: NOP\nEND\n").len(), 1, "a label may be called so");
 }

@@ -1,38 +1,38 @@
-//! Characters of a line as blocks.
+//! Framer: splits received characters into blocks.
 
 use crate::toyo::request::MOST;
 
-/// Finds blocks in what comes over a line, whatever else comes with them.
+/// Finds blocks among other characters.
 #[derive(Debug, Default)]
 pub struct Framer {
     text: String,
-    /// Characters since the last line end that belong to no block.
+    /// Characters outside of blocks since the last line end.
     stray: u32,
-    /// Why the block under way is none.
+    /// Why the current block is invalid.
     broken: Option<&'static str>,
 }
 
-/// What a line end concludes.
+/// Result of a line end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Framed {
-    /// A block, `@` included, without line end.
+    /// A block with `@`, without line end.
     Block(String),
-    /// Something that was a block once.
+    /// A damaged block.
     Garbled {
-        /// What is left of it.
+        /// Its text.
         text: String,
-        /// What is wrong with it.
+        /// The damage.
         why: &'static str,
     },
 }
 
 impl Framer {
-    /// Takes a character; returns what it concludes, and how many characters turned out to be noise.
+    /// Takes a character. Returns a completed block, and the number of noise characters.
     pub fn push(&mut self, byte: u8) -> (Option<Framed>, u32) {
         match byte {
             b'\r' | b'\n' => return (self.conclude(), 0),
             b'@' => {
-                // A block begins, whatever was before.
+                // `@` always begins a new block.
                 let noise = u32::try_from(self.text.len()).unwrap_or(u32::MAX);
                 self.clear();
                 self.text.push('@');
@@ -49,7 +49,7 @@ impl Framer {
         (None, 0)
     }
 
-    /// Forgets what came since the last line end.
+    /// Discards the characters since the last line end.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -59,7 +59,7 @@ impl Framer {
         match broken {
             Some(why) => Some(Framed::Garbled { text, why }),
             None if !text.is_empty() => Some(Framed::Block(text)),
-            // Two strays may be a line end that got damaged; more were a block without its beginning.
+            // Two stray characters may be a damaged line end; more are a block without its start.
             None if stray > 2 => Some(Framed::Garbled { text, why: "its beginning is missing" }),
             None => None,
         }

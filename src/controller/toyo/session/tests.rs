@@ -10,7 +10,7 @@ fn request(text: &str) -> Request {
     Request::parse(text).unwrap()
 }
 
-/// A line on which a request was just sent.
+/// A session that has just sent a request.
 fn sent(text: &str, is_repeatable: bool) -> LineSession {
     let mut line = LineSession::new(POLICY);
     line.begin(&request(text), is_repeatable);
@@ -36,7 +36,7 @@ fn an_answer_in_pieces_ends_the_exchange() {
 #[test]
 fn the_time_for_an_answer_begins_after_the_last_character() {
     let mut line = sent("@HOME", false);
-    // Seven characters of 1.146 ms, then a second.
+    // Seven characters of 1.146 ms, then one second.
     assert_eq!(line.poll(ms(1)), Step::Wait(Duration::from_micros(7 * 1146) + SECOND));
 }
 
@@ -79,11 +79,11 @@ fn a_no_in_a_later_read_takes_a_yes_back() {
         let ended = line.poll(ms(60));
         assert!(matches!(&ended, Step::Done(Ended::Unfitting { why, .. }) if why.contains("both")), "{ended:?}");
     }
-    // What runs is looked at without delay.
+    // After a program start the status is read without delay.
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
-    // What is read back anyway waits for nothing.
+    // A value that is read back needs no wait.
     let mut line = sent("@WOVR OV=050", false);
     line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
@@ -108,7 +108,7 @@ fn a_no_before_the_next_answer_takes_a_yes_back() {
     assert_eq!(order.text(), "@HOME");
     assert!(matches!(ended, Ended::Unfitting { why, .. } if why.contains("both")));
     assert!(line.take_refuted().is_none(), "it is told once");
-    // Nothing follows: it was the question that was refused, as by a controller that is busy.
+    // Nothing follows: the read was refused, as by a busy controller.
     let mut line = accepted();
     assert_eq!(line.poll(ms(80) + BEHIND_A_NO), answered("@NG"));
     assert!(line.take_refuted().is_none());
@@ -124,7 +124,7 @@ fn an_order_is_open_until_a_question_was_answered() {
             let now = ms(20) + QUIET;
             assert_eq!(line.poll(now), answered(first), "{order}");
             assert!(line.is_open());
-            // However long nobody looks at the line.
+            // The state holds for any time without a poll.
             let now = now + SECOND;
             line.begin(&request("@STAS SNO=0"), true);
             assert!(matches!(line.poll(now), Step::Send(_)));
@@ -137,7 +137,7 @@ fn an_order_is_open_until_a_question_was_answered() {
     }
 }
 
-/// An order as the manual prints it, with the least that its fields may be.
+/// An order in the form of the manual, with minimum values.
 fn example(row: &Row) -> String {
     let Some(layout) = row.requests.first() else { return format!("@{}", row.word) };
     let values = layout.fields.iter().map(|field| match field.form {
@@ -161,7 +161,7 @@ fn a_late_ok_is_not_the_answer_to_the_next_order() {
     line.begin(&request("@SVON"), false);
     let settled = waits(&mut line, deadline);
     assert_eq!(settled, deadline + SECOND);
-    // It comes, and passes; the next order goes out as soon as the line is quiet.
+    // The late answer is discarded; the next order is sent as soon as the line is quiet.
     line.handle(deadline + ms(300), b"@OK\r\n");
     assert_eq!(line.poll(deadline + ms(300)), Step::Wait(deadline + ms(350)));
     let now = deadline + ms(350);
@@ -183,7 +183,7 @@ fn an_exchange_that_is_given_up_is_still_owed_its_answer() {
 #[test]
 fn a_stop_does_not_wait_for_what_is_owed() {
     let mut line = sent("@SPST 0001", false);
-    // The answer to the start is still on its way, or lost: the stop goes out, and both answers are let pass.
+    // The answer to the start is pending or lost: the stop is sent at once, and both answers are discarded.
     assert_eq!(line.urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
     line.begin(&request("@STOP"), true);
     assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
@@ -247,7 +247,7 @@ fn a_line_that_echoes_is_no_controller() {
     line.handle(ms(5), b"@STAS SNO=0\r\n@STAS SNO=0 ST1=00 ST2=00\r\n");
     assert_eq!(line.poll(ms(5)), answered("@STAS SNO=0 ST1=00 ST2=00"));
     assert!(line.echoes());
-    // From now on the answer that looks like its request is known from the echo.
+    // The echo is known now, so an answer that equals its request is recognized.
     line.begin(&request("@TYPE AX1 RTYP=000001"), false);
     assert!(matches!(line.poll(ms(6)), Step::Send(_)));
     line.handle(ms(7), b"@TYPE AX1 RTYP=000001\r\n");
@@ -289,7 +289,7 @@ fn an_order_waits_for_a_quiet_line_but_not_for_ever_and_a_stop_not_at_all() {
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@SVON"), false);
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(50)));
-    // Something else comes again and again.
+    // Other blocks arrive continually.
     for at in (40..500).step_by(40) {
         line.handle(ms(at), b"@OK\r\n");
         assert!(matches!(line.poll(ms(at)), Step::Wait(_)), "{at}");
@@ -312,7 +312,7 @@ fn what_the_manual_does_not_list_is_believed_the_second_time() {
     line.handle(again + ms(10), b"@RPAR E17 E=I\r\n");
     assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=I"));
 
-    // Damage is another one each time.
+    // Damage differs each time.
     let mut line = sent("@RPAR E17", true);
     line.handle(ms(10), b"@RPAR E17 E=I\r\n");
     let again = waits(&mut line, ms(10));

@@ -1,4 +1,4 @@
-//! Steps as the interpreter runs them: typed once, when they are written.
+//! Compiled steps: an instruction is converted to a typed action once, when it is written.
 
 use std::time::Duration;
 
@@ -9,10 +9,9 @@ use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 use crate::toyo::table::{Instruction, Op};
 
-/// What a step does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Action {
-    /// NOP, TAG.
+    /// NOP and TAG.
     Nothing,
     End,
     Stop,
@@ -28,7 +27,7 @@ pub(super) enum Action {
         tag: usize,
         when: Test,
     },
-    /// BRAC: to the tag that a counter and a number add up to.
+    /// BRAC: to the tag with the sum of a counter and a number.
     Branch {
         counter: usize,
         offset: usize,
@@ -40,7 +39,7 @@ pub(super) enum Action {
         change: Change,
     },
     ClearCounters,
-    /// TIMP: the timer goes on from this many tenths of a second.
+    /// TIMP: the timer continues from this number of tenths of a second.
     StartTimer {
         timer: usize,
         tenths: u32,
@@ -71,7 +70,7 @@ pub(super) enum Action {
         at_least: bool,
         place: f64,
     },
-    /// CANS; task 0 is the own one.
+    /// CANS; task 0 is the task itself.
     CancelOutputs {
         task: usize,
     },
@@ -99,7 +98,7 @@ pub(super) enum Action {
     },
 }
 
-/// What may be so or not.
+/// Condition of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Test {
     Always,
@@ -124,55 +123,55 @@ pub(super) enum Change {
     Add(i32),
 }
 
-/// What later moves go by.
+/// Setting for later moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Choice {
     /// Row of the speed table.
     Speed(i32),
     /// Row of the acceleration table, for both ramps.
     Ramps(i32),
-    /// The same for the last ramp.
+    /// Row of the acceleration table, for the deceleration.
     LastRamp(i32),
-    /// Share of the last ramp during which the next move already runs.
+    /// Share of the deceleration during which the next move already runs.
     Pass(f64),
 }
 
-/// A move to one place.
+/// A move to one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a field of the instruction, or its kind")]
 pub(super) struct Move {
     pub(super) to: Target,
     pub(super) incremental: bool,
-    /// Whether the speed is that along the line, and not of the axis with the longest way.
+    /// Whether the speed is the path speed, instead of that of the axis with the longest way.
     pub(super) line: bool,
-    /// Row of the speed table; 0 is the one chosen last.
+    /// Row of the speed table; 0 is the last setting.
     pub(super) speed: i32,
     pub(super) pass: bool,
-    /// Whether the escape input ends it.
+    /// Whether the escape input ends the move.
     pub(super) escape: bool,
 }
 
-/// Where to.
+/// Target of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Target {
     Coordinates(Coordinates),
-    /// A row of the coordinate table, a counter added to its number (ambiguity R7).
+    /// A row of the coordinate table, with a counter added to its number (ambiguity R7).
     Row {
         point: i32,
         counter: usize,
     },
-    /// Where the last move began.
+    /// Start of the last move.
     Back,
-    /// The place of an MVM group, or its approach point.
+    /// Position of an MVM group, or its approach point.
     Group {
         group: i32,
         approach: bool,
     },
-    /// What the host supplies.
+    /// Coordinates from the host.
     Host,
 }
 
-/// TLMV: how the next move of an axis is limited.
+/// TLMV: torque limit of the next move of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a field of the instruction")]
 pub(super) struct Torque {
@@ -216,7 +215,7 @@ impl Compare {
     }
 }
 
-/// What an instruction does. All its values must be in range.
+/// Converts an instruction, whose values must be in range.
 pub(super) fn action(row: &Instruction, record: &Record) -> Action {
     let fields = Fields(record);
     match row.op {
@@ -259,7 +258,7 @@ pub(super) fn action(row: &Instruction, record: &Record) -> Action {
         Op::Mov => Action::Move(fields.motion(fields.coordinates())),
         Op::Movp | Op::Mve => Action::Move(Move { escape: row.op == Op::Mve, ..fields.motion(fields.row()) }),
         Op::Mvb => Action::Move(fields.motion(Target::Back)),
-        // A pass point always (ambiguity R4).
+        // Always a pass point (ambiguity R4).
         Op::Rsmv => Action::Move(Move { pass: true, ..fields.motion(Target::Host) }),
         Op::Mvm => {
             let group = Target::Group { group: fields.number("group"), approach: fields.is("target", "APPR") };
@@ -291,12 +290,12 @@ pub(super) fn action(row: &Instruction, record: &Record) -> Action {
     }
 }
 
-/// The index of an axis by its letter in the protocol: X is the first one.
+/// Axis index of a letter in the protocol: X is the first axis.
 pub(super) fn axis(letter: &str) -> Option<usize> {
     ["X", "Y", "Z", "R"].iter().position(|other| *other == letter)
 }
 
-/// Coordinates in 0.01 mm as mm.
+/// Converts 0.01 mm to mm.
 pub(super) fn place(hundredths: [i32; AXES]) -> Coordinates {
     hundredths.map(|value| f64::from(value) / 100.0)
 }
@@ -363,7 +362,7 @@ impl Fields<'_> {
         }
     }
 
-    /// By the fields there are: a comparison is with a counter or a timer, a mask is for a port.
+    /// Chosen by the fields: a comparison tests a counter or a timer, a mask a port.
     fn test(&self) -> Test {
         let any = self.is("logic", "OR");
         if let Some(word) = self.0.word("compare") {

@@ -1,30 +1,29 @@
-//! The axes: where they are, what moves them, and what stands in their way.
+//! Axes: positions, moves and obstacles.
 //!
-//! The commanded place is the goal of all moves, less what each of them still has to go. So moves add up: a pass point
-//! is rounded because the next move begins while the last one slows down.
+//! The commanded position is the goal of all moves minus the remaining way of each. So moves add up: a pass point is
+//! rounded because the next move begins during the deceleration of the last one.
 
 use super::motion::{AXES, Coordinates, Drive, Path, Segment, minus, plus};
 use crate::Now;
 
-/// Owner of moves that no task makes: JOG and return to origin by the host.
+/// Owner of moves without a task: JOG and return to origin by the host.
 pub(super) const HOST: usize = 4;
-/// Pieces of each stretch of steady acceleration in which a crossing is looked for.
+/// Number of sections of each phase of constant acceleration in the search for a crossing.
 const PIECES: u32 = 16;
-/// Halvings that find a crossing to the nanosecond, or nearly.
+/// Bisection steps, for a resolution of about 1 ns.
 const HALVINGS: u32 = 40;
-/// An axis within this many mm is in the same place.
+/// Tolerance in mm for equal positions.
 const SAME: f64 = 1e-6;
 
-/// An axis that pushes against something.
+/// An axis that pushes against an obstacle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Press {
-    /// When it is judged.
+    /// Time of the judgement.
     pub(super) due: Option<Now>,
-    /// Whether it was judged to be locked.
+    /// Whether the axis was judged as locked.
     pub(super) locked: bool,
 }
 
-/// All axes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Arm {
     goal: Coordinates,
@@ -32,17 +31,16 @@ pub(super) struct Arm {
     held: Vec<Held>,
     walls: [Option<Wall>; AXES],
     changes: u64,
-    /// The task that has each axis.
+    /// Owning task of each axis.
     pub(super) owners: [usize; AXES],
-    /// Whether an axis knows its origin.
+    /// Whether the origin of each axis is known.
     pub(super) known: [bool; AXES],
-    /// Coordinate at which each axis finds its origin.
+    /// Coordinate of the origin sensor of each axis.
     pub(super) sensors: Coordinates,
-    /// The return to origin under way.
+    /// The current return to origin.
     pub(super) homing: Option<Homing>,
 }
 
-/// A return to origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Homing {
     pub(super) owner: usize,
@@ -51,7 +49,7 @@ pub(super) struct Homing {
     pub(super) together: bool,
 }
 
-/// Something that an axis cannot get past.
+/// An obstacle of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wall {
     at: f64,
@@ -59,12 +57,12 @@ struct Wall {
     below: bool,
 }
 
-/// What is left of an owner's moves that were interrupted.
+/// Interrupted moves of an owner.
 #[derive(Debug, Clone)]
 struct Held {
     owner: usize,
     rests: Vec<Rest>,
-    /// Where they were going.
+    /// Their target.
     aim: Coordinates,
 }
 
@@ -76,12 +74,12 @@ struct Rest {
 }
 
 impl Arm {
-    /// Where the axes should be.
+    /// Commanded position.
     pub(super) fn commanded(&self, now: Now) -> Coordinates {
         self.segments.iter().fold(self.goal, |place, segment| plus(&place, &segment.rest(now)))
     }
 
-    /// Where the axes are.
+    /// Actual position.
     pub(super) fn position(&self, now: Now) -> Coordinates {
         let commanded = self.commanded(now);
         std::array::from_fn(|axis| match self.walls[axis] {
@@ -90,12 +88,12 @@ impl Arm {
         })
     }
 
-    /// Where all moves end.
+    /// End of all moves.
     pub(super) const fn goal(&self) -> Coordinates {
         self.goal
     }
 
-    /// Puts the axes somewhere, at rest.
+    /// Sets the position of the axes at rest.
     pub(super) fn put(&mut self, place: Coordinates) {
         self.touch();
         self.segments.clear();
@@ -103,7 +101,7 @@ impl Arm {
         self.goal = place;
     }
 
-    /// Gives the place where an axis rests another coordinate.
+    /// Assigns another coordinate to the current position of an axis.
     pub(super) fn rename(&mut self, axis: usize, coordinate: f64) {
         self.touch();
         if let Some(wall) = &mut self.walls[axis] {
@@ -112,29 +110,29 @@ impl Arm {
         self.goal[axis] = coordinate;
     }
 
-    /// Puts something in the way of an axis, or takes it away.
+    /// Sets or removes an obstacle.
     pub(super) fn set_wall(&mut self, axis: usize, at: Option<f64>, now: Now) {
         self.touch();
         let position = self.position(now)[axis];
         self.walls[axis] = at.map(|at| Wall { at, below: position <= at });
     }
 
-    /// What is in the way of an axis: its coordinate, and whether the axis is below it.
+    /// Coordinate of the obstacle of an axis, and whether the axis is below it.
     pub(super) fn wall(&self, axis: usize) -> Option<(f64, bool)> {
         self.walls[axis].map(|wall| (wall.at, wall.below))
     }
 
-    /// How often the moves have changed.
+    /// Number of changes of the moves.
     pub(super) const fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// Counts as a change of the moves: something else is to be watched.
+    /// Counts a change of the moves, so that crossings are searched again.
     pub(super) const fn touch(&mut self) {
         self.changes += 1;
     }
 
-    /// How far an axis pushes beyond what is in its way, in mm; 0 if it does not.
+    /// Distance in mm that an axis is commanded beyond its obstacle; 0 without contact.
     pub(super) fn push(&self, axis: usize, now: Now) -> f64 {
         self.walls[axis].map_or(0.0, |wall| wall.depth(self.commanded(now)[axis]).max(0.0))
     }
@@ -143,24 +141,23 @@ impl Arm {
         self.segments.iter().any(|segment| segment.ends() > now)
     }
 
-    /// Whether an owner has something to move.
+    /// Whether a move of the owner runs.
     pub(super) fn is_busy(&self, owner: usize, now: Now) -> bool {
         self.segments.iter().any(|segment| segment.owner == owner && segment.ends() > now)
     }
 
-    /// When the next move of anybody is over.
     pub(super) fn next_end(&self) -> Option<Now> {
         self.segments.iter().map(Segment::ends).min()
     }
 
-    /// Adds a move, which begins where the owner's last one ends.
+    /// Adds a move. It begins where the last move of the owner ends.
     pub(super) fn begin(&mut self, segment: &Segment) {
         self.touch();
         self.goal = plus(&self.goal, &segment.way());
         self.segments.push(*segment);
     }
 
-    /// Forgets moves that are over.
+    /// Removes finished moves.
     pub(super) fn settle(&mut self, now: Now) {
         if self.segments.iter().any(|segment| segment.ends() <= now) {
             self.segments.retain(|segment| segment.ends() > now);
@@ -168,38 +165,38 @@ impl Arm {
         }
     }
 
-    /// Slows all moves down; what pushes stops where it is. What is left is kept for [`Arm::resume`].
+    /// Decelerates all moves; an axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
     pub(super) fn brake(&mut self, now: Now) {
         (0..=HOST).for_each(|owner| self.brake_one(owner, now));
     }
 
-    /// The same with one owner's moves.
+    /// Decelerates the moves of one owner.
     pub(super) fn brake_one(&mut self, owner: usize, now: Now) {
         let pushes = (0..AXES).any(|axis| self.belongs(axis, owner) && self.push(axis, now) > 0.0);
         self.halt(owner, now, !pushes);
     }
 
-    /// Stops all moves where they are. What is left is kept for [`Arm::resume`].
+    /// Stops all moves at once. [`Arm::resume`] continues the rest.
     pub(super) fn freeze(&mut self, now: Now) {
         (0..=HOST).for_each(|owner| self.freeze_one(owner, now));
     }
 
-    /// The same with one owner's moves.
+    /// Stops the moves of one owner at once.
     pub(super) fn freeze_one(&mut self, owner: usize, now: Now) {
         self.halt(owner, now, false);
     }
 
-    /// Whether something is left of an owner's interrupted moves.
+    /// Whether interrupted moves of the owner exist.
     pub(super) fn is_held(&self, owner: usize) -> bool {
         self.held.iter().any(|held| held.owner == owner)
     }
 
-    /// Forgets what is left of an owner's interrupted moves.
+    /// Discards the interrupted moves of an owner.
     pub(super) fn drop_held(&mut self, owner: usize) {
         self.held.retain(|held| held.owner != owner);
     }
 
-    /// Goes on with an owner's interrupted moves; if the axes were moved since, straight to where they went.
+    /// Continues the interrupted moves of an owner. If the axes were moved since, they go straight to the target.
     pub(super) fn resume(&mut self, owner: usize, now: Now) {
         let Some(index) = self.held.iter().position(|held| held.owner == owner) else { return };
         let held = self.held.remove(index);
@@ -222,7 +219,7 @@ impl Arm {
         self.begin(&Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
     }
 
-    /// When an axis first is on the other side of what `test` tells apart than it is now.
+    /// The next time at which the result of `test` for an axis changes.
     pub(super) fn crossing(&self, axis: usize, test: impl Fn(f64) -> bool, now: Now) -> Option<Now> {
         let is = |at: Now| test(self.commanded(at)[axis]);
         let before = is(now);
@@ -246,7 +243,7 @@ impl Arm {
         owner == HOST || self.owners[axis] == owner
     }
 
-    /// Ends an owner's moves, by a ramp or at once. The goal becomes where they end then.
+    /// Ends the moves of an owner, with or without a ramp. Their end becomes the goal.
     fn halt(&mut self, owner: usize, now: Now, ramp: bool) {
         self.touch();
         let (position, aim) = (self.position(now), self.goal);
@@ -268,7 +265,7 @@ impl Arm {
             rests.push(Rest { path: segment.path, done, drive: segment.drive });
         }
         if !ramp {
-            // What pushed stays where it got to.
+            // An axis at an obstacle stays there.
             let commanded = self.commanded(now);
             for axis in 0..AXES {
                 if self.belongs(axis, owner) {
@@ -284,13 +281,13 @@ impl Arm {
 }
 
 impl Wall {
-    /// How far beyond it a coordinate is.
+    /// Distance of a coordinate beyond the obstacle.
     fn depth(self, coordinate: f64) -> f64 {
         if self.below { coordinate - self.at } else { self.at - coordinate }
     }
 }
 
-/// The moment between two at which something becomes so; it is so at the moment returned.
+/// Finds the time between two at which `so` becomes true.
 fn narrow(mut before: Now, mut after: Now, so: impl Fn(Now) -> bool) -> Now {
     for _ in 0..HALVINGS {
         let middle = before + after.saturating_sub(before) / 2;
@@ -328,7 +325,7 @@ mod tests {
     fn moves_add_up() {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
-        // 100 mm take 1.1 s; the second move begins with the last ramp.
+        // 100 mm take 1.1 s; the second move begins with the deceleration.
         to(&mut arm, [100.0, 100.0, 0.0, 0.0], ms(1000));
         assert!(near(arm.commanded(ms(1000)), [95.0, 0.0, 0.0, 0.0]));
         assert!(near(arm.commanded(ms(1050)), [98.75, 1.25, 0.0, 0.0]), "the corner is rounded");

@@ -1,4 +1,4 @@
-//! The memory card, whose transfers take their time.
+//! Memory card with timed transfers.
 
 use std::time::Duration;
 
@@ -9,13 +9,13 @@ use super::world::World;
 use crate::Now;
 use crate::toyo::table::Group;
 
-/// The slot.
+/// Card slot.
 #[derive(Debug, Clone)]
 pub(super) struct Card {
     inserted: bool,
     content: Option<Box<Content>>,
     transfer: Option<(Transfer, Now)>,
-    /// How long a transfer takes.
+    /// Duration of a transfer.
     time: Duration,
 }
 
@@ -26,7 +26,6 @@ enum Transfer {
 }
 
 impl Card {
-    /// A slot, with an empty card in it or none.
     pub(super) const fn new(inserted: bool, time: Duration) -> Self {
         Self { inserted, content: None, transfer: None, time }
     }
@@ -51,12 +50,12 @@ impl Card {
         self.transfer.map(|(_, at)| at)
     }
 
-    /// Puts what the controller holds on the card, as if it had been written before.
+    /// Copies the content of the controller to the card, as if it was written before.
     pub(super) fn fill(&mut self, content: &Content) {
         self.content = Some(Box::new(content.clone()));
     }
 
-    /// Starts to write; whether there is a card.
+    /// Starts a write; `false` without a card.
     pub(super) fn write(&mut self, now: Now) -> bool {
         if self.inserted {
             self.transfer = Some((Transfer::Write, now.saturating_add(self.time)));
@@ -64,7 +63,7 @@ impl Card {
         self.inserted
     }
 
-    /// Starts to read; whether there is a card with something on it.
+    /// Starts a read; `false` without a card with content.
     pub(super) fn read(&mut self, now: Now) -> bool {
         let is_readable = self.inserted && self.content.is_some();
         if is_readable {
@@ -73,7 +72,7 @@ impl Card {
         is_readable
     }
 
-    /// Leaves a transfer off.
+    /// Aborts a transfer.
     pub(super) fn forget(&mut self) {
         if self.is_writing() {
             self.content = None;
@@ -83,7 +82,7 @@ impl Card {
 }
 
 impl World {
-    /// Puts a card in, or takes it out: in mid-transfer that is an error.
+    /// Inserts or removes the card. Removal during a transfer is an error.
     pub(super) fn insert_card(&mut self, inserted: bool) {
         if !inserted && self.card.is_busy() {
             self.card.forget();

@@ -1,4 +1,4 @@
-//! The commands of the host: which may be done when, and what they answer.
+//! Host commands: permissions and replies.
 
 use super::operate::Refusal;
 use super::reply::{Fields, Reply};
@@ -7,7 +7,7 @@ use crate::toyo::field::{Mask, Value};
 use crate::toyo::request::{BlockError, Request};
 use crate::toyo::table::Command;
 
-/// Carries a block out; what to answer, without line end.
+/// Executes a block and returns the answer, without line end.
 pub(super) fn answer(world: &mut World, block: &str) -> String {
     let reply = parse(block).and_then(|request| {
         let reply = carry_out(world, &request)?;
@@ -26,7 +26,7 @@ pub(super) fn answer(world: &mut World, block: &str) -> String {
     })
 }
 
-/// A block that is exact to the character: this controller is stricter than the codec.
+/// Parses a block that must be exact to the character, stricter than the codec.
 fn parse(block: &str) -> Result<Request, String> {
     let text = |error: BlockError| error.to_string();
     let request = Request::parse(block).map_err(text)?;
@@ -118,7 +118,7 @@ fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
     }
 }
 
-/// Sets a robot type that is known; the answer is the one in force.
+/// Sets a known robot type. The answer is the current one.
 fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     if world.robot_types.contains(&robot_type) {
         world.memory.set_robot_type(axis, robot_type);
@@ -129,7 +129,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     Reply::Data(0, vec![Value::Number(number), Value::Number(world.memory.content.robot_types[axis])])
 }
 
-/// Sets the bits of a port, or one that M12 has assigned.
+/// Sets the bits of a port, or of the port that M12 assigns.
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
     if world.switches.machine_changed {
         return Err("parameter 2 was changed: power must be cycled first");

@@ -1,4 +1,4 @@
-//! What somebody at the machine can do: one line, one action.
+//! Console commands of an operator at the machine.
 
 use super::action::axis;
 use super::io::{Port, PortBit, Ports};
@@ -8,7 +8,7 @@ use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 
-/// The lines there are, as `help` shows them.
+/// Lines of `help`.
 const HELP: &[(&str, &str)] = &[
     ("input STATION/PORT/BIT on|off", "set an input: input 0/01/3 on"),
     ("input STATION/PORT BITS", "set all eight of a port: input 0/01 00000100"),
@@ -30,7 +30,6 @@ const HELP: &[(&str, &str)] = &[
     ("why", "say why the last command was refused"),
 ];
 
-/// A line of the console.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ConsoleLine {
     Help,
@@ -54,7 +53,7 @@ pub(super) enum ConsoleLine {
     BatteryLow(bool),
 }
 
-/// What does the same as a command of the host, by whoever stands there.
+/// A button with the same function as a host command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Button {
     Home,
@@ -63,12 +62,11 @@ pub(super) enum Button {
     Reset,
 }
 
-/// What rising edges of the bits of SY01 do.
+/// Functions of the rising edges of SY01.
 const BUTTONS: [(u8, Button); 4] =
     [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
 
 impl ConsoleLine {
-    /// Reads a line; the error says what is wrong with it.
     pub(super) fn parse(line: &str) -> Result<Self, String> {
         let words: Vec<&str> = line.split_whitespace().collect();
         Ok(match words.as_slice() {
@@ -101,7 +99,7 @@ impl ConsoleLine {
         })
     }
 
-    /// Carries the line out; the answer says what is now.
+    /// Executes the line and returns the output.
     pub(super) fn carry_out(self, world: &mut World) -> Result<String, String> {
         match self {
             Self::Help => return Ok(console::help(HELP)),
@@ -133,12 +131,11 @@ impl ConsoleLine {
     }
 }
 
-/// Reads a line and carries it out.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     ConsoleLine::parse(line)?.carry_out(world)
 }
 
-/// `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
+/// Parses `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
 fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
     let parts: Vec<&str> = place.split('/').collect();
     let existing = |station: &str, port: &str| {
@@ -189,12 +186,12 @@ fn press(world: &mut World, button: Button) -> Result<(), String> {
     Ok(())
 }
 
-/// While the host is on, nobody else starts anything (TO 2-2, HSON).
+/// While the host is ON, only the host can start programs (TO 2-2, HSON).
 fn host_off(world: &World) -> Result<(), String> {
     if world.switches.host { Err("the host is on: it alone starts programs".into()) } else { Ok(()) }
 }
 
-/// Sets an input port; edges of the servo input switch servo power (M21).
+/// Sets an input port. Edges of the servo input switch servo power (M21).
 fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
     let before = world.ports.is_on(world.settings.servo_on);
     world.ports.set_input(port, mask);
@@ -202,7 +199,7 @@ fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
     if servo == before { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
 }
 
-/// Sets bits of SY01. What a button cannot do now it does not do, and `why` tells.
+/// Sets bits of SY01. A button that cannot act now is ignored; `why` shows the reason.
 fn set_system(world: &mut World, mask: u8, on: bool) {
     let before = world.ports.system;
     world.ports.system = if on { before | mask } else { before & !mask };
@@ -214,7 +211,7 @@ fn set_system(world: &mut World, mask: u8, on: bool) {
     }
 }
 
-/// One line about everything that decides what is refused.
+/// One line with all states that decide about refusals.
 fn summary(world: &World) -> String {
     let always = [
         match world.kind() {
@@ -245,7 +242,7 @@ fn summary(world: &World) -> String {
     console::summary(&always, optional)
 }
 
-/// The summary, then error, place, tasks and outputs.
+/// Summary, error, position, tasks and outputs.
 fn state(world: &World) -> Vec<(String, String)> {
     let mut rows = vec![("now".to_owned(), summary(world))];
     if let Some(code) = world.errors.current() {
@@ -271,7 +268,7 @@ fn state(world: &World) -> Vec<(String, String)> {
     rows
 }
 
-/// The bit with a number, from 1.
+/// Mask of a bit number, from 1.
 fn mask(bit: &str) -> Result<u8, String> {
     let bit = u8::try_from(number(bit, 1..=8)?).unwrap_or(1);
     Ok(PortBit { port: Port { station: 0, port: 1 }, bit }.mask())

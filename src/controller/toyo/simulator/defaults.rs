@@ -1,4 +1,4 @@
-//! What is stored in a fresh controller. The manual prints samples, not initial values: these are plausible ones.
+//! Content of a new controller. The manual has samples but no initial values; these are plausible.
 
 use super::memory::TABLES;
 use crate::toyo::field::Value;
@@ -6,7 +6,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;
 
-/// Values by parameter, as on the line; they repeat until all fields have one.
+/// Values of parameters in the protocol format; a shorter list repeats.
 const VALUES: [(&str, &str); 76] = [
     ("M01", "0 01 0"),
     ("M02", "0 01 0"),
@@ -82,18 +82,18 @@ const VALUES: [(&str, &str); 76] = [
     ("U03", "005"),
     ("U21", "000.0"),
     ("U22", "000.00"),
-    // Tables with the same in every row.
+    // Tables with equal rows.
     ("T5", "3.00"),
     ("T4.S1", "001 000 000 000"),
 ];
 
-/// Speeds of the first rows, in 0.1 mm/s; the others have the last one.
+/// Speeds of the first rows in 0.1 mm/s; further rows have the last value.
 const SPEEDS: [i32; 10] = [100, 200, 500, 1000, 2000, 3000, 4000, 5000, 8000, 10_000];
 
-/// The values of a parameter, or of a row of a table.
+/// Values of a parameter, or of a row of a table.
 ///
 /// # Panics
-/// Never: every value is in its form, which a test shows.
+/// Never: a test checks the format of every value.
 pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
     match parameter.id {
         "T1" => return vec![Value::Number(0); 4],
@@ -101,7 +101,7 @@ pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
             let speed = SPEEDS.get(super::memory::index(row) - 1).or(SPEEDS.last());
             return speed.map(|speed| Value::Number(*speed)).into_iter().collect();
         }
-        // A tenth of a second a row.
+        // 0.1 s per row.
         "T3" => return vec![Value::Number(10 * row)],
         _ => {}
     }
@@ -119,16 +119,16 @@ fn table(id: &str) -> &'static str {
     }
 }
 
-/// All parameters that are no tables, in their order.
+/// All parameters without rows, in order.
 ///
 /// # Panics
-/// Never: there are as many values as fields.
+/// Never: the number of values equals the number of fields.
 pub(super) fn singles() -> Vec<Record> {
     let singles = PARAMETERS.iter().filter(|parameter| parameter.row().is_none());
     singles.map(|parameter| parameter.layout.record(values(parameter, 0)).expect("a value for every field")).collect()
 }
 
-/// All rows of the tables but T1, by id and row.
+/// All rows of the tables except T1, by id and row.
 pub(super) fn rows() -> impl Iterator<Item = ((&'static str, i32), Vec<Value>)> {
     let tables = PARAMETERS.iter().filter(|parameter| TABLES.contains(&parameter.id));
     tables.flat_map(|parameter| {

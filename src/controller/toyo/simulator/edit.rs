@@ -1,4 +1,4 @@
-//! Commands that change what is stored: parameters, steps, palletizing and easy programs.
+//! Commands that change the memory: parameters, steps, palletizing and easy programs.
 
 use super::memory::{Easy, NoRoom, TASKS};
 use super::reply::{Fields, Reply};
@@ -7,7 +7,6 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::Request;
 use crate::toyo::table::{Command, Group, Instruction, Pallet};
 
-/// Carries a change out.
 pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, String> {
     let fields = Fields(request.record());
     let task = world.current;
@@ -50,7 +49,7 @@ pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Reply, S
     Ok(Reply::Done)
 }
 
-/// The parameter, instruction or record in a request.
+/// The parameter, instruction or record of a request.
 fn content(request: &Request) -> Result<Record, String> {
     let content = request.content().map_err(|error| error.to_string())?;
     content.ok_or_else(|| "it has nothing to store".to_owned())
@@ -68,7 +67,6 @@ fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes a step of the current task.
 pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Result<(), String> {
     let name = record.layout().text.split(' ').next().unwrap_or_default();
     if !Instruction::named(name).is_some_and(|row| world.has(row.only_on)) {
@@ -79,7 +77,7 @@ pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Resu
     world.memory.set_step(task, step, record).map_err(|NoRoom| format!("task {} has {size} steps (E22)", task + 1))
 }
 
-/// MINT: what it clears of tasks is that of the current one, but for everything.
+/// MINT: except for `everything`, only data of the current task is cleared.
 fn clear(world: &mut World, what: &str) -> Result<(), NoRoom> {
     let task = world.current;
     let memory = &mut world.memory;

@@ -1,4 +1,4 @@
-//! Errors of the controller, and their history.
+//! Current error and error history.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 /// Entries of the history (TO 2-8, EHTR).
 const ENTRIES: usize = 99;
 
-/// Codes that something here raises (TO 4-1).
+/// Error codes of the simulator (TO 4-1).
 pub(super) mod code {
     use crate::toyo::simulator::motion::AXES;
 
@@ -34,13 +34,13 @@ pub(super) mod code {
     pub(in super::super) const TASK: u8 = 0xBA;
     pub(in super::super) const CARD: u8 = 0xE0;
 
-    /// Whether an error takes servo power away, and so stops everything at once: those of the machine and its axes, but for
-    /// soft limits.
+    /// Whether an error switches servo power off and stops everything at once: errors of machine and axes, except soft
+    /// limits.
     pub(in super::super) const fn takes_power(code: u8) -> bool {
         code < 0x20 || (code < 0x60 && !matches!(code & 0xF, 0x8 | 0x9))
     }
 
-    /// An error of an axis, by its second digit.
+    /// An axis error, by its second digit.
     fn of_axis(axis: usize, digit: u8) -> u8 {
         0x20 + 0x10 * u8::try_from(axis.min(AXES)).unwrap_or_default() + digit
     }
@@ -57,7 +57,7 @@ pub(super) mod code {
         of_axis(axis, 7)
     }
 
-    /// Beyond a soft limit while moving.
+    /// Beyond a soft limit during a move.
     pub(in super::super) fn beyond(axis: usize, upwards: bool) -> u8 {
         of_axis(axis, if upwards { 8 } else { 9 })
     }
@@ -67,27 +67,25 @@ pub(super) mod code {
         0xC0 + 2 * u8::try_from(axis.min(AXES)).unwrap_or_default() + u8::from(!upwards)
     }
 
-    /// The axis whose encoder an error is about: it does not know its origin any more.
+    /// The axis of an encoder error, whose origin is lost.
     pub(in super::super) fn loses_origin(code: u8) -> Option<usize> {
         let axis = usize::from(code >> 4).checked_sub(2).filter(|axis| *axis < AXES)?;
         matches!(code & 0xF, 0x6 | 0xC | 0xD).then_some(axis)
     }
 }
 
-/// An entry of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Entry {
-    /// An error, with the power-on time at which it came up.
+    /// An error and the power-on time of its occurrence.
     Error { code: u8, at: Duration },
-    /// Power went off.
+    /// Power off.
     PowerCut,
 }
 
-/// The error there is, and those that were.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     current: Option<u8>,
-    /// The newest first.
+    /// Newest first.
     history: VecDeque<Entry>,
 }
 
@@ -96,7 +94,7 @@ impl Errors {
         self.current
     }
 
-    /// The first error stays until it is cancelled; the history has all.
+    /// Raises an error. The first one stays current until it is cancelled; the history contains all.
     pub(super) fn raise(&mut self, code: u8, at: Duration) {
         self.current = self.current.or(Some(code));
         self.record(Entry::Error { code, at });

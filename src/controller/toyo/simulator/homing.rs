@@ -9,16 +9,16 @@ use super::watch::NEAR;
 use super::world::{Jog, World};
 use crate::Now;
 
-/// How far an axis backs off its origin sensor to come upon it slowly, in mm.
+/// Distance in mm from the origin sensor before the slow approach.
 const BACK_OFF: f64 = 1.0;
-/// Beyond this an axis cannot get, in mm: its mechanical ends.
+/// Mechanical end of an axis in mm.
 const END: f64 = 8000.0;
 
 impl World {
     /// Begins the return to origin of some axes, in the order of P07.
     ///
-    /// An axis that knows its origin first goes near it, fast (E13); then it seeks its sensor at middle speed, backs off,
-    /// and comes upon it slowly.
+    /// An axis with a known origin first moves close to it at high speed (E13). Then it searches the sensor at middle
+    /// speed, backs off, and approaches it slowly.
     pub(super) fn begin_homing(&mut self, owner: usize, axes: &[usize]) {
         let mut begin = self.now;
         for rank in 1..=4 {
@@ -37,7 +37,7 @@ impl World {
         self.arm.homing = Some(Homing { owner, axes, together: false });
     }
 
-    /// The moves of one axis; when they are over.
+    /// Adds the moves of one axis; returns their end.
     fn seek_origin(&mut self, owner: usize, axis: usize, begin: Now) -> Now {
         let [slow, middle, fast] = self.machine.origin[axis];
         let sensor = self.arm.sensors[axis];
@@ -62,7 +62,7 @@ impl World {
         at
     }
 
-    /// Ends a return to origin whose moves are over: the axes get their coordinates.
+    /// Completes a return to origin whose moves have ended: sets the coordinates of the axes.
     pub(super) fn end_homing(&mut self) {
         let Some(homing) = self.arm.homing else { return };
         if self.arm.is_busy(homing.owner, self.now) {
@@ -78,7 +78,7 @@ impl World {
         self.note(What::Origin);
     }
 
-    /// Leaves a return to origin off: it is done whole, or not at all. A task that goes on does it anew.
+    /// Aborts a return to origin, which cannot be continued. A task that continues repeats it.
     pub(super) fn leave_homing(&mut self, owner: usize) {
         if self.arm.homing.take_if(|homing| homing.owner == owner).is_some() {
             self.arm.drop_held(owner);
@@ -104,7 +104,7 @@ impl World {
         if inches && limit.is_some() {
             self.within(&[axis], &path, code::target)?;
         }
-        // At a limit there is nothing left to go.
+        // At a limit there is no way left.
         if limit.is_some_and(|(bound, _)| sign * (from[axis] - bound) > -NEAR) && !inches {
             return Err(code::beyond(axis, upwards));
         }
@@ -118,7 +118,7 @@ impl World {
         Ok(())
     }
 
-    /// Lets a JOG come to rest.
+    /// Decelerates a JOG.
     pub(super) fn end_jog(&mut self) {
         if self.jog.take().is_some() {
             self.arm.brake_one(HOST, self.now);
@@ -126,7 +126,7 @@ impl World {
         }
     }
 
-    /// Searches the origin of a drive axis and the one it drives, together.
+    /// Searches the origin of a drive axis together with its driven axis.
     pub(super) fn synchronize(&mut self, drive: usize) {
         let driven = self.machine.driver.iter().position(|driver| *driver == Some(drive));
         let axes: Vec<usize> = std::iter::once(drive).chain(driven).collect();

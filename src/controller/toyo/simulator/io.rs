@@ -4,16 +4,16 @@ use super::memory::index;
 use crate::toyo::field::Mask;
 use crate::toyo::layout::Record;
 
-/// Stations: the controller's own ports, and four more.
+/// Number of stations: the controller itself and four more.
 pub(super) const STATIONS: usize = 5;
 /// Input and output ports of the controller itself (TO 2-8).
 const OWN: (usize, usize) = (23, 18);
 /// Input and output ports of another station.
 const OTHER: (usize, usize) = (3, 2);
-/// Internal ports that an instruction can name with its one digit; MNIN shows the first four.
+/// Internal ports that fit the one digit of an instruction; MNIN reports the first four.
 const INTERNAL: usize = 9;
 
-/// A port, which need not exist.
+/// A port address, which may not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Port {
     pub(super) station: usize,
@@ -21,7 +21,6 @@ pub(super) struct Port {
     pub(super) port: usize,
 }
 
-/// A bit of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PortBit {
     pub(super) port: Port,
@@ -29,7 +28,7 @@ pub(super) struct PortBit {
     pub(super) bit: u8,
 }
 
-/// An output that waits for an axis (OUTS).
+/// Pending output at a position (OUTS).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OutputAt {
     pub(super) task: usize,
@@ -40,7 +39,6 @@ pub(super) struct OutputAt {
     pub(super) mask: Mask,
 }
 
-/// All ports.
 #[derive(Debug, Clone)]
 pub(super) struct Ports {
     inputs: [Vec<u8>; STATIONS],
@@ -58,7 +56,7 @@ impl Default for Ports {
 }
 
 impl PortBit {
-    /// Of a parameter, whose fields end in `suffix`; `None` if no bit is assigned.
+    /// From a parameter whose fields end in `suffix`; `None` if no bit is assigned.
     pub(super) fn from_record(record: &Record, suffix: &str) -> Option<Self> {
         let field = |name: &str| record.number(&format!("{name}{suffix}")).map(index);
         let bit = u8::try_from(field("bit")?).ok().filter(|bit| *bit > 0)?;
@@ -79,27 +77,27 @@ impl Ports {
         at(&self.outputs, port)
     }
 
-    /// Whether there is such an input port, which then has these bits.
+    /// Sets bits of an input port; `false` if it does not exist.
     pub(super) fn set_input(&mut self, port: Port, mask: Mask) -> bool {
         set(&mut self.inputs, port, mask)
     }
 
-    /// Whether there is such an output port, which then has these bits.
+    /// Sets bits of an output port; `false` if it does not exist.
     pub(super) fn set_output(&mut self, port: Port, mask: Mask) -> bool {
         set(&mut self.outputs, port, mask)
     }
 
-    /// Whether an input is on; one that does not exist is off.
+    /// Whether an input is on; `false` if it does not exist.
     pub(super) fn is_on(&self, bit: Option<PortBit>) -> bool {
         bit.is_some_and(|bit| self.input(bit.port).is_some_and(|port| port & bit.mask() != 0))
     }
 
-    /// The number that the bits of a port from this one on make.
+    /// Number in the bits of a port, from this bit on.
     pub(super) fn number(&self, bit: PortBit) -> u8 {
         self.input(bit.port).unwrap_or_default() >> (bit.bit - 1)
     }
 
-    /// Switches an output; one that does not exist takes no notice.
+    /// Switches an output; no effect if it does not exist.
     pub(super) fn switch(&mut self, bit: PortBit, on: bool) {
         let care = bit.mask();
         self.set_output(bit.port, Mask { care, bits: if on { care } else { 0 } });
@@ -109,7 +107,6 @@ impl Ports {
         self.outputs.iter_mut().for_each(|ports| ports.fill(0));
     }
 
-    /// All output ports.
     pub(super) fn outputs(&self) -> impl Iterator<Item = (Port, u8)> {
         self.outputs.iter().enumerate().flat_map(|(station, ports)| {
             ports.iter().enumerate().map(move |(port, bits)| (Port { station, port: port + 1 }, *bits))

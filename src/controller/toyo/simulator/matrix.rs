@@ -1,4 +1,4 @@
-//! Places in rows, columns and layers: MVM groups, and the matrices of palletizing programs.
+//! Matrix positions: MVM groups, and the matrices of palletizing programs.
 
 use super::errors::code;
 use super::memory::index;
@@ -6,11 +6,11 @@ use super::motion::{Coordinates, minus};
 use super::world::World;
 use crate::toyo::field::Value;
 
-/// Axes that a matrix lies in; the last axis turns.
+/// Linear axes of a matrix; the last axis rotates.
 const SPACE: usize = 3;
 const TURN: usize = 3;
 
-/// A corner, the corners in three directions, and how many places there are in each.
+/// A corner, the corners in three directions, and the number of positions in each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Matrix {
     pub(super) origin: Coordinates,
@@ -19,7 +19,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// The place of a piece; pieces count from 1. A direction with one place or none has no part in it.
+    /// Position of a piece, counted from 1. A direction with at most one position has no effect.
     pub(super) fn place(&self, piece: [u16; SPACE]) -> Result<Coordinates, u8> {
         let mut place = self.origin;
         for direction in 0..SPACE {
@@ -37,7 +37,7 @@ impl Matrix {
         Ok(place)
     }
 
-    /// The piece after a piece, the first direction counting fastest; `None` after the last.
+    /// The next piece; the first direction counts fastest. `None` after the last.
     pub(super) fn next(&self, mut piece: [u16; SPACE]) -> Option<[u16; SPACE]> {
         for direction in 0..SPACE {
             if piece[direction] < self.pieces[direction] {
@@ -51,7 +51,7 @@ impl Matrix {
 }
 
 impl World {
-    /// The place of an MVM group that its counters stand at.
+    /// Position of an MVM group at its counters.
     pub(super) fn place_of_group(&self, task: usize, group: i32, approach: bool) -> Result<Coordinates, u8> {
         let counters = self.counters_of(group);
         let mut place = self.group(task, group)?.place(counters.map(|counter| self.counters[counter]))?;
@@ -66,14 +66,14 @@ impl World {
         Ok(place)
     }
 
-    /// Puts the counters of a group to its first place.
+    /// Sets the counters of a group to the first position.
     pub(super) fn begin_group(&mut self, group: i32) {
         for counter in self.counters_of(group) {
             self.counters[counter] = 1;
         }
     }
 
-    /// Counts on in a group; whether there was another place. After the last one it is the first one's turn.
+    /// Advances the counters of a group. Returns `false` after the last position, with the counters at the first.
     pub(super) fn next_of_group(&mut self, group: i32) -> bool {
         let counters = self.counters_of(group);
         let matrix = Matrix {
@@ -88,7 +88,7 @@ impl World {
         next.is_some()
     }
 
-    /// A group; its corners are rows of the task's coordinate table.
+    /// A group; its corners are rows of the coordinate table of the task.
     fn group(&self, task: usize, group: i32) -> Result<Matrix, u8> {
         let pieces = self.pieces_of(group);
         let [origin, rows @ ..] = self.memory.content.numbers::<4>("T4.S1", group);

@@ -1,4 +1,4 @@
-//! What the controller keeps: parameters, tables, programs. And how often each cell of its EEPROM was written.
+//! Memory of the controller: parameters, tables, programs, and the write count of each EEPROM cell.
 
 use std::collections::BTreeMap;
 
@@ -11,33 +11,33 @@ use crate::toyo::table::parameters::PARAMETERS;
 use crate::toyo::table::{Group, Instruction, Op, Pallet, Parameter};
 
 pub(super) const TASKS: usize = 4;
-/// Rows of each task's coordinate table.
+/// Rows of the coordinate table of each task.
 pub(super) const POINTS: usize = 999;
-/// Steps of all tasks together (TO 2-4, E22).
+/// Maximum total of steps of all tasks (TO 2-4, E22).
 pub(super) const MOST_STEPS: usize = 5000;
-/// Steps of all tasks together beyond which there is no room for easy programs (TO 2-4, E22).
+/// Total of steps above which easy programs have no room (TO 2-4, E22).
 pub(super) const STEPS_WITH_EASY: usize = 2000;
 const PALLETS: usize = 16;
 pub(super) const EASY: usize = 8;
 const TAGS: usize = 1000;
-/// Tables but T1, of which every task has its own.
+/// Tables except T1, which exists per task.
 pub(super) const TABLES: [&str; 8] = ["T2", "T3", "T4.S1", "T4.S2", "T4.S3", "T4.S4", "T4.S5", "T5"];
 
-/// A memory cell that is written as a whole.
+/// A unit of EEPROM writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cell {
     /// A parameter by its id.
     Parameter(&'static str),
     /// A row of a table, by id and row.
     Row(&'static str, i32),
-    /// A row of a task's coordinate table; tasks count from 1.
+    /// A row of the coordinate table of a task.
     Point {
         /// 1 to 4.
         task: usize,
         /// 1 to 999.
         row: usize,
     },
-    /// A step of a task's program.
+    /// A step of the program of a task.
     Step {
         /// 1 to 4.
         task: usize,
@@ -53,41 +53,40 @@ pub enum Cell {
     },
     /// An easy program, 1 to 8.
     Easy(usize),
-    /// The override.
+    /// The speed override.
     Override,
 }
 
-/// How often cells were written.
+/// Write counts of EEPROM cells.
 #[derive(Debug, Clone, Default)]
 pub struct Wear {
     cells: BTreeMap<Cell, u64>,
     total: u64,
-    /// Writes that a cell takes; none for no limit.
+    /// Write endurance of a cell; `None` without a limit.
     limit: Option<u64>,
 }
 
 impl Wear {
-    /// Cells as new, that take so many writes.
     pub(super) fn new(limit: Option<u64>) -> Self {
         Self { limit, ..Self::default() }
     }
 
-    /// Takes all cells for new.
+    /// Resets all counts.
     pub(super) fn forget(&mut self) {
         *self = Self::new(self.limit);
     }
 
-    /// Writes of all cells.
+    /// Total number of writes.
     pub const fn total(&self) -> u64 {
         self.total
     }
 
-    /// Cells that were written, with how often.
+    /// Write counts of the cells.
     pub const fn cells(&self) -> &BTreeMap<Cell, u64> {
         &self.cells
     }
 
-    /// Counts a write; whether it takes.
+    /// Counts a write; `false` if the cell is worn out.
     fn write(&mut self, cell: Cell) -> bool {
         let count = self.cells.entry(cell).or_default();
         *count += 1;
@@ -96,11 +95,10 @@ impl Wear {
     }
 }
 
-/// It cannot be stored.
+/// The content does not fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct NoRoom;
 
-/// A step of a program.
 #[derive(Debug, Clone)]
 struct Step {
     record: Record,
@@ -115,7 +113,7 @@ pub(super) struct Easy {
     pub(super) end: i32,
 }
 
-/// All that a memory card holds as well.
+/// Content that a memory card also holds.
 #[derive(Debug, Clone)]
 pub(super) struct Content {
     axes: usize,
@@ -129,16 +127,14 @@ pub(super) struct Content {
     pub(super) robot_types: [i32; AXES],
 }
 
-/// The memory.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
     pub(super) content: Content,
     pub(super) wear: Wear,
-    /// Step of each tag by task; as they were when a program was started last.
+    /// Steps of the tags by task, as of the last program start.
     tags: Vec<Vec<u16>>,
 }
 
-/// Where a tag is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TagLookup {
     Step(usize),
@@ -170,7 +166,7 @@ impl Step {
 }
 
 impl Content {
-    /// As a controller with so many axes has it at first.
+    /// Initial content of a controller.
     pub(super) fn new(axes: usize, robot_type: i32) -> Self {
         let mut content = Self {
             axes,
@@ -191,7 +187,7 @@ impl Content {
         content
     }
 
-    /// Gives every task as many steps as E22 says; what is beyond is gone.
+    /// Gives each task the number of steps in E22; further steps are lost.
     fn fit_steps(&mut self) {
         let sizes = self.sizes();
         for (steps, size) in self.steps.iter_mut().zip(sizes) {
@@ -207,10 +203,10 @@ impl Content {
         std::array::from_fn(|task| if let Some(Value::Number(size)) = sizes.get(task) { index(*size) } else { 0 })
     }
 
-    /// A parameter that is no table.
+    /// A parameter without rows.
     ///
     /// # Panics
-    /// If there is none, which is a mistake of the caller.
+    /// If it does not exist: an error of the caller.
     pub(super) fn single(&self, id: &str) -> &Record {
         let place = PARAMETERS.iter().filter(|row| row.row().is_none()).position(|row| row.id == id);
         &self.singles[place.expect("a parameter of the table")]
@@ -223,12 +219,10 @@ impl Content {
         }
     }
 
-    /// The values of a row of a table.
     pub(super) fn row(&self, id: &'static str, row: i32) -> &[Value] {
         self.rows.get(&(id, row)).map_or(&[], Vec::as_slice)
     }
 
-    /// The numbers in a row of a table.
     pub(super) fn numbers<const N: usize>(&self, id: &'static str, row: i32) -> [i32; N] {
         let mut numbers = self.row(id, row).iter().filter_map(|value| match value {
             Value::Number(number) => Some(*number),
@@ -245,13 +239,11 @@ impl Content {
         number.checked_sub(1).and_then(|place| self.easy.get(place)).copied().unwrap_or_default()
     }
 
-    /// The values of a record of a palletizing program, as a record.
     pub(super) fn pallet(&self, program: usize, record: &Pallet) -> Option<Record> {
         let values = self.pallets.get(program.checked_sub(1)?)?.get(usize::from(record.number) - 1)?;
         record.layout.record(values.clone()).ok()
     }
 
-    /// Parameters of a group that differ.
     pub(super) fn differs(&self, other: &Self, group: Group) -> bool {
         let singles = PARAMETERS.iter().filter(|row| row.row().is_none());
         singles.zip(self.singles.iter().zip(&other.singles)).any(|(row, (a, b))| row.group() == group && a != b)
@@ -263,12 +255,12 @@ impl Memory {
         Self { content, wear: Wear::default(), tags: vec![Vec::new(); TASKS] }
     }
 
-    /// Steps that a task has.
+    /// Number of steps of a task.
     pub(super) fn size(&self, task: usize) -> usize {
         self.content.steps[task].len()
     }
 
-    /// Steps of a task up to the last one that does something.
+    /// Number of steps up to the last that is not a NOP.
     pub(super) fn used(&self, task: usize) -> usize {
         self.content.steps[task].iter().rposition(|step| !step.is_nothing()).map_or(0, |place| place + 1)
     }
@@ -281,7 +273,6 @@ impl Memory {
         self.content.steps[task].get(step.checked_sub(1)?).map(|step| &step.record)
     }
 
-    /// The numbers of steps that are tags, anew.
     pub(super) fn index_tags(&mut self) {
         for (tags, steps) in self.tags.iter_mut().zip(&self.content.steps) {
             tags.clear();
@@ -292,7 +283,7 @@ impl Memory {
         }
     }
 
-    /// Where a tag is, by the last [`Memory::index_tags`].
+    /// Step of a tag, by the last [`Memory::index_tags`].
     pub(super) fn tag(&self, task: usize, tag: usize) -> TagLookup {
         match self.tags[task].get(tag) {
             None | Some(0) => TagLookup::Nowhere,
@@ -301,7 +292,7 @@ impl Memory {
         }
     }
 
-    /// The first step with a tag, whatever follows.
+    /// The first step with a tag, also if there are more.
     pub(super) fn search(&self, task: usize, tag: usize) -> Option<usize> {
         self.content.steps[task].iter().position(|step| step.tag() == Some(tag)).map(|place| place + 1)
     }
@@ -320,7 +311,6 @@ impl Memory {
         parameter.layout.record(all).ok()
     }
 
-    /// Writes a parameter, or a row of a table.
     pub(super) fn set_parameter(
         &mut self,
         parameter: &'static Parameter,
@@ -362,7 +352,6 @@ impl Memory {
         Ok(())
     }
 
-    /// Writes a step.
     pub(super) fn set_step(&mut self, task: usize, step: usize, record: Record) -> Result<(), NoRoom> {
         let new = Step::new(record).ok_or(NoRoom)?;
         self.put(task, step, new)
@@ -376,7 +365,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Makes room for a step; the last one must be free.
+    /// Inserts a step; the last step must be empty.
     pub(super) fn insert_step(&mut self, task: usize, step: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         let last = self.content.steps[task].last().ok_or(NoRoom)?;
@@ -388,7 +377,7 @@ impl Memory {
         self.replace(task, step, rest)
     }
 
-    /// Takes steps out; the following move up.
+    /// Deletes steps; the following ones move up.
     pub(super) fn delete_steps(&mut self, task: usize, first: usize, last: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         if first > last || last > size {
@@ -399,7 +388,7 @@ impl Memory {
         self.replace(task, first, rest)
     }
 
-    /// Copies steps over others, also of another task.
+    /// Copies steps over others, also to another task.
     pub(super) fn copy_steps(&mut self, from: (usize, usize, usize), to: (usize, usize)) -> Result<(), NoRoom> {
         let (source, first, last) = from;
         let (task, top) = to;
@@ -410,7 +399,7 @@ impl Memory {
         self.replace(task, top, steps)
     }
 
-    /// Writes steps where they differ from what is there.
+    /// Writes only steps that differ.
     fn replace(&mut self, task: usize, top: usize, steps: Vec<Step>) -> Result<(), NoRoom> {
         for (number, step) in (top..).zip(steps) {
             if self.step(task, number) != Some(&step.record) {
@@ -452,7 +441,7 @@ impl Memory {
         }
     }
 
-    /// Sets a task's program to NOP.
+    /// Sets the program of a task to NOP.
     pub(super) fn clear_steps(&mut self, task: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         if size == 0 { Ok(()) } else { self.delete_steps(task, 1, size) }
@@ -486,7 +475,7 @@ impl Memory {
             .try_for_each(|number| self.set_easy(number, Easy::default()))
     }
 
-    /// Sets parameters and tables to what they were at first; whether any of parameter 2 differed.
+    /// Resets parameters and tables. Returns whether parameter 2 has changed.
     pub(super) fn clear_parameters(&mut self) -> Result<bool, NoRoom> {
         let fresh = Content::new(self.content.axes, 0);
         let machine = self.content.differs(&fresh, Group::Machine);
@@ -504,7 +493,7 @@ impl Memory {
         Ok(machine)
     }
 
-    /// Gives an axis a robot type, and all parameters 2 their first values.
+    /// Sets the robot type of an axis, and resets parameter 2.
     pub(super) fn set_robot_type(&mut self, axis: usize, robot_type: i32) {
         self.content.robot_types[axis] = robot_type;
         let machine = PARAMETERS.iter().filter(|row| row.group() == Group::Machine && row.id != "E22");
@@ -513,24 +502,24 @@ impl Memory {
     }
 }
 
-/// One task that has all axes, by their number (TO 2-4, E19).
+/// Values of E19 for one task with all axes, by their number.
 const ALL_IN_ONE: [&str; AXES] = ["1000", "2000", "4000", "5000"];
 
 fn combination() -> &'static Parameter {
     Parameter::named("E19").expect("E19 is in the table")
 }
 
-/// A number from a field as an index; negative ones are none.
+/// Index from a number; 0 for a negative one.
 pub(super) fn index(number: i32) -> usize {
     usize::try_from(number).unwrap_or_default()
 }
 
-/// The last row of a table, by the field with its number.
+/// Last row of a table, from the field of the row number.
 pub(super) fn last_row(field: &Field) -> i32 {
     if let Form::Number(number) = field.form { number.most } else { 0 }
 }
 
-/// A palletizing program with the least in every field.
+/// A palletizing program with minimum values.
 fn blank_pallet() -> [Vec<Value>; PALLETS] {
     std::array::from_fn(|place| {
         let record = &crate::toyo::table::palletizing::RECORDS[place];

@@ -1,52 +1,57 @@
-//! A simulated Toyo controller: it answers the host, moves, and runs programs, without a line and without a clock.
+//! Simulated Toyo controller: answers the host, moves, and runs programs, without a line and without a clock.
 //!
-//! Whoever has a line hands it bytes and the time, and sends what it answers. It shares the tables with the client, but is
-//! stricter: a block must be exact to the character, and nothing is done that the state does not allow. `why` on the
-//! console tells what was wrong with the last block that was refused.
+//! The caller passes bytes and the time, and sends the answers. The simulator shares the tables with the client but
+//! is stricter: a block must be exact to the character, and the state must allow the command. `why` on the console
+//! shows the reason of the last refusal.
 //!
-//! | module | holds |
+//! | module | content |
 //! |---|---|
-//! | `start`, `defaults` | the start state, from TOML; what a fresh controller has in it |
-//! | `world` | switches, power, errors, the passing of time |
-//! | `memory`, `settings`, `card` | what is stored, what parameters mean, the memory card |
-//! | `io`, `watch` | ports; what follows from where the axes are |
-//! | `motion`, `arm`, `moves`, `homing` | ramps and paths, axes, moves of programs, origin and JOG |
-//! | `action`, `task`, `run` | steps, tasks, the interpreter |
-//! | `matrix`, `routine` | places in rows; palletizing, easy programs, single points |
-//! | `commands`, `edit`, `monitor`, `operate`, `reply` | the host's commands |
-//! | `console`, `trace` | what somebody at the machine does, and sees |
+//! | `start`, `defaults` | start state from TOML; content of a new controller |
+//! | `world` | switches, power, errors, time |
+//! | `memory`, `settings`, `card` | memory, meaning of parameters, memory card |
+//! | `io`, `watch` | ports; effects of axis positions |
+//! | `motion`, `arm`, `moves`, `homing` | ramps and paths, axes, program moves, origin and JOG |
+//! | `action`, `task`, `run` | steps, tasks, interpreter |
+//! | `matrix`, `routine` | matrix positions; palletizing, easy programs, single points |
+//! | `commands`, `edit`, `monitor`, `operate`, `reply` | host commands |
+//! | `console`, `trace` | operator actions, and events |
 //!
-//! The manual tells what is sent, hardly what is done. Where it is silent, this was chosen:
+//! The manual specifies the protocol, but hardly the behaviour. These are the assumptions:
 //!
-//! - Coordinates X, Y, Z, R are axes 1 to 4, whatever their letters (E01) and whichever task has them.
-//! - A move takes the ramp times of T3 to the speed of T2, which override and E06 lower; a short move has the same
-//!   accelerations. With S the axis with the longest way has the speed, with T the line in the plane or in space of the
-//!   task; either way all axes start and stop together. There is no lag: a move is in position when it ends.
-//! - At a pass point the next move begins while the last one slows down: PASS tells during how much of that ramp. P05 is
-//!   not used.
-//! - SPST starts task 1; TSTR starts the others at their first step. A task ends at its END; programs are executed while
-//!   any task runs. Tags belong to their task. Calls go 16 deep. Every instruction takes `instruction_us`.
-//! - STOP, the pause input and STOP instructions bring moves to rest along their path; SPST 0000 lets them go on. After an
-//!   error the other tasks are over, and SPST 0000 goes on with task 1, first to where it was going. PPST and SESY go on
-//!   with what was stopped.
-//! - A start without origin is taken; its first move is error 61, without servo power 62. A target beyond a soft limit is
-//!   C0 to C7 before anything moves; a place that only the offset takes there, and a JOG that gets there, is 28 and so on.
-//! - MRSS supplies one move (RSMV) of a task, before or while it waits; V=00 is the row of the step.
-//! - TLMV limits the next move of its axis. At an obstacle the torque is at its limit; after the judgement time the axis is
-//!   locked. The move ends then, with TE or LE; on arrival with AE, or if neither TE nor LE is on.
-//! - An axis that pushes farther than E03 has overflow; one that pushes for a second without torque limit has overload.
-//! - MVB goes back to where the last move began. An arc is two steps; it turns in the first two axes of the task, or three.
-//! - OUTP inverts its bits again after its time. Timers count up from the value of TIMP. A counter below 0 or above 9999
-//!   is error A7. PSEL takes the bits of the port from that of M05 on as the number of a tag.
-//! - MVM counters count from 1; LOOP jumps to THEN while there are places left.
-//! - Palletizing goes above the place, down, runs the hand program, and up; source, then destination. An easy program
-//!   calls its START tag LOOP times, at least once, then its END tag.
-//! - After a return to origin the coordinate is that of P06. HOME puts programs back to their beginning.
-//! - JOG takes the first row of T3, and no override. M20, M22, M23, P03 to P05, P17, P18, E02, E04 and what is about cables
-//!   and fieldbuses is stored, and changes nothing.
-//! - Writing any of parameter 2 counts as a change; E22 changes the memory at once.
+//! - Coordinates X, Y, Z, R are axes 1 to 4, regardless of their letters (E01) and tasks.
+//! - A move reaches the speed of T2, lowered by override and E06, in the ramp times of T3. A short move has the same
+//!   accelerations. With S the speed is that of the axis with the longest way; with T it is the path speed in the
+//!   plane or space of the task. All axes start and stop together. There is no lag: a move is in position when it
+//!   ends.
+//! - At a pass point the next move begins during the deceleration of the last one. PASS is the share of that ramp.
+//!   P05 is not used.
+//! - SPST starts task 1; TSTR starts the others at their first step. A task ends at its END; programs are in
+//!   execution while any task runs. Tags belong to their task. Calls nest up to 16 levels. Every instruction takes
+//!   `instruction_us`.
+//! - STOP, the pause input and STOP instructions decelerate moves along their path; SPST 0000 continues. After an
+//!   error the other tasks have ended. SPST 0000 then continues with task 1, and completes its interrupted move
+//!   first. PPST and SESY continue a stopped program.
+//! - A start without origin is accepted; its first move is error 61, without servo power 62. A target beyond a soft
+//!   limit is error C0 to C7 before any motion. If only the offset or a JOG leads beyond the limit, it is error 28
+//!   and so on.
+//! - MRSS supplies one move (RSMV) of a task, before or while it waits. V=00 is the row of the step.
+//! - TLMV limits the next move of its axis. At an obstacle the torque is at its limit; after the judgement time the
+//!   axis is locked. The move ends then, with TE or LE. It ends on arrival with AE, or if neither TE nor LE is on.
+//! - An axis that pushes farther than E03 has an overflow; one that pushes for a second without torque limit has an
+//!   overload.
+//! - MVB returns to the start of the last move. An arc has two steps, and lies in the first two or three axes of the
+//!   task.
+//! - OUTP inverts its bits again after its time. Timers count up from the value of TIMP. A counter below 0 or above
+//!   9999 is error A7. PSEL reads the tag number from the bits of the port of M05, from its bit on.
+//! - MVM counters count from 1; LOOP jumps to THEN while positions are left.
+//! - Palletizing moves above the position, down, runs the hand program, and moves up: first at the source, then at
+//!   the destination. An easy program calls its START tag LOOP times, at least once, then its END tag.
+//! - After a return to origin the coordinate is P06. HOME resets programs.
+//! - JOG uses the first row of T3, without override. M20, M22, M23, P03 to P05, P17, P18, E02, E04 and parameters of
+//!   cables and fieldbuses are stored without effect.
+//! - Any write of parameter 2 counts as a change; E22 changes the memory at once.
 //! - SY01 of the inputs: origin, start, stop, reset; of the outputs: error, positioned, origin, ready.
-//! - Power off clears outputs, counters, timers, and with incremental encoders the origin.
+//! - Power off clears outputs, counters and timers, and with incremental encoders the origin.
 
 mod action;
 mod arm;
@@ -89,10 +94,10 @@ use super::request::MOST;
 use crate::Now;
 use crate::simulator::answers::{Answers, Busy};
 
-/// Answers that wait to be fetched.
+/// Limit of pending answers.
 const MAX_WAITING: usize = 64;
 
-/// A controller.
+/// A simulated controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {
     world: World,
@@ -101,34 +106,34 @@ pub struct Simulator {
     answers: Answers<Vec<u8>>,
 }
 
-/// A block that is coming in.
+/// A partly received block.
 #[derive(Debug, Clone, Default)]
 struct IncomingBlock {
-    /// From the `@` on; empty before it.
+    /// Bytes from the `@` on; empty before it.
     bytes: Vec<u8>,
-    /// Whether some of it was damaged.
+    /// Whether a part of it was damaged.
     damaged: bool,
 }
 
-/// How the controller is, at a glance.
+/// Overview of the controller state.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct State {
-    /// Coordinates of the four axes, in mm.
+    /// Axis coordinates in mm.
     pub position: [f64; 4],
-    /// Whether something is executed.
+    /// Whether a command or program runs.
     pub executing: bool,
-    /// Whether programs stand, and can go on.
+    /// Whether programs are stopped and can continue.
     pub paused: bool,
-    /// Whether all axes know their origin.
+    /// Whether the origin of all axes is known.
     pub origin: bool,
-    /// The error there is (TO 4-1).
+    /// Current error (TO 4-1).
     pub error: Option<u8>,
-    /// Whether the host is on.
+    /// Host ON.
     pub host: bool,
-    /// Whether servo power is on.
+    /// Servo power ON.
     pub servo: bool,
-    /// Of each task: whether it runs, and its step.
+    /// State of each task: whether it runs, and its step.
     pub tasks: [(bool, usize); 4],
 }
 
@@ -143,7 +148,7 @@ impl Simulator {
         }
     }
 
-    /// Takes bytes from the host, in any pieces. CR ends a block; a LF after it does not matter.
+    /// Takes bytes from the host, in any pieces. CR ends a block; a following LF is ignored.
     pub fn receive(&mut self, now: Now, bytes: &[u8]) {
         self.advance(now);
         for &byte in bytes {
@@ -151,33 +156,33 @@ impl Simulator {
                 b'@' => self.incoming = IncomingBlock { bytes: vec![byte], damaged: false },
                 b'\r' => self.take_block(),
                 b'\n' if self.incoming.bytes.is_empty() => {}
-                // What comes before a block is noise; of a block that is too long, enough is kept to refuse it.
+                // Characters before a block are noise. Of a block that is too long, enough is kept to refuse it.
                 _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MOST => {}
                 _ => self.incoming.bytes.push(byte),
             }
         }
-        // What the blocks began may have something due at once.
+        // The blocks may have started something that is due at once.
         self.advance(now);
     }
 
-    /// Tells of a parity or framing error: the block under way is not answered.
+    /// Reports a parity or framing error: the current block gets no answer.
     pub fn damaged(&mut self, now: Now) {
         self.advance(now);
         self.incoming.damaged = true;
     }
 
-    /// The next answer that is due at `now`, if any, with its line end.
+    /// Takes the next answer that is due at `now`, with its line end.
     pub fn transmit(&mut self, now: Now) -> Option<Vec<u8>> {
         self.advance(now);
         self.answers.take(now)
     }
 
-    /// When [`Simulator::transmit`] will have something, or something changes by itself.
+    /// Time of the next answer or internal event.
     pub fn wake(&self) -> Option<Now> {
         [self.answers.due(), self.world.next()].into_iter().flatten().min()
     }
 
-    /// Carries out one line of the console: `input 0/01/3 on`, `start`, `state`. What to print, or what is wrong.
+    /// Executes a console line: `input 0/01/3 on`, `start`, `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         let line = ConsoleLine::parse(line)?;
@@ -190,24 +195,24 @@ impl Simulator {
         answer
     }
 
-    /// Lets time pass until `now`, which never runs back.
+    /// Advances the time to `now`, which never runs backwards.
     pub fn advance(&mut self, now: Now) {
         let now = now.max(self.world.now);
         self.world.advance(now);
     }
 
-    /// Whether to keep what happens for [`Simulator::take_trace`].
+    /// Switches the recording of events for [`Simulator::take_trace`].
     pub fn record_trace(&mut self, on: bool) {
         self.world.trace.watch(on);
     }
 
-    /// What happened since the last time. Whoever watches takes it at every [`Simulator::wake`]; of what nobody takes, only
-    /// the last 65,536 events are kept.
+    /// Takes the events since the last call. An observer calls it at every [`Simulator::wake`]; only the last 65,536
+    /// events are kept.
     pub fn take_trace(&mut self) -> Vec<Event> {
         self.world.trace.take()
     }
 
-    /// How the controller is.
+    /// Current state.
     pub fn state(&self) -> State {
         let world = &self.world;
         State {
@@ -222,35 +227,35 @@ impl Simulator {
         }
     }
 
-    /// The bits of an output port, if there is one.
+    /// Bits of an output port, if it exists.
     pub fn output(&self, station: usize, port: usize) -> Option<u8> {
         self.world.ports.output(Port { station, port })
     }
 
-    /// A counter, 1 to 99.
+    /// Value of counter 1 to 99.
     pub fn counter(&self, number: usize) -> Option<u16> {
         self.world.counters.get(number).copied()
     }
 
-    /// A timer, 1 to 9, in 0.1 s.
+    /// Value of timer 1 to 9, in 0.1 s.
     pub fn timer(&self, number: usize) -> u32 {
         self.world.timer(number)
     }
 
-    /// A step of a task's program; tasks are 1 to 4, steps count from 1.
+    /// A step of a task program; tasks are 1 to 4, steps count from 1.
     pub fn step(&self, task: usize, step: usize) -> Option<&Record> {
         let task = task.checked_sub(1).filter(|task| *task < memory::TASKS)?;
         self.world.memory.step(task, step)
     }
 
-    /// How often memory cells were written.
+    /// Write counts of the memory cells.
     pub const fn wear(&self) -> &Wear {
         &self.world.memory.wear
     }
 
     fn take_block(&mut self) {
         let IncomingBlock { bytes, damaged } = std::mem::take(&mut self.incoming);
-        // Noise, and what a faulty line has made of a block, has no answer (TO 1-3).
+        // Noise and damaged blocks get no answer (TO 1-3).
         if damaged || bytes.is_empty() || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~')) {
             return;
         }

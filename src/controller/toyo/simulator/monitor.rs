@@ -1,4 +1,4 @@
-//! Commands that only read.
+//! Read commands.
 
 use super::errors::Entry;
 use super::io::Port;
@@ -11,14 +11,13 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::Request;
 use crate::toyo::table::{Command, Pallet};
 
-/// What MERP answers (ambiguity C5).
+/// Answer of MERP (ambiguity C5).
 const NO_POINT: &str = "         ";
-/// Ports of a screen.
+/// Ports per screen.
 const SCREEN: i32 = 4;
-/// The last screen of the controller's own inputs that has ports on it (ambiguity C8).
+/// The last screen with ports of the controller's own inputs (ambiguity C8).
 const LAST_INPUT_SCREEN: i32 = 6;
 
-/// Answers a question.
 pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> {
     let fields = Fields(request.record());
     let mut form = 0;
@@ -91,7 +90,7 @@ fn system(world: &World) -> Vec<Value> {
     let language = Value::Word(if world.settings.japanese { "J" } else { "E" });
     let mut values = vec![Value::Number(world.memory.content.robot_types[0]), Value::Number(world.version), language];
     values.extend_from_slice(letters);
-    // What it means the manual does not say (ambiguity C11).
+    // The manual does not explain it (ambiguity C11).
     values.push(Value::Text("N".to_owned()));
     values
 }
@@ -105,7 +104,7 @@ fn parameter(world: &World, request: &Request) -> Result<Record, String> {
     world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "there is no such row".to_owned())
 }
 
-/// A step of the current task; 0 is the one it is at.
+/// A step of the current task; 0 is the current step.
 fn step(world: &World, step: usize) -> Result<Vec<Value>, String> {
     let step = if step == 0 { world.tasks[world.current].step } else { step };
     let record = world.memory.step(world.current, step);
@@ -212,7 +211,7 @@ fn history(world: &World, entry: i32) -> Vec<Value> {
     values
 }
 
-/// A coordinate as it is sent, in 0.01 mm.
+/// A coordinate in the protocol: 0.01 mm.
 fn hundredths(coordinate: f64) -> Value {
     #[expect(clippy::cast_possible_truncation, reason = "coordinates are within 8000 mm")]
     let hundredths = (coordinate * 100.0).round() as i32;

@@ -1,32 +1,32 @@
-//! How axes move: ramps, and the lines and arcs they move along, all in closed form.
+//! Motion of axes in closed form: ramps, lines and arcs.
 
 use std::f64::consts::TAU;
 use std::time::Duration;
 
 use crate::Now;
 
-/// Axes a controller can have.
+/// Maximum number of axes.
 pub(super) const AXES: usize = 4;
 /// Axes that a circle can lie in.
 const SPACE: usize = 3;
-/// A circle through points that are nearer to a line than this has no radius: mm² of their parallelogram.
+/// Minimum area in mm² of the parallelogram of three points; below it they lie on a line.
 const FLAT: f64 = 1e-6;
 
-/// Coordinates of all axes, in mm.
+/// Coordinates of all axes in mm.
 pub(super) type Coordinates = [f64; AXES];
 
-/// Speeds of a move along its path.
+/// Path speed and ramps of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drive {
     /// mm/s.
     pub(super) speed: f64,
-    /// Seconds from standstill to that speed.
+    /// Acceleration time in seconds.
     pub(super) up: f64,
-    /// Seconds from that speed to standstill.
+    /// Deceleration time in seconds.
     pub(super) down: f64,
 }
 
-/// Distance over time: up to three phases of steady acceleration.
+/// Distance over time: up to three phases of constant acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Profile {
     phases: [Phase; 3],
@@ -39,39 +39,37 @@ struct Phase {
     to: f64,
 }
 
-/// A way through space.
+/// A path in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
-    /// Straight, all axes in proportion.
+    /// A line; all axes move in proportion.
     Line { from: Coordinates, to: Coordinates, length: f64 },
-    /// On a circle; axes outside of its plane go in proportion.
+    /// An arc; axes outside its plane move in proportion.
     Arc(Arc),
 }
 
-/// Part of a circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Arc {
     from: Coordinates,
     to: Coordinates,
     center: Coordinates,
     radius: f64,
-    /// Unit vectors in its plane; the first one points to the start.
+    /// Unit vectors of its plane; the first points to the start.
     basis: [Coordinates; 2],
     angle: f64,
 }
 
-/// A move under way.
+/// A move in progress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
-    /// Whose it is.
     pub(super) owner: usize,
     pub(super) path: Path,
-    /// How much of the path was done before.
+    /// Length of the path before the start.
     skip: f64,
     pub(super) drive: Drive,
     profile: Profile,
     began: Now,
-    /// Where it ends, which is before the end of its path after it was braked.
+    /// End position; after a deceleration it lies before the end of the path.
     end: Coordinates,
 }
 
@@ -82,7 +80,7 @@ impl Drive {
 }
 
 impl Profile {
-    /// Speeds up, runs, slows down. On a short way the same accelerations reach a lower speed.
+    /// Accelerates, runs, decelerates. A short way has the same accelerations and a lower speed.
     pub(super) fn trapezoid(length: f64, drive: Drive) -> Self {
         let ramps = drive.speed * (drive.up + drive.down) / 2.0;
         let share = if length < ramps { (length / ramps).sqrt() } else { 1.0 };
@@ -96,7 +94,7 @@ impl Profile {
         }
     }
 
-    /// Slows down from a speed.
+    /// Decelerates from a speed.
     fn stop(speed: f64, deceleration: f64) -> Self {
         let rest = Phase { seconds: 0.0, from: 0.0, to: 0.0 };
         Self { phases: [rest, rest, Phase { seconds: speed / deceleration, from: speed, to: 0.0 }] }
@@ -129,14 +127,14 @@ impl Profile {
         (distance, 0.0)
     }
 
-    /// Seconds until it slows down.
+    /// Seconds until the deceleration.
     fn steady(&self) -> f64 {
         self.phases[0].seconds + self.phases[1].seconds
     }
 }
 
 impl Path {
-    /// A line; its length is that of the axes that decide about the speed.
+    /// A line; `length` counts the axes that decide about the speed.
     pub(super) fn line(from: Coordinates, to: Coordinates, length: f64) -> Self {
         Self::Line { from, to, length }
     }
@@ -155,7 +153,7 @@ impl Path {
         }
     }
 
-    /// Where it is after some of its length.
+    /// Position after a part of the length.
     pub(super) fn at(&self, distance: f64) -> Coordinates {
         let share = if self.length() > 0.0 { (distance / self.length()).clamp(0.0, 1.0) } else { 1.0 };
         match self {
@@ -164,7 +162,7 @@ impl Path {
         }
     }
 
-    /// Least and greatest coordinate of an axis on the way.
+    /// Minimum and maximum coordinate of an axis on the path.
     pub(super) fn range(&self, axis: usize) -> (f64, f64) {
         match self {
             Self::Line { from, to, .. } => (from[axis].min(to[axis]), from[axis].max(to[axis])),
@@ -172,7 +170,7 @@ impl Path {
         }
     }
 
-    /// How fast an axis can become, as a share of the speed along the path.
+    /// Maximum speed of an axis as a share of the path speed.
     pub(super) fn steepness(&self, axis: usize) -> f64 {
         match self {
             Self::Line { from, to, length } if *length > 0.0 => (to[axis] - from[axis]).abs() / length,
@@ -186,9 +184,9 @@ impl Path {
 }
 
 impl Arc {
-    /// From a place through another to a third, on the circle in the first axes; `None` if they are on a line.
+    /// An arc through `via` to `to`; `None` if the points lie on a line.
     ///
-    /// `round` tells which axes the circle lies in: the first two or three that are named.
+    /// `round` selects the axes of the circle: the first two or three in it.
     pub(super) fn through(from: Coordinates, via: Coordinates, to: Coordinates, round: &[usize]) -> Option<Self> {
         let flat =
             |place: Coordinates| std::array::from_fn(|axis| if round.contains(&axis) { place[axis] } else { 0.0 });
@@ -230,7 +228,7 @@ impl Arc {
         })
     }
 
-    /// How far an axis goes from the center.
+    /// Maximum distance of an axis from the center.
     fn reach(&self, axis: usize) -> f64 {
         self.radius * self.basis[0][axis].hypot(self.basis[1][axis])
     }
@@ -251,7 +249,7 @@ impl Arc {
 }
 
 impl Segment {
-    /// A move that begins at a moment, which may be to come.
+    /// A move that begins at a time, perhaps in the future.
     pub(super) fn new(owner: usize, path: Path, skip: f64, drive: Drive, began: Now) -> Self {
         let profile = Profile::trapezoid((path.length() - skip).max(0.0), drive);
         Self { owner, path, skip, drive, profile, began, end: path.end() }
@@ -261,13 +259,13 @@ impl Segment {
         self.began.saturating_add(duration(self.profile.seconds()))
     }
 
-    /// The moment in its last ramp when a share of that ramp is left.
+    /// Time during the deceleration at which a share of that ramp is left.
     pub(super) fn hands_over(&self, share: f64) -> Now {
         let ramp = self.profile.seconds() - self.profile.steady();
         self.began.saturating_add(duration(self.profile.seconds() - share * ramp))
     }
 
-    /// How far it still is from its end.
+    /// Remaining way.
     pub(super) fn rest(&self, now: Now) -> Coordinates {
         if now >= self.ends() {
             return [0.0; AXES];
@@ -275,22 +273,21 @@ impl Segment {
         minus(&self.path.at(self.done(now)), &self.end)
     }
 
-    /// Where it ends.
     pub(super) const fn end(&self) -> Coordinates {
         self.end
     }
 
-    /// From its beginning to its end.
+    /// Way from start to end.
     pub(super) fn way(&self) -> Coordinates {
         minus(&self.end, &self.path.at(self.skip))
     }
 
-    /// How much of the path is done at a moment.
+    /// Completed length of the path.
     pub(super) fn done(&self, now: Now) -> f64 {
         self.skip + self.distance(now)
     }
 
-    /// The same, slowing down from now on. What already slows down goes on as it is.
+    /// The move with deceleration from now on, unless it already decelerates.
     pub(super) fn braked(self, now: Now) -> Self {
         let (distance, speed) = self.profile.at(self.elapsed(now));
         if self.elapsed(now) >= self.profile.steady() {
@@ -301,13 +298,12 @@ impl Segment {
         Self { skip, profile, began: now, end: self.path.at(skip + profile.length()), ..self }
     }
 
-    /// Moments at which its acceleration changes.
+    /// Times at which the acceleration changes.
     pub(super) fn bends(&self) -> [Now; 4] {
         let [up, run, down] = self.profile.phases.map(|phase| phase.seconds);
         [0.0, up, up + run, up + run + down].map(|seconds| self.began.saturating_add(duration(seconds)))
     }
 
-    /// Whether it has not begun.
     pub(super) fn is_to_come(&self, now: Now) -> bool {
         now < self.began
     }
@@ -321,17 +317,15 @@ impl Segment {
     }
 }
 
-/// Seconds as time; what is no time is none.
+/// Duration from seconds; zero if invalid.
 pub(super) fn duration(seconds: f64) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }
 
-/// The sum of two places.
 pub(super) fn plus(a: &Coordinates, b: &Coordinates) -> Coordinates {
     std::array::from_fn(|axis| a[axis] + b[axis])
 }
 
-/// The way from the second place to the first.
 pub(super) fn minus(a: &Coordinates, b: &Coordinates) -> Coordinates {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
@@ -396,7 +390,7 @@ mod tests {
 
     #[test]
     fn an_arc_reaches_beyond_its_points() {
-        // Three quarters of a circle about the origin, clockwise.
+        // Three quarters of a circle around the origin, clockwise.
         let arc = Arc::through([0.0, 10.0, 0.0, 0.0], [10.0, 0.0, 0.0, 0.0], [-10.0, 0.0, 0.0, 0.0], &[0, 1]).unwrap();
         let path = Path::Arc(arc);
         assert!(near(path.length(), 10.0 * TAU * 0.75));

@@ -1,4 +1,4 @@
-//! Moves of programs: where they go, how fast, and what forbids them.
+//! Moves of programs: target, speed, and checks.
 
 use super::action::{Move, Target, Torque};
 use super::errors::code;
@@ -9,11 +9,11 @@ use super::world::World;
 
 /// Rows of the coordinate table.
 const LAST_POINT: i32 = 999;
-/// Circles that are larger than this cannot be driven, in mm. The manual does not tell.
+/// Maximum radius of a circle in mm. The manual has no value.
 const MOST_RADIUS: f64 = 8000.0;
 
 impl World {
-    /// Begins a move; the task goes on with a step once it is over.
+    /// Begins a move; the task continues with step `next` after it.
     pub(super) fn move_then(&mut self, index: usize, order: Move, next: usize) -> Result<Flow, u8> {
         let order = match (order.to, self.tasks[index].supplied) {
             (Target::Host, None) => return Ok(Flow::Wait(Wait::Host(order), next)),
@@ -38,7 +38,7 @@ impl World {
         Ok(self.drive_then(index, path, &order, next))
     }
 
-    /// Begins an arc through the place of this step to that of the next.
+    /// Begins an arc through the position of this step to that of the next.
     pub(super) fn arc_then(&mut self, index: usize, step: usize, first: Move) -> Result<Flow, u8> {
         let Some(super::action::Action::Arc(second)) = self.memory.action(index, step + 1) else {
             return Err(code::ARC_DATA);
@@ -63,7 +63,7 @@ impl World {
         Ok(self.drive_then(index, path, &Move { pass: second.pass, ..first }, step + 2))
     }
 
-    /// Whether axes may move in a program.
+    /// Whether axes can move in a program.
     pub(super) fn may_move(&self, axes: &[usize]) -> Result<(), u8> {
         if axes.is_empty() {
             return Err(code::COMMAND);
@@ -74,14 +74,14 @@ impl World {
         Ok(())
     }
 
-    /// The place of a row of the coordinate table, by a number and a counter.
+    /// Coordinates of the row with the sum of a number and a counter.
     pub(super) fn row(&self, index: usize, point: i32, counter: usize) -> Result<Coordinates, u8> {
         let row = point + if counter == 0 { 0 } else { self.counters[counter].into() };
         let row = Some(row).filter(|row| (1..=LAST_POINT).contains(row));
         row.and_then(|row| self.memory.content.point(index, row)).ok_or(code::TABLE)
     }
 
-    /// Whether a path keeps within the soft limits. Who is outside may come in.
+    /// Whether a path stays within the soft limits. An axis outside may move inwards.
     pub(super) fn within(&self, axes: &[usize], path: &Path, code: fn(usize, bool) -> u8) -> Result<(), u8> {
         let from = path.at(0.0);
         for &axis in axes {
@@ -96,7 +96,7 @@ impl World {
         Ok(())
     }
 
-    /// Where a move goes, without and with the offset. Axes of other tasks stay.
+    /// Targets of a move without and with the offset. Axes of other tasks stay.
     fn aim(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
         if !axes.iter().all(|&axis| self.arm.known[axis]) {
@@ -112,7 +112,7 @@ impl World {
         let own = |place: Coordinates| -> Coordinates {
             let mut own = *from;
             for &axis in axes {
-                // A driven axis does what its drive does.
+                // A driven axis follows its drive axis.
                 own[axis] = match self.machine.driver[axis] {
                     Some(driver) => from[axis] + own[driver] - from[driver],
                     None => place[axis],
@@ -123,7 +123,7 @@ impl World {
         Ok((own(base), own(to)))
     }
 
-    /// A line, whose length is that of the longest axis, or the one in space.
+    /// A line; its length is that of the longest axis, or the one in space.
     fn line(&self, index: usize, from: Coordinates, to: Coordinates, in_space: bool) -> Path {
         let way = minus(&to, &from);
         let axes = &self.machine.tasks[index];
@@ -132,7 +132,7 @@ impl World {
         Path::line(from, to, if in_space && space > 0.0 { space } else { longest })
     }
 
-    /// Drives along a path.
+    /// Starts the motion along a path.
     fn drive_then(&mut self, index: usize, path: Path, order: &Move, next: usize) -> Flow {
         let task = &mut self.tasks[index];
         task.from = Some(path.at(0.0));
@@ -150,7 +150,7 @@ impl World {
         Flow::Wait(wait, next)
     }
 
-    /// Speeds for a path, by a row of the speed table; 0 is the one chosen last.
+    /// Speed and ramps for a path; row 0 is the last SPD.
     fn drive(&self, index: usize, row: i32, path: &Path) -> Drive {
         let task = &self.tasks[index];
         let [speed] = self.memory.content.numbers("T2", if row == 0 { task.speed } else { row });

@@ -1,6 +1,6 @@
-//! What a host, or somebody at the machine, can have done: starts, stops, power, errors.
+//! Operations of host and operator: starts, stops, power, errors.
 //!
-//! Whatever is refused says why; on the line that is `@NG`.
+//! A refusal has a reason; in the protocol it is `@NG`.
 
 use super::arm::HOST;
 use super::errors::code;
@@ -9,11 +9,11 @@ use super::routine::Routine;
 use super::settings::Special;
 use super::world::{Kind, Mode, World};
 
-/// Why something is not done.
+/// Reason of a refusal.
 pub(super) type Refusal = &'static str;
 
 impl World {
-    /// Refuses what cannot be while something is executed.
+    /// Refuses while anything runs.
     pub(super) fn idle(&self) -> Result<(), Refusal> {
         if self.is_executing() {
             return Err("something is being executed");
@@ -21,7 +21,6 @@ impl World {
         if self.card.is_busy() { Err("the memory card is being read or written") } else { Ok(()) }
     }
 
-    /// Refuses what cannot be started now.
     fn startable(&self) -> Result<(), Refusal> {
         self.idle()?;
         self.unchanged()?;
@@ -45,7 +44,7 @@ impl World {
         if self.kind() == kind { Ok(()) } else { Err(what) }
     }
 
-    /// Starts the sequential program of task 1 at a step; 0 goes on where it stands, or begins at the start.
+    /// Starts the sequential program of task 1 at a step. 0 continues, or begins at the first step.
     pub(super) fn start_sequential(&mut self, step: usize) -> Result<(), Refusal> {
         self.of_kind(Kind::Sequential, "it is not in sequential mode")?;
         if step > self.memory.size(0) || self.memory.size(0) == 0 {
@@ -62,7 +61,7 @@ impl World {
             self.go_on();
         } else {
             let step = self.tasks[0].step;
-            // A move that an error interrupted is done to its end first.
+            // An interrupted move is completed first.
             if self.arm.is_held(0) {
                 self.tasks[0].running = true;
                 self.resume_task(0);
@@ -74,7 +73,7 @@ impl World {
         Ok(())
     }
 
-    /// Starts the palletizing program, or lets it go on.
+    /// Starts or continues the palletizing program.
     pub(super) fn start_palletizing(&mut self) -> Result<(), Refusal> {
         self.of_kind(Kind::Palletizing, "it is not in palletizing mode")?;
         self.powered_axes()?;
@@ -91,7 +90,7 @@ impl World {
         Ok(())
     }
 
-    /// Starts the easy program, or lets it go on.
+    /// Starts or continues the easy program.
     pub(super) fn start_easy(&mut self) -> Result<(), Refusal> {
         self.of_kind(Kind::Easy, "easy mode is not chosen (M10)")?;
         self.powered_axes()?;
@@ -129,7 +128,7 @@ impl World {
         self.tasks[task].start(1, self.now);
     }
 
-    /// Returns all axes to their origin. Programs begin anew after it.
+    /// Starts the return to origin of all axes, and resets programs.
     pub(super) fn home(&mut self) -> Result<(), Refusal> {
         self.startable()?;
         self.powered_axes()?;
@@ -153,7 +152,7 @@ impl World {
         Ok(())
     }
 
-    /// JOG: what each axis does.
+    /// Executes JOG with one word per axis.
     pub(super) fn jog(&mut self, words: [&'static str; 4]) -> Result<(), Refusal> {
         let moving: Vec<_> = words.iter().enumerate().filter(|(_, word)| !matches!(**word, "RS" | "SP")).collect();
         if moving.is_empty() {
@@ -167,7 +166,7 @@ impl World {
         if words.contains(&"RS") {
             return Err("axes that do not move are stopped (SP)");
         }
-        // The same once more changes nothing.
+        // A repetition changes nothing.
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
             return Ok(());
         }
@@ -187,7 +186,7 @@ impl World {
         Ok(())
     }
 
-    /// Puts programs back to their beginning.
+    /// Resets programs to the first step.
     pub(super) fn reset(&mut self) -> Result<(), Refusal> {
         self.idle()?;
         self.reset_program();
@@ -198,7 +197,6 @@ impl World {
         Ok(())
     }
 
-    /// Cancels the error.
     pub(super) fn cancel_error(&mut self) -> Result<(), Refusal> {
         self.unchanged()?;
         if self.switches.estop {
@@ -219,7 +217,7 @@ impl World {
         Ok(())
     }
 
-    /// Lets the host command, unless the pendant does.
+    /// Switches host control, unless the pendant is ON.
     pub(super) fn host(&mut self, on: bool) -> Result<(), Refusal> {
         if on && self.switches.pendant {
             return Err("the teach pendant is on");
@@ -232,7 +230,7 @@ impl World {
         Ok(())
     }
 
-    /// Switches the teach pendant; it takes the host's place.
+    /// Switches the teach pendant; it takes control from the host.
     pub(super) fn pendant(&mut self, on: bool) {
         self.switches.pendant = on;
         if on {
@@ -249,7 +247,7 @@ impl World {
         }
     }
 
-    /// Sequential or palletizing mode; M10 must not have chosen another.
+    /// Selects sequential or palletizing mode, unless M10 selects another one.
     pub(super) fn choose_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
         if self.settings.special != Special::None {
@@ -268,7 +266,7 @@ impl World {
         Ok(())
     }
 
-    /// Takes coordinates for a move of a task; one set waits at a time.
+    /// Stores coordinates for a move of a task; only one set can wait.
     pub(super) fn supply(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
         if slot.is_some() {
@@ -278,7 +276,7 @@ impl World {
         Ok(())
     }
 
-    /// The current step goes to a tag of the current task.
+    /// Sets the current step to a tag of the current task.
     pub(super) fn search_tag(&mut self, tag: usize) -> Result<(), Refusal> {
         self.idle()?;
         let task = self.current;
@@ -292,7 +290,7 @@ impl World {
         Ok(())
     }
 
-    /// What changes when the memory was written: settings, and programs that do not fit any more.
+    /// Applies changes of the memory: settings, and programs that no longer fit.
     pub(super) fn memory_changed(&mut self) {
         self.settings = super::settings::Settings::from_content(&self.memory.content);
         for index in 0..TASKS {

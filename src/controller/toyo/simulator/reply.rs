@@ -1,20 +1,19 @@
-//! Values of a command and what it is answered.
+//! Values of a request, and the reply.
 
 use super::io::Port;
 use super::memory::index;
 use crate::toyo::field::Value;
 use crate::toyo::layout::Record;
 
-/// What a command is answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Reply {
     /// `@OK`.
     Done,
-    /// Values in a form of the answer.
+    /// Values of one of the answer forms.
     Data(usize, Vec<Value>),
 }
 
-/// The values of a request, which are all in range.
+/// Values of a request, all in range.
 pub(super) struct Fields<'a>(pub(super) &'a Record);
 
 impl Fields<'_> {

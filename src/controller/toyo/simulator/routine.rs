@@ -1,6 +1,6 @@
-//! What runs beside sequential programs: palletizing, easy programs, moves to single points.
+//! Routines: palletizing, easy programs, moves to single points.
 //!
-//! A routine is a list of orders: move there, call that part of the sequential program.
+//! A routine is a sequence of moves and of calls into the sequential program.
 
 use super::action::{Move, Target};
 use super::errors::code;
@@ -13,7 +13,7 @@ use super::world::World;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;
 
-/// What a task does besides its program.
+/// Routine of a task.
 #[derive(Debug, Clone)]
 pub(super) enum Routine {
     /// A move to a row of the coordinate table.
@@ -21,7 +21,7 @@ pub(super) enum Routine {
         row: i32,
         begun: bool,
     },
-    /// An easy program, with the repetition under way, from 1.
+    /// An easy program, with the current repetition from 1.
     Easy {
         program: usize,
         round: i32,
@@ -30,29 +30,29 @@ pub(super) enum Routine {
     Palletizing(Box<Palletizing>),
 }
 
-/// Which of its two programs an easy program is at.
+/// Current part of an easy program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum EasyPart {
     Start,
     End,
 }
 
-/// A palletizing program under way.
+/// A running palletizing program.
 #[derive(Debug, Clone)]
 pub(super) struct Palletizing {
     pub(super) program: usize,
     pub(super) mode: &'static str,
-    /// 0 is the start program, then come source, destination, and the end program.
+    /// 0 is the start program, then source, destination, end program.
     phase: usize,
     begun: bool,
     start: i32,
     end: i32,
     pub(super) sides: [Side; 2],
-    /// Tag of the hand program being executed.
+    /// Tag of the current hand program.
     pub(super) hand: i32,
 }
 
-/// Where pieces are taken from, or put.
+/// Source or destination of pieces.
 #[derive(Debug, Clone)]
 pub(super) struct Side {
     is_matrix: bool,
@@ -60,20 +60,20 @@ pub(super) struct Side {
     /// From 1.
     pub(super) piece: [u16; 3],
     approach: Move,
-    /// Approach point: Z and R, and whether they add to the place.
+    /// Approach point: Z and R, and whether they are relative.
     height: [f64; 2],
     turn: f64,
     tag: i32,
 }
 
-/// Phases of a side: above the place, down, the hand program, and up again.
+/// Phases of a side: above the position, down, hand program, up.
 const DOWN: usize = 1;
 const HAND: usize = 2;
 const LAST_OF_SOURCE: usize = 4;
 const LAST: usize = 8;
 const END: usize = 9;
 
-/// What a routine wants next.
+/// Next action of a routine.
 enum RoutineStep {
     Move(Move),
     Call(i32),
@@ -81,7 +81,7 @@ enum RoutineStep {
 }
 
 impl EasyPart {
-    /// The tag of the program it is at.
+    /// Tag of the current part.
     pub(super) fn tag(self, easy: Easy) -> i32 {
         match self {
             Self::Start => easy.start,
@@ -91,14 +91,14 @@ impl EasyPart {
 }
 
 impl Routine {
-    /// An easy program, if it has anything to do.
+    /// An easy program; `None` if it has no tags.
     pub(super) fn easy(program: usize, easy: Easy) -> Option<Self> {
         (easy.start != 0 || easy.end != 0).then_some(Self::Easy { program, round: 0, part: EasyPart::Start })
     }
 }
 
 impl World {
-    /// Does what the routine of a task wants next.
+    /// Performs the next action of a routine.
     pub(super) fn follow_routine(&mut self, index: usize) {
         let at = self.now.saturating_add(self.tick);
         let Some(mut routine) = self.tasks[index].routine.take() else { return };
@@ -127,7 +127,7 @@ impl World {
         }
     }
 
-    /// The palletizing program chosen, by the inputs of M06 if they make a number.
+    /// Selected palletizing program: the inputs of M06 if they are not 0.
     pub(super) fn chosen_pallet(&self) -> Result<usize, u8> {
         let number = |bit: PortBit| usize::from(self.ports.number(bit));
         match self.settings.palletizing.map_or(0, number) {
@@ -137,7 +137,7 @@ impl World {
         }
     }
 
-    /// A palletizing program as it begins.
+    /// A palletizing program in its initial state.
     pub(super) fn palletizing(&self, program: usize) -> Option<Palletizing> {
         let record = |number: i32| self.memory.content.pallet(program, Pallet::numbered(number)?);
         let start = record(1)?;
@@ -181,12 +181,12 @@ impl World {
 }
 
 impl Palletizing {
-    /// The side that is worked on, or was last.
+    /// The current or last side.
     pub(super) fn side(&self) -> &Side {
         &self.sides[usize::from(self.phase > LAST_OF_SOURCE)]
     }
 
-    /// What is being executed.
+    /// Name of the current phase.
     pub(super) fn state(&self) -> &'static str {
         match self.phase {
             0 => "START",
@@ -226,7 +226,7 @@ impl Palletizing {
         }
     }
 
-    /// Counts a piece; whether there is another one.
+    /// Counts a piece; `false` after the last.
     fn count(&mut self) -> bool {
         let mut more = true;
         for side in self.sides.iter_mut().filter(|side| side.is_matrix) {
@@ -240,12 +240,12 @@ impl Palletizing {
 }
 
 impl Side {
-    /// Pieces in each direction; one place has none to count.
+    /// Pieces in each direction.
     pub(super) fn pieces(&self) -> [u16; 3] {
         self.matrix.pieces
     }
 
-    /// The move to the place, or to its approach point.
+    /// Move to the position, or to its approach point.
     fn order(&self, down: bool) -> Result<Move, u8> {
         let piece = if self.is_matrix { self.piece } else { [1; 3] };
         let mut place = self.matrix.place(piece)?;
@@ -269,7 +269,7 @@ fn point(row: i32, begun: &mut bool) -> RoutineStep {
     RoutineStep::Move(Move { to, incremental: false, line: false, speed: 0, pass: false, escape: false })
 }
 
-/// The start program so many times, at least once; then the end program, once.
+/// Start program, repeated at least once; then the end program.
 fn easy(easy: Easy, round: &mut i32, part: &mut EasyPart) -> RoutineStep {
     if *part == EasyPart::Start {
         if easy.start != 0 && *round < easy.times.max(1) {

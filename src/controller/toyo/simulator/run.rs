@@ -1,4 +1,4 @@
-//! The interpreter: what each instruction does.
+//! Interpreter of the instructions.
 
 use super::action::{Action, Change, Choice, Target, TaskOrder, Test};
 use super::errors::code;
@@ -9,13 +9,13 @@ use super::trace::What;
 use super::world::World;
 use crate::toyo::field::Mask;
 
-/// Subroutines that may be called in each other. The manual does not tell.
+/// Maximum nesting of subroutines. The manual has no limit.
 pub(super) const DEPTH: usize = 16;
-/// What a counter holds at most.
+/// Maximum of a counter.
 const MOST_COUNT: i32 = 9999;
 
 impl World {
-    /// Does the steps that are due.
+    /// Executes the steps that are due.
     pub(super) fn run_tasks(&mut self) {
         if !self.is_running() {
             return;
@@ -31,7 +31,7 @@ impl World {
         }
     }
 
-    /// Lets tasks go on whose waits are over by what has changed.
+    /// Continues tasks whose wait has ended.
     pub(super) fn end_waits(&mut self) {
         if self.is_held() {
             return;
@@ -61,14 +61,13 @@ impl World {
         }
     }
 
-    /// Ends the wait of a task.
     pub(super) fn end_wait(&mut self, index: usize) {
         let now = self.now;
         let single = index == 0 && self.ports.is_on(self.settings.single);
         let task = &mut self.tasks[index];
         let moved = matches!(task.wait, Wait::Motion | Wait::Pass(_));
         if single && matches!(task.wait, Wait::Pass(_)) {
-            // In single operation every move comes to rest.
+            // In single operation every move ends at rest.
             task.wait = Wait::Motion;
             return;
         }
@@ -81,7 +80,7 @@ impl World {
         }
     }
 
-    /// Stops programs once task 1 has come to rest.
+    /// Stops programs once task 1 is at rest.
     fn stop_at_rest(&mut self) {
         if self.arm.is_busy(0, self.now) {
             self.tasks[0].next = self.tasks[0].step;
@@ -134,7 +133,7 @@ impl World {
         }
     }
 
-    /// Ends a task's program, or what a routine has called of it.
+    /// Ends the program of a task, or the part that a routine called.
     pub(super) fn end(&mut self, index: usize) {
         let at = self.now.saturating_add(self.tick);
         let task = &mut self.tasks[index];
@@ -228,10 +227,10 @@ impl World {
         Ok(Flow::Next)
     }
 
-    /// Whether something is so; an error if it is about a port that does not exist.
+    /// Evaluates a condition; an error if its port does not exist.
     pub(super) fn test(&self, test: Test) -> Result<bool, u8> {
         let matches = |bits: u8, mask: Mask, any: bool| {
-            // Without a bit that counts there is nothing to wait for.
+            // Without relevant bits the condition is true.
             if any && mask.care != 0 { !(bits ^ mask.bits) & mask.care != 0 } else { mask.matches(bits) }
         };
         match test {
@@ -279,7 +278,7 @@ impl World {
         }
     }
 
-    /// To the tag that the selection inputs make; 0 is none.
+    /// Jump to the tag number at the selection inputs; 0 means none.
     fn select(&self, index: usize, step: usize) -> Result<Flow, u8> {
         match self.settings.selection.map_or(0, |bit| self.ports.number(bit)) {
             0 => Ok(Flow::To(step + 1)),
@@ -315,7 +314,7 @@ impl World {
         }
         if let Some(time) = time {
             let back = Mask { care: mask.care, bits: !mask.bits & mask.care };
-            // The same pulse once more begins anew.
+            // The same pulse again restarts its time.
             self.pulses.retain(|(_, other, mask)| (*other, mask.care) != (port, back.care));
             self.pulses.push((self.now.saturating_add(time), port, back));
         }
@@ -373,11 +372,11 @@ impl World {
                 self.tasks[other].reset();
             }
         }
-        // A task that cancelled itself is at its beginning.
+        // A task that cancels itself is at its first step.
         Ok(if other == index && order == TaskOrder::Cancel { Flow::End } else { Flow::Next })
     }
 
-    /// What an offset or a place is taken from.
+    /// Coordinates of an offset or a target.
     pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Coordinates, u8> {
         match target {
             Target::Coordinates(place) => Ok(place),

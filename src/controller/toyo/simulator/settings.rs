@@ -1,4 +1,4 @@
-//! Parameters as the machine goes by them.
+//! Parameters converted to typed settings.
 
 use super::io::PortBit;
 use super::memory::{Content, TASKS};
@@ -6,7 +6,7 @@ use super::motion::{AXES, Coordinates};
 use crate::toyo::field::Value;
 use crate::toyo::layout::Record;
 
-/// An output that the controller drives by itself.
+/// An output that the controller drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Signal {
     Paused,
@@ -18,11 +18,11 @@ pub(super) enum Signal {
     Load(usize),
     Limit(usize),
     Locked(usize),
-    /// By the place of an axis.
+    /// Depends on the position of an axis.
     Area(usize),
 }
 
-/// What M10 chooses.
+/// Selection of M10.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Special {
     None,
@@ -30,7 +30,7 @@ pub(super) enum Special {
     Point,
 }
 
-/// Parameters that count at once: M and P.
+/// Parameters with immediate effect: M and P.
 #[derive(Debug, Clone)]
 pub(super) struct Settings {
     pub(super) single: Option<PortBit>,
@@ -52,38 +52,36 @@ pub(super) struct Settings {
     /// mm/s, low and high.
     pub(super) jog: [[f64; 2]; AXES],
     pub(super) inch: Coordinates,
-    /// Whether the area is upwards of a place.
+    /// Position of each area, and whether the area is above it.
     pub(super) areas: [(bool, f64); AXES],
 }
 
-/// Parameters that count from when power comes on: E.
+/// Parameters with effect after power on: E.
 #[derive(Debug, Clone)]
 pub(super) struct Machine {
-    /// The axes of each task.
     pub(super) tasks: [Axes; TASKS],
     pub(super) top: Coordinates,
     /// mm/s: low, middle, high.
     pub(super) origin: [[f64; 3]; AXES],
-    /// Where a fast return to origin goes first.
+    /// First target of a fast return to origin.
     pub(super) fast: Coordinates,
     /// Whether the origin is in plus direction.
     pub(super) upwards: [bool; AXES],
-    /// mm of position error that count as overflow.
+    /// Position error in mm that counts as overflow.
     pub(super) overflow: Coordinates,
     pub(super) absolute: bool,
-    /// Tasks in the order in which they do what is due at the same time (E20).
+    /// Execution order of tasks with simultaneous actions (E20).
     pub(super) order: [usize; TASKS],
-    /// The axis that drives each driven one.
+    /// Drive axis of each driven axis.
     pub(super) driver: [Option<usize>; AXES],
-    /// Whether the roles of synchronized axes make no sense.
+    /// Whether the roles of synchronized axes are invalid.
     pub(super) bad_roles: bool,
 }
 
-/// The axes of a task.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Axes {
     pub(super) axes: Vec<usize>,
-    /// How many of them, from the first, lie in a plane or in space.
+    /// Number of leading axes that form a plane or a space.
     pub(super) space: usize,
 }
 
@@ -176,14 +174,14 @@ impl Machine {
     }
 }
 
-/// Tasks by their priority, the least number first.
+/// Tasks by priority, lowest number first.
 fn order(priority: [i32; TASKS]) -> [usize; TASKS] {
     let mut order = std::array::from_fn(|task| task);
     order.sort_by_key(|&task| priority[task]);
     order
 }
 
-/// The axes of each task: a digit a task, axes in their order (TO 2-4, E19).
+/// Axes of each task: one digit per task, axes in order (TO 2-4, E19).
 fn tasks(digits: &str) -> [Axes; TASKS] {
     let mut next = 0;
     let mut digits = digits.bytes();
@@ -213,7 +211,7 @@ fn decimals(content: &Content, id: &str, scale: f64) -> Coordinates {
     numbers(content.single(id)).map(|number: i32| f64::from(number) / scale)
 }
 
-/// The number of axes that a combination of tasks needs.
+/// Number of axes in a combination of tasks.
 pub(super) fn axes_of(machine: &Machine) -> usize {
     machine.tasks.iter().map(|task| task.axes.len()).sum()
 }

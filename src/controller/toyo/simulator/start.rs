@@ -1,7 +1,7 @@
-//! The start state: what a TOML file can say about the controller to be simulated.
+//! Start state from TOML.
 //!
-//! Everything has a default, so an empty file is a fresh KCA-25-M10 with four axes in one task, whose power has just come
-//! on. Each mistake is told with its line.
+//! All keys have defaults: an empty file is a new KCA-25-M10 with four axes in one task, just powered on. An error
+//! gives its line.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -30,7 +30,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::{Request, instruction};
 use crate::toyo::table::{Command, KCA};
 
-/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]).
+/// Start state of a simulated controller; [`Start::parse`] reads it (see [`EXAMPLE`]).
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) world: World,
@@ -39,7 +39,7 @@ pub struct Start {
     pub(super) busy: f64,
 }
 
-/// A start state that names the keys there are; each can be left out.
+/// A start state with all keys; each is optional.
 pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without what some models have
 version = "4.00"
 robot_types = [0]               # that TYPE takes; the first one is in force
@@ -85,36 +85,36 @@ impl Default for Start {
 }
 
 impl Start {
-    /// Reads a start state. The error says what is wrong, and in which line.
+    /// Parses a start state. An error gives the problem and the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         build(&start::parse(text)?, text)
     }
 
-    /// Another seed for everything random.
+    /// Sets the random seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// Refuses a share of the commands with `@NG`, 0.0 to 1.0.
+    /// Refuses a random share of the commands with `@NG`, 0.0 to 1.0.
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
     }
 
-    /// With a program in a task, 1 to 4. The task gets as many steps as that needs (E22).
+    /// Adds a program to a task, 1 to 4. The task gets the required number of steps (E22).
     pub fn with_program(mut self, task: usize, steps: Vec<Record>) -> Result<Self, String> {
         program(&mut self.world, task, steps)?;
         Ok(self.stored())
     }
 
-    /// With what a command of the host writes: `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …`, `WSTX …`.
+    /// Adds content by a host write command: `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …`, `WSTX …`.
     pub fn with_written(mut self, command: &str) -> Result<Self, String> {
         write(&mut self.world, command)?;
         Ok(self.stored())
     }
 
-    /// As if everything had been stored before power came on.
+    /// Treats the content as written before power on.
     fn stored(mut self) -> Self {
         self.world.memory.wear.forget();
         self.world.load();
@@ -123,7 +123,6 @@ impl Start {
     }
 }
 
-/// The keys of the file.
 #[derive(Debug, Deserialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
 #[serde(default, deny_unknown_fields)]
@@ -146,7 +145,7 @@ struct Entries {
     inputs: Table<String>,
     outputs: Table<String>,
     steps: Table<Vec<Spanned<String>>>,
-    /// Commands of the host, without `@`.
+    /// Host commands, without `@`.
     write: Vec<Spanned<String>>,
     error: Option<Spanned<String>>,
     history: Vec<Spanned<HistoryEntry>>,
@@ -224,7 +223,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     programs(&mut world, entries, source)?;
     tables(&mut world, entries, source)?;
     source.each(&entries.write, |line| write(&mut world, line))?;
-    // That was there before; it did not wear anything, and parameters 2 are in force.
+    // The content existed before: it has not worn the EEPROM, and parameters 2 are in effect.
     world.memory.wear = Wear::new(Some(entries.eeprom_limit).filter(|limit| *limit > 0));
     world.power_up();
     world.switches.mode = entries.mode;
@@ -259,7 +258,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     Ok(Start { world, seed: entries.seed, answer_delay, busy })
 }
 
-/// The controller with nothing in it.
+/// A controller without content.
 fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let model = entries.model.get_ref();
     if model != "other" && !KCA.contains(&model.as_str()) {
@@ -284,7 +283,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.position, "coordinates are within 8000 mm"));
     }
     let mut arm = Arm::default();
-    // Without its origin an axis counts from where it is.
+    // Without a known origin an axis counts from its position.
     arm.put(if entries.origin { position } else { [0.0; AXES] });
     arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
     arm.known = [entries.origin; AXES];
@@ -352,21 +351,20 @@ fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<
     Ok(())
 }
 
-/// A step, which must be one that the memory can hold.
 fn step(line: &str) -> Result<Record, String> {
     let record = instruction(line).map_err(|error| error.to_string())?;
     record.emit().map_err(|error| error.to_string())?;
     Ok(record)
 }
 
-/// Puts a program in a task, which gets as many steps as it needs.
+/// Stores a program in a task, which gets the required number of steps.
 fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), String> {
     if !(1..=TASKS).contains(&task) {
         return Err("tasks are 1 to 4".to_owned());
     }
     let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
     sizes[task - 1] = sizes[task - 1].max(steps.len());
-    // Task 1 has all steps at first: it gives what others need, so that easy programs keep their room.
+    // Task 1 has all steps at first. It gives up what others need, so that easy programs keep their room.
     let others: usize = sizes[1..].iter().sum();
     sizes[0] = sizes[0].min(STEPS_WITH_EASY.saturating_sub(others)).max(world.memory.used(0));
     if task == 1 {
@@ -403,12 +401,12 @@ fn tables(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
         .each_of(&entries.ramps, |number, ramp| write(world, &format!("WPAR T3 A{:02}={ramp:04.2}", row(number, 20)?)))
 }
 
-/// A key that is a number from 1.
+/// A numeric key from 1.
 fn row(key: &str, most: usize) -> Result<usize, String> {
     console::number(key, 1..=most)
 }
 
-/// Writes what a command of the host writes.
+/// Applies a host write command.
 fn write(world: &mut World, command: &str) -> Result<(), String> {
     let request = Request::parse(&format!("@{command}")).map_err(|error| error.to_string())?;
     request.check().map_err(|error| error.to_string())?;
@@ -437,7 +435,7 @@ fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
     })
 }
 
-/// `0/01` and eight bits.
+/// Parses `0/01` and eight bits.
 fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
     let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a port like 0/01"))?;
@@ -445,7 +443,7 @@ fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     Ok((Port { station, port }, Mask::all(eight.ok_or("a port has eight of 0 and 1")?)))
 }
 
-/// A version like `4.00` in hundredths.
+/// Parses a version such as `4.00` to hundredths.
 fn hundredths(version: &str) -> Option<i32> {
     let field = Command::Cver.row().answers.first()?.fields.last()?;
     match field.read(version).ok()? {

@@ -1,75 +1,73 @@
-//! A task: which step it is at, and what it waits for.
+//! Task state: current step and wait condition.
 
 use super::action::{Move, Test, Torque};
 use super::motion::Coordinates;
 use super::routine::Routine;
 use crate::Now;
 
-/// What a task that runs waits for.
+/// Wait condition of a running task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Wait {
-    /// To do its step, at this moment.
+    /// Execution of its step at this time.
     Ready(Now),
-    /// A moment.
+    /// A time.
     Until(Now),
-    /// A pass point: the moment at which the next step begins while the move still slows down.
+    /// A pass point: the time at which the next step begins during the deceleration.
     Pass(Now),
-    /// Its move to be over.
+    /// End of its move.
     Motion,
-    /// The same, to end.
+    /// End of its move, then end of the program.
     End,
     Test(Test),
     /// Coordinates from the host.
     Host(Move),
 }
 
-/// How a task goes on.
+/// Continuation after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Flow {
-    /// With the next step.
+    /// The next step.
     Next,
-    /// With this step.
+    /// This step.
     To(usize),
-    /// After a wait, with this step.
+    /// This step, after a wait.
     Wait(Wait, usize),
-    /// With the next step, once it is started again.
+    /// Stop; the next step after a restart.
     Stop,
     End,
 }
 
-/// One of four.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct Task {
-    /// Whether it was started and has not ended.
+    /// Started and not ended.
     pub(super) running: bool,
-    /// Whether TSTO stopped it.
+    /// Stopped by TSTO.
     pub(super) stopped: bool,
     /// From 1.
     pub(super) step: usize,
-    /// The step to go on with after a wait.
+    /// Step after the wait.
     pub(super) next: usize,
     pub(super) wait: Wait,
-    /// Steps to return to.
+    /// Return steps.
     pub(super) stack: Vec<usize>,
     /// Row of the speed table.
     pub(super) speed: i32,
     /// Rows of the acceleration table.
     pub(super) ramps: [i32; 2],
-    /// Share of the last ramp at pass points.
+    /// Share of the deceleration at pass points.
     pub(super) pass: f64,
     pub(super) offset: Coordinates,
-    /// Where the last move began.
+    /// Start of the last move.
     pub(super) from: Option<Coordinates>,
-    /// How the next move is limited.
+    /// Limit of the next move.
     pub(super) torque: Option<Torque>,
-    /// How the move under way is.
+    /// Limit of the current move.
     pub(super) limited: Option<Torque>,
-    /// Whether the escape input ends the move under way.
+    /// Whether the escape input ends the current move.
     pub(super) escape: bool,
-    /// Coordinates from the host that were not used yet, and a row of the speed table.
+    /// Unused coordinates from the host, and a row of the speed table.
     pub(super) supplied: Option<(Coordinates, i32)>,
-    /// What it does besides its program.
     pub(super) routine: Option<Routine>,
     /// Whether the routine has called the program.
     pub(super) called: bool,
@@ -100,21 +98,20 @@ impl Default for Task {
 }
 
 impl Task {
-    /// As before its program was started.
+    /// State before the first start.
     pub(super) fn reset(&mut self) {
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
         *self = Self { stack, ..Self::default() };
     }
 
-    /// Starts at a step.
     pub(super) fn start(&mut self, step: usize, now: Now) {
         self.running = true;
         self.step = step;
         self.wait = Wait::Ready(now);
     }
 
-    /// When it does something by itself.
+    /// Time of the next action.
     pub(super) fn due(&self) -> Option<Now> {
         match self.wait {
             Wait::Ready(at) | Wait::Until(at) | Wait::Pass(at) if self.running && !self.stopped => Some(at),

@@ -1,4 +1,4 @@
-//! What happened, for those who watch a program run.
+//! Event trace of a program run.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -6,21 +6,21 @@ use super::io::Port;
 use super::motion::Coordinates;
 use crate::Now;
 
-/// Events that are kept; the oldest give way.
+/// Limit of stored events; the oldest are dropped.
 const MOST: usize = 1 << 16;
 
-/// Something that happened.
+/// A timed event.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
-    /// When.
+    /// Time of the event.
     pub at: Now,
-    /// Coordinates of the four axes then, in mm.
+    /// Axis coordinates at this time, in mm.
     pub position: [f64; 4],
-    /// What.
+    /// The event.
     pub what: What,
 }
 
-/// What happened.
+/// Kind of event.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum What {
     /// A task begins a step.
@@ -30,7 +30,7 @@ pub enum What {
         /// From 1.
         step: usize,
     },
-    /// A port of outputs changed.
+    /// An output port has changed.
     Output {
         /// 0 to 4.
         station: usize,
@@ -39,19 +39,19 @@ pub enum What {
         /// Bit 1 of the manual is the least significant.
         bits: u8,
     },
-    /// An error came up; the code is of TO 4-1.
+    /// An error occurred; codes as in TO 4-1.
     Error(u8),
-    /// Programs stand, and can go on.
+    /// Programs have stopped and can continue.
     Stopped,
-    /// A task came to its end, 1 to 4.
+    /// A task, 1 to 4, has ended.
     Ended(usize),
-    /// The axes came to rest after a return to origin.
+    /// The return to origin is complete.
     Origin,
-    /// A line of the console that had been put off could not be carried out.
+    /// A scheduled console line could not be executed.
     Console(String),
 }
 
-/// The events, while somebody watches.
+/// Recorder of events.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Trace {
     events: Option<VecDeque<Event>>,
@@ -75,7 +75,7 @@ impl Trace {
         events.push_back(Event { at, position, what });
     }
 
-    /// Notes the output ports that have changed since the last time; at first all are off.
+    /// Records output ports that have changed since the last call; initially all are off.
     pub(super) fn outputs(&mut self, at: Now, position: Coordinates, outputs: impl Iterator<Item = (Port, u8)>) {
         for (port, bits) in outputs {
             if self.shown.insert(port, bits).unwrap_or_default() != bits {

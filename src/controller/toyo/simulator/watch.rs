@@ -1,4 +1,4 @@
-//! What follows from where the axes are: outputs by place, limits, things in the way.
+//! Effects of axis positions: position outputs, limits, obstacles.
 
 use std::time::Duration;
 
@@ -12,23 +12,23 @@ use super::trace::What;
 use super::world::World;
 use crate::Now;
 
-/// Places that differ by no more than this many mm are the same.
+/// Tolerance in mm for equal positions.
 pub(super) const NEAR: f64 = 1e-6;
-/// How long a motor can push with all its force.
+/// Time that a motor can push with full force.
 const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
 
 impl World {
-    /// Adds to the trace, if somebody watches.
+    /// Records an event, if the trace is on.
     pub(super) fn note(&mut self, what: What) {
         if self.trace.is_watched() {
             self.trace.record(self.now, self.arm.position(self.now), what);
         }
     }
 
-    /// Sets outputs when an axis passes a place, or at once if it is there.
+    /// Sets outputs when an axis passes a position, or at once if it has passed.
     pub(super) fn output_at(&mut self, output: OutputAt) -> Result<(), u8> {
         self.ports.output(output.port).ok_or(code::PORT)?;
-        // A loop that asks for the same again asks for it once.
+        // A repeated request of a loop counts once.
         self.outputs_at.retain(|other| *other != output);
         self.outputs_at.push(output);
         self.follow_outputs();
@@ -36,7 +36,7 @@ impl World {
         Ok(())
     }
 
-    /// Sets the outputs whose places are passed.
+    /// Sets the outputs whose positions are passed.
     fn follow_outputs(&mut self) {
         let place = self.arm.commanded(self.now);
         let ports = &mut self.ports;
@@ -49,7 +49,6 @@ impl World {
         });
     }
 
-    /// Ends the pulses that are due.
     pub(super) fn end_pulses(&mut self) {
         let (now, ports) = (self.now, &mut self.ports);
         self.pulses.retain(|(at, port, mask)| {
@@ -60,7 +59,7 @@ impl World {
         });
     }
 
-    /// Does what follows from where the axes have got to.
+    /// Handles the position events that are due.
     pub(super) fn crossings(&mut self) {
         if self.crossing.is_some_and(|at| at <= self.now) {
             self.crossing = None;
@@ -106,7 +105,6 @@ impl World {
         }
     }
 
-    /// Judges an axis that has pushed for long enough.
     fn judge(&mut self, axis: usize) {
         if self.arm.push(axis, self.now) <= 0.0 {
             self.presses[axis] = None;
@@ -126,7 +124,7 @@ impl World {
         }
     }
 
-    /// Ends what has got to where it was going.
+    /// Handles moves that have ended.
     pub(super) fn arrivals(&mut self) {
         self.arm.settle(self.now);
         self.end_homing();
@@ -149,16 +147,16 @@ impl World {
         }
     }
 
-    /// Whether a task's axes are where they should be, and the move may end there.
+    /// Whether the axes of a task are in position, and the move may end there.
     fn has_arrived(&self, index: usize) -> bool {
         if self.machine.tasks[index].axes.iter().any(|&axis| self.arm.push(axis, self.now) > 0.0) {
             return false;
         }
-        // A move that ends at the limit or locked does not end on arrival, unless it may.
+        // A move with torque or lock end does not end on arrival, unless AE allows it.
         self.tasks[index].limited.is_none_or(|torque| torque.arrival_end || !(torque.torque_end || torque.lock_end))
     }
 
-    /// Drives the outputs that say how the controller is.
+    /// Updates the status outputs.
     pub(super) fn refresh(&mut self) {
         for place in 0..self.settings.signals.len() {
             let (bit, signal) = self.settings.signals[place];
@@ -197,7 +195,7 @@ impl World {
         }
     }
 
-    /// Finds when an axis next passes a place that matters, if the moves have changed.
+    /// Finds the next position event after a change of the moves.
     pub(super) fn watch(&mut self) {
         if self.watched == self.arm.changes() {
             return;
@@ -205,7 +203,7 @@ impl World {
         self.watched = self.arm.changes();
         self.crossing = None;
         if !self.arm.is_moving(self.now) {
-            // What is set against an axis at rest does not push.
+            // An obstacle at an axis at rest is not pushed.
             (0..AXES).filter(|&axis| self.arm.push(axis, self.now) <= 0.0).for_each(|axis| self.presses[axis] = None);
             return;
         }
@@ -235,12 +233,11 @@ impl World {
     }
 }
 
-/// Whether a coordinate is on a side of a place, or there.
+/// Whether a coordinate is on a side of a position, or at it.
 fn is_beyond(coordinate: f64, at_least: bool, place: f64) -> bool {
     if at_least { coordinate >= place - NEAR } else { coordinate <= place + NEAR }
 }
 
-/// Whether a coordinate is past a limit.
 fn is_past(coordinate: f64, upwards: bool, limit: f64) -> bool {
     if upwards { coordinate > limit + NEAR } else { coordinate < limit - NEAR }
 }

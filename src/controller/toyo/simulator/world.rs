@@ -1,4 +1,4 @@
-//! The controller as a machine: switches, power, errors, what may be done when, and the passing of time.
+//! Machine state: switches, power, errors, permissions, time.
 
 use std::time::Duration;
 
@@ -17,15 +17,15 @@ use crate::simulator::timeline::Timeline;
 use crate::toyo::field::Mask;
 use crate::toyo::table::{FROM_3_36, Models};
 
-/// Counters, the first one of which nobody can name, and timers likewise.
+/// Number of counters and timers, with index 0 unused.
 pub(super) const COUNTERS: usize = 100;
 pub(super) const TIMERS: usize = 10;
-/// What a timer shows at most, in 0.1 s.
+/// Maximum of a timer in 0.1 s.
 const MOST_TENTHS: u32 = 9999;
 /// In hundredths.
 const VERSION_3_36: i32 = 336;
 
-/// Everything an operator or the host can switch.
+/// States that operator or host can switch.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Switches {
@@ -35,13 +35,12 @@ pub(super) struct Switches {
     pub(super) servo: [bool; AXES],
     pub(super) mode: Mode,
     pub(super) palletizing: bool,
-    /// Whether parameter 2 was written since power came on.
+    /// Whether parameter 2 was written since power on.
     pub(super) machine_changed: bool,
     pub(super) slaves_ready: bool,
     pub(super) battery_low: bool,
 }
 
-/// How programs run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Mode {
@@ -50,7 +49,6 @@ pub(super) enum Mode {
     Program,
 }
 
-/// Which kind of program runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Sequential,
@@ -59,16 +57,15 @@ pub(super) enum Kind {
     Easy,
 }
 
-/// A JOG under way.
+/// A running JOG.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jog {
     pub(super) axis: usize,
     pub(super) word: &'static str,
-    /// Coordinate beyond which it must not get, and whether that is upwards.
+    /// Limit coordinate, and whether it is upwards.
     pub(super) limit: Option<(f64, bool)>,
 }
 
-/// A controller with all that is in it.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub(super) struct World {
@@ -76,12 +73,11 @@ pub(super) struct World {
     pub(super) model: String,
     /// In hundredths.
     pub(super) version: i32,
-    /// Axes that are fitted.
     pub(super) axes: usize,
     pub(super) robot_types: Vec<i32>,
     /// Power-on time before the start.
     pub(super) meter: Duration,
-    /// How long an instruction takes.
+    /// Duration of an instruction.
     pub(super) tick: Duration,
     pub(super) memory: Memory,
     pub(super) settings: Settings,
@@ -89,44 +85,44 @@ pub(super) struct World {
     pub(super) switches: Switches,
     pub(super) ports: Ports,
     pub(super) arm: Arm,
-    /// Whether synchronized axes found their origin together.
+    /// Whether synchronized axes have found their origin together.
     pub(super) synchronized: bool,
     pub(super) tasks: [Task; TASKS],
-    /// Whether programs stand, and can go on.
+    /// Whether programs are stopped and can continue.
     pub(super) stopped: bool,
     /// Whether the pause input holds programs.
     pub(super) pausing: bool,
-    /// Steps that task 1 may still do in step mode.
+    /// Remaining steps of task 1 in step mode.
     pub(super) allowance: Option<u32>,
     pub(super) jog: Option<Jog>,
-    /// Whether JOG was reset, as it must be once.
+    /// Whether JOG was reset, which is required once.
     pub(super) jog_ready: bool,
-    /// The task that commands are about.
+    /// The current task of host commands.
     pub(super) current: usize,
-    /// The palletizing and the easy program chosen.
+    /// The selected palletizing and easy program.
     pub(super) pallet: usize,
     pub(super) easy: usize,
     pub(super) counters: [u16; COUNTERS],
-    /// When each timer was set going, and what it showed then.
+    /// Start time and start value of each timer.
     pub(super) timers: [Option<(Now, u32)>; TIMERS],
     pub(super) errors: Errors,
     pub(super) card: Card,
-    /// Outputs to be set when their time is over.
+    /// Pending ends of output pulses.
     pub(super) pulses: Vec<(Now, Port, Mask)>,
     pub(super) outputs_at: Vec<OutputAt>,
-    /// Axes that push against something.
+    /// Axes that push against an obstacle.
     pub(super) presses: [Option<Press>; AXES],
-    /// When an axis next passes a place that matters, and of which state of the arm that is true.
+    /// Time of the next position event, and the arm state that it was computed for.
     pub(super) crossing: Option<Now>,
     pub(super) watched: u64,
     pub(super) events: Timeline,
     pub(super) trace: Trace,
-    /// The block that was refused last, and why.
+    /// The last refused block, with the reason.
     pub(super) refusal: Option<(String, String)>,
 }
 
 impl World {
-    /// Lets time pass. What is due is done in its order.
+    /// Advances the time, and handles events in order.
     pub(super) fn advance(&mut self, to: Now) {
         while let Some(at) = self.next().filter(|&at| at <= to) {
             self.now = self.now.max(at);
@@ -135,7 +131,7 @@ impl World {
         self.now = self.now.max(to);
     }
 
-    /// When something is due.
+    /// Time of the next event.
     pub(super) fn next(&self) -> Option<Now> {
         let tasks = if self.is_held() { None } else { self.tasks.iter().filter_map(Task::due).min() };
         let presses = self.presses.iter().flatten().filter_map(|press| press.due).min();
@@ -146,10 +142,10 @@ impl World {
             .min()
     }
 
-    /// Does what is due now.
+    /// Handles the events that are due.
     fn happen(&mut self) {
         while let Some(line) = self.events.take(self.now) {
-            // What is impossible by now is not done; `why` and the trace tell.
+            // An impossible line is ignored; `why` and the trace show it.
             if let Err(why) = console::execute(self, &line) {
                 self.note(What::Console(format!("{line}: {why}")));
                 self.refusal = Some((line, why));
@@ -163,7 +159,7 @@ impl World {
         self.settle();
     }
 
-    /// Sees to what follows from a change by itself: waits that are over, outputs, places to watch.
+    /// Handles consequences of a change: finished waits, outputs, position events.
     pub(super) fn settle(&mut self) {
         self.follow_pause();
         self.arrivals();
@@ -172,13 +168,13 @@ impl World {
         self.watch();
     }
 
-    /// Puts power off and on.
+    /// Switches power off and on.
     pub(super) fn power_cycle(&mut self) {
         self.arm.freeze(self.now);
         self.errors.power_cut();
         self.card.forget();
         if !self.machine.absolute {
-            // Incremental encoders count from where they are when power comes.
+            // Incremental encoders count from the position at power on.
             let place = self.arm.position(self.now);
             self.arm.known = [false; AXES];
             for (axis, counted) in place.into_iter().enumerate() {
@@ -198,7 +194,7 @@ impl World {
         self.settle();
     }
 
-    /// Goes by the parameters that are stored, those of the machine included.
+    /// Applies all stored parameters, including those of the machine.
     pub(super) fn load(&mut self) {
         self.machine = Machine::from_content(&self.memory.content);
         self.settings = Settings::from_content(&self.memory.content);
@@ -208,7 +204,6 @@ impl World {
         self.switches.machine_changed = false;
     }
 
-    /// What happens when power comes on.
     pub(super) fn power_up(&mut self) {
         self.load();
         self.synchronized = false;
@@ -232,7 +227,7 @@ impl World {
         }
     }
 
-    /// Stops everything for an error.
+    /// Stops everything after an error.
     pub(super) fn fail(&mut self, code: u8) {
         self.errors.raise(code, self.powered());
         self.note(What::Error(code));
@@ -247,7 +242,7 @@ impl World {
         }
         self.end_host_motion();
         for (index, task) in self.tasks.iter_mut().enumerate() {
-            // The first task stands at its step, and can go on; the others are over.
+            // Task 1 keeps its step and can continue; the others have ended.
             if index == 0 {
                 task.running = false;
             } else {
@@ -260,7 +255,7 @@ impl World {
         self.outputs_at.clear();
     }
 
-    /// Stops what runs, so that it can go on.
+    /// Stops programs so that they can continue.
     pub(super) fn stop(&mut self) {
         self.arm.brake(self.now);
         self.end_host_motion();
@@ -270,7 +265,7 @@ impl World {
         }
     }
 
-    /// Lets what stands go on.
+    /// Continues stopped programs.
     pub(super) fn go_on(&mut self) {
         for index in 0..TASKS {
             if self.tasks[index].running && !self.tasks[index].stopped {
@@ -279,7 +274,7 @@ impl World {
         }
     }
 
-    /// Lets a task go on with the move it was interrupted in.
+    /// Continues the interrupted move of a task.
     pub(super) fn resume_task(&mut self, index: usize) {
         self.arm.resume(index, self.now);
         let task = &mut self.tasks[index];
@@ -288,7 +283,7 @@ impl World {
         }
     }
 
-    /// Ends what moves without a program: JOG and return to origin.
+    /// Ends motion without a program: JOG and return to origin.
     pub(super) fn end_host_motion(&mut self) {
         self.arm.drop_held(HOST);
         self.jog = None;
@@ -297,7 +292,7 @@ impl World {
         }
     }
 
-    /// Forgets all programs under way; the next start is at the beginning.
+    /// Discards all programs; the next start is at the first step.
     pub(super) fn reset_program(&mut self) {
         self.tasks.iter_mut().for_each(Task::reset);
         (0..TASKS).for_each(|task| self.arm.drop_held(task));
@@ -308,22 +303,21 @@ impl World {
         self.jog = None;
     }
 
-    /// Whether any program is under way, standing or not.
+    /// Whether any program is running or stopped.
     pub(super) fn is_running(&self) -> bool {
         self.tasks.iter().any(|task| task.running)
     }
 
-    /// Whether programs are held, by STOP or by the pause input.
+    /// Whether STOP or the pause input holds programs.
     pub(super) const fn is_held(&self) -> bool {
         self.stopped || self.pausing
     }
 
-    /// Whether programs are under way, and held.
     pub(super) fn is_paused(&self) -> bool {
         self.is_held() && self.is_running()
     }
 
-    /// Whether something is executed (TO 2-2, status 0 bit 1).
+    /// Whether anything runs (TO 2-2, status 0 bit 1).
     pub(super) fn is_executing(&self) -> bool {
         (self.is_running() && !self.stopped) || self.arm.is_moving(self.now) || self.arm.homing.is_some()
     }
@@ -337,7 +331,7 @@ impl World {
         }
     }
 
-    /// Whether this controller has what some models have.
+    /// Whether this controller supports a feature of some models.
     pub(super) fn has(&self, only_on: Models) -> bool {
         only_on.is_empty()
             || only_on.contains(&self.model.as_str())
@@ -351,7 +345,7 @@ impl World {
         bits.iter().rev().fold(0, |byte, bit| byte << 1 | u8::from(*bit))
     }
 
-    /// Whether all axes that are fitted know their origin.
+    /// Whether the origin of all fitted axes is known.
     pub(super) fn knows_origin(&self) -> bool {
         self.arm.known[..self.axes].iter().all(|known| *known)
     }
@@ -360,7 +354,7 @@ impl World {
         self.switches.servo[..self.axes].iter().all(|on| *on)
     }
 
-    /// Whether a start would be taken (status 4 bit 4).
+    /// Whether a start is possible (status 4 bit 4).
     pub(super) fn is_ready(&self) -> bool {
         self.has_servo() && self.errors.current().is_none() && !self.switches.machine_changed
     }
@@ -370,19 +364,19 @@ impl World {
         self.meter.saturating_add(self.now)
     }
 
-    /// What a timer shows, in 0.1 s.
+    /// Value of a timer in 0.1 s.
     pub(super) fn timer(&self, number: usize) -> u32 {
         let Some(Some((since, from))) = self.timers.get(number) else { return 0 };
         let tenths = u32::try_from(self.now.saturating_sub(*since).as_millis() / 100).unwrap_or(MOST_TENTHS);
         from.saturating_add(tenths).min(MOST_TENTHS)
     }
 
-    /// The offset that each axis goes by.
+    /// Current offset of each axis.
     pub(super) fn offset(&self) -> Coordinates {
         std::array::from_fn(|axis| self.tasks[self.arm.owners[axis]].offset[axis])
     }
 
-    /// A page of the status (TO 2-2).
+    /// A status page (TO 2-2).
     pub(super) fn status(&self, page: i32) -> u8 {
         let waits = self.tasks.iter().any(|task| task.running && matches!(task.wait, Wait::Test(_)));
         let bits: [bool; 8] = match page {

@@ -13,30 +13,30 @@ use crate::toyo::layout::Layout;
 /// A command of the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Row {
-    /// Which.
+    /// Identifier.
     pub command: Command,
-    /// Its four letters.
+    /// Four-letter word.
     pub word: &'static str,
-    /// What it does.
+    /// Effect.
     pub about: &'static str,
-    /// What it does to the world; a JOG that moves no axis does less.
+    /// Risk of the command; a JOG that moves no axis has a lower one.
     pub risk: Risk,
-    /// Whether it is refused unless the host is ON (TO 2-1, note 1; ambiguities C13 and C14).
+    /// Whether it requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
     pub needs_host: bool,
-    /// Whether it is refused while a program runs, or wears the EEPROM (TO 2-1, note 2).
+    /// Whether it writes the EEPROM: it is refused while a program runs, and wears the EEPROM (TO 2-1, note 2).
     pub writes_eeprom: bool,
-    /// The forms of the request, without `@`.
+    /// Forms of the request, without `@`.
     pub requests: &'static [Layout],
-    /// The forms of the answer; none where it is `@OK`. The first that fits counts.
+    /// Forms of the answer; empty for `@OK`. The first that fits counts.
     pub answers: &'static [Layout],
-    /// Controllers that have it; empty for all.
+    /// Controllers that support it; empty for all.
     pub only_on: Models,
-    /// Where the manual has it.
+    /// Section of the manual.
     pub section: &'static str,
 }
 
 impl Row {
-    /// By its four letters; HTSK is what the list of commands calls CTSK (ambiguity C1).
+    /// The row of a word. HTSK is another name of CTSK in the list of commands (ambiguity C1).
     pub fn named(word: &str) -> Option<&'static Self> {
         let word = if word == "HTSK" { "CTSK" } else { word };
         ROWS.iter().find(|row| row.word == word)
@@ -85,7 +85,7 @@ impl Row {
 
 macro_rules! commands {
     ($($command:ident $word:literal $risk:ident $section:literal $about:literal $(.$method:ident($($argument:tt)*))*;)*) => {
-        /// Which command.
+        /// Command identifier.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "each is explained in its row")]
         pub enum Command {
@@ -93,13 +93,13 @@ macro_rules! commands {
         }
 
         impl Command {
-            /// Its row.
+            /// Row of the table.
             pub fn row(self) -> &'static Row {
                 &ROWS[self as usize]
             }
         }
 
-        /// All of them, in the manual's order.
+        /// All commands, in the order of the manual.
         pub static ROWS: [Row; [$(Command::$command),*].len()] = [
             $({
                 const ROW: Row = Row::new(Command::$command, $word, Risk::$risk, $section, $about);
@@ -121,7 +121,7 @@ const ROBOT_TYPE: Field = digits("robot_type", 6, 0, 999_999, "robot type");
 const AXIS_NUMBER: Field = digits("axis", 1, 1, 4, "axis");
 const BODY: Field = Field::new("body", Form::Text, "what it is about, and its values");
 const INSTRUCTION: Field = Field::new("text", Form::Text, "instruction");
-/// 0 is the step being executed (ambiguity C4).
+/// 0 is the step in execution (ambiguity C4).
 const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step, 0 for the current one");
 const PALLET: Field = digits("program", 2, 1, 16, "palletizing program");
 const RECORD: Field = digits("record", 2, 1, 16, "record");
@@ -132,7 +132,7 @@ const OUTPUT_SCREEN: Field = digits("screen", 1, 1, 5, "screen");
 const SYSTEM: Field = bits("sy01", "system port");
 const ALL_AXES: &[Field] = &[X, Y, Z, R];
 
-/// What MINT clears (TO 2-3); 5 is reserved, so it is not here.
+/// Memory areas that MINT clears (TO 2-3); 5 is reserved and not included.
 pub const CLEARS: &[Word] = &[
     word("0", "everything"),
     word("1", "sequential program of the current task"),
@@ -142,7 +142,7 @@ pub const CLEARS: &[Word] = &[
     word("6", "coordinate table of the current task"),
 ];
 
-/// What JGST does to an axis.
+/// JGST words for an axis.
 pub const JOGS: &[Word] = &[
     word("RS", "reset"),
     word("SP", "stop"),
@@ -187,7 +187,7 @@ const fn starred(name: &'static str, width: u8, most: i32, about: &'static str) 
     digits(name, width, 0, most, about).starred()
 }
 
-/// The ports of an answer are numbered there; the names count them.
+/// The answer numbers its ports, and so do the field names.
 const P1: (Field, Field) = (port("port1"), bits("bits1", "bits 8 to 1"));
 const P2: (Field, Field) = (port("port2"), bits("bits2", "bits 8 to 1"));
 const P3: (Field, Field) = (port("port3"), bits("bits3", "bits 8 to 1"));

@@ -1,8 +1,8 @@
-//! Fields and words that several tables share.
+//! Fields and words of several tables.
 
 use crate::toyo::field::{Field, Form, Number, Word};
 
-/// A word that says what it means.
+/// A word that is its own description.
 pub const fn plain(text: &'static str) -> Word {
     Word { text, about: text }
 }
@@ -12,7 +12,7 @@ pub const fn word(text: &'static str, about: &'static str) -> Word {
     Word { text, about }
 }
 
-/// A whole number of so many digits.
+/// An integer with this number of digits.
 pub const fn digits(name: &'static str, width: u8, least: i32, most: i32, about: &'static str) -> Field {
     Field::new(name, Form::Number(Number::digits(width, least, most)), about)
 }
@@ -22,17 +22,17 @@ pub const fn fixed(name: &'static str, shape: (u8, u8), least: i32, most: i32, a
     Field::new(name, Form::Number(Number::fixed(shape.0, shape.1, least, most)), about)
 }
 
-/// One of some words.
+/// One of several words.
 pub const fn words(name: &'static str, words: &'static [Word], about: &'static str) -> Field {
     Field::new(name, Form::Word(words), about)
 }
 
-/// A place on an axis: `+0000.00`.
+/// A coordinate of an axis: `+0000.00`.
 pub const fn place(name: &'static str, about: &'static str) -> Field {
     Field::new(name, Form::Number(Number::signed(4, 2, -800_000, 800_000)), about).unit("mm")
 }
 
-/// The same field for each of the four axes.
+/// One field for each of the four axes.
 pub const fn axes(form: Form, unit: &'static str, about: &'static str) -> [Field; 4] {
     let axis = Field::new("ax1", form, about).unit(unit);
     [axis, axis.named("ax2"), axis.named("ax3"), axis.named("ax4")]
@@ -49,19 +49,19 @@ pub const BIT: Field = digits("bit", 1, 0, 8, "bit of the port, 0 for none");
 pub const TASK: Field = digits("task", 2, 1, 4, "task");
 pub const STEP: Field = digits("step", 4, 1, 5000, "step of the sequential program");
 pub const TAG: Field = digits("tag", 3, 1, 999, "tag");
-/// 0 is none (ambiguity R7).
+/// 0 means none (ambiguity R7).
 pub const TAG_OR_NONE: Field = digits("tag", 3, 0, 999, "tag, 0 for none");
 pub const COUNTER: Field = digits("counter", 2, 1, 99, "counter");
-/// 0 is none (ambiguity R7).
+/// 0 means none (ambiguity R7).
 pub const COUNTER_OR_NONE: Field = digits("counter", 2, 0, 99, "counter whose value is added, 0 for none");
 pub const COUNT: Field = digits("count", 4, 0, 9999, "count");
 pub const TIMER: Field = digits("timer", 1, 1, 9, "timer");
 pub const TIME: Field = fixed("time", (3, 1), 0, 9999, "time").unit("s");
 pub const GROUP: Field = digits("group", 2, 1, 32, "MVM group");
 pub const POINT: Field = digits("point", 3, 1, 999, "row of the coordinate table");
-/// 0 is the counter's value alone (ambiguity R7).
+/// 0 means the counter value alone (ambiguity R7).
 pub const POINT_OR_COUNTER: Field = digits("point", 3, 0, 999, "row of the coordinate table, 0 for the counter alone");
-/// 0 is the speed of the last SPD (ambiguity R7); rows beyond 10 cannot be named (R6).
+/// 0 means the speed of the last SPD (ambiguity R7); rows above 10 have no notation (R6).
 pub const SPEED: Field = digits("speed", 2, 0, 10, "row of the speed table, 0 for that of the last SPD");
 pub const MASK: Field = Field::new("data", Form::Mask, "bits 8 to 1; a dot leaves its bit alone");
 

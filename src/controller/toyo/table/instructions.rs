@@ -11,27 +11,27 @@ use crate::toyo::layout::Layout;
 /// An instruction of a sequential program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instruction {
-    /// Which.
+    /// Identifier.
     pub op: Op,
-    /// Its first word.
+    /// First word.
     pub word: &'static str,
     /// Word and operands.
     pub layout: Layout,
-    /// What it does.
+    /// Effect.
     pub about: &'static str,
-    /// One as a person writes it.
+    /// Example in user notation.
     pub example: &'static str,
-    /// Controllers that have it; empty for all.
+    /// Controllers that support it; empty for all.
     pub only_on: Models,
 }
 
 impl Instruction {
-    /// By its word.
+    /// The row of a word.
     pub fn named(word: &str) -> Option<&'static Self> {
         INSTRUCTIONS.iter().find(|row| row.word == word)
     }
 
-    /// How it is written: `JMPC TAG=<tag> CN<counter><compare><count>`.
+    /// Syntax: `JMPC TAG=<tag> CN<counter><compare><count>`.
     pub fn form(&self) -> String {
         let mut fields = self.layout.fields.iter();
         let mut form = String::new();
@@ -47,7 +47,7 @@ impl Instruction {
         form
     }
 
-    /// Whether it needs axes: an axisless task cannot do it (TO 2-4, E19).
+    /// Whether it needs axes: a task without axes cannot run it (TO 2-4, E19).
     pub const fn moves(&self) -> bool {
         matches!(
             self.op,
@@ -56,12 +56,12 @@ impl Instruction {
     }
 }
 
-/// The section of the manual that has all of them.
+/// Section of the manual with all instructions.
 pub const SECTION: &str = "2-5";
 
 macro_rules! instructions {
     ($($op:ident $word:literal, $text:literal, $fields:expr, $about:literal, $example:literal $(, $only_on:expr)?;)*) => {
-        /// Which instruction.
+        /// Instruction identifier.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "each is explained in its row")]
         pub enum Op {
@@ -69,13 +69,13 @@ macro_rules! instructions {
         }
 
         impl Op {
-            /// Its row.
+            /// Row of the table.
             pub fn row(self) -> &'static Instruction {
                 &INSTRUCTIONS[self as usize]
             }
         }
 
-        /// All of them, in the manual's order.
+        /// All instructions, in the order of the manual.
         pub static INSTRUCTIONS: [Instruction; [$(Op::$op),*].len()] = [
             $(Instruction {
                 op: Op::$op,

@@ -1,6 +1,6 @@
-//! The protocol as tables: commands, parameters, instructions, palletizing records.
+//! Protocol tables: commands, parameters, instructions, palletizing records.
 //!
-//! Encoder, decoder, simulator, `raw`, `decode`, `explain`, help and completion read them; there is no second list.
+//! They are the single source for encoder, decoder, simulator, `raw`, `decode`, `explain`, help and completion.
 
 pub mod commands;
 mod fields;
@@ -13,7 +13,7 @@ pub use instructions::{Instruction, Op};
 pub use palletizing::Pallet;
 pub use parameters::{Group, Parameter};
 
-/// Controllers that some rows are limited to, as the manual names them.
+/// Controllers that a row is limited to, with the names of the manual.
 pub type Models = &'static [&'static str];
 
 /// No limit.
@@ -22,7 +22,7 @@ pub const EVERY: Models = &[];
 pub const KCA20: Models = &["KCA-20-M00", "KCA-20-M01"];
 /// The series with torque limits.
 pub const KCA25: Models = &["KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
-/// Both of them, which also have no EEPROM that wears out (TO 2-1, note 2).
+/// Both series. Their EEPROM does not wear out (TO 2-1, note 2).
 pub const KCA: Models = &["KCA-20-M00", "KCA-20-M01", "KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
-/// A version instead of a model (ambiguity R24).
+/// A minimum version instead of a model (ambiguity R24).
 pub const FROM_3_36: Models = &["version 3.36 or later"];

@@ -7,30 +7,30 @@ use crate::toyo::layout::Layout;
 /// A record of a palletizing program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pallet {
-    /// 1 to 16.
+    /// Number, 1 to 16.
     pub number: u8,
-    /// As typed: `source-p0`.
+    /// Name for user input: `source-p0`.
     pub name: &'static str,
-    /// What it holds.
+    /// Content.
     pub about: &'static str,
-    /// Its fields, without program and number.
+    /// Fields, without program and number.
     pub layout: Layout,
 }
 
 impl Pallet {
-    /// By its number.
+    /// The record with this number.
     pub fn numbered(number: i32) -> Option<&'static Self> {
         RECORDS.iter().find(|record| i32::from(record.number) == number)
     }
 
-    /// By its name or number, as typed.
+    /// The record with this name or number.
     pub fn named(name: &str) -> Option<&'static Self> {
         let number = name.parse::<u8>().ok();
         RECORDS.iter().find(|record| record.name == name || Some(record.number) == number)
     }
 }
 
-/// Which side has a matrix of places (ambiguity of the words: source and destination).
+/// Which side has a matrix of positions (ambiguity of the words: source and destination).
 pub const MODE: Field = words(
     "mode",
     &[
@@ -55,7 +55,7 @@ const fn record(number: u8, name: &'static str, layout: Layout, about: &'static 
     Pallet { number, name, about, layout }
 }
 
-/// All of them, in their order.
+/// All records, in their order.
 pub static RECORDS: [Pallet; 16] = [
     record(1, "start", Layout::new("TAG={} MOD={}", &[TAG_OR_NONE, MODE]), "start program and mode"),
     record(2, "source-p0", CORNER, "source matrix: corner P0"),

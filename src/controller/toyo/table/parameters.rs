@@ -1,7 +1,7 @@
 //! The 83 parameters and tables (TO 2-4).
 //!
-//! `M` mode, `P` parameter 1, `E` parameter 2 (a change needs a power cycle), `U` parameter 3 (not for normal use), `T`
-//! tables.
+//! Groups: `M` mode, `P` parameter 1, `E` parameter 2 (a change needs a power cycle), `U` parameter 3 (not for normal
+//! use), `T` tables.
 
 use super::fields::{
     AIM, AXIS, BIT, COUNTER, GROUP, POINT, PORT, R, SIDE, STATION, VALID, X, Y, Z, axes, digits, fixed, place, plain,
@@ -11,23 +11,23 @@ use super::{EVERY, FROM_3_36, KCA, KCA20, KCA25, Models};
 use crate::toyo::field::{Field, Form, Number, Word};
 use crate::toyo::layout::Layout;
 
-/// What a parameter belongs to.
+/// Parameter group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Group {
-    /// `M`: how the controller is used.
+    /// `M`: operating mode.
     Mode,
     /// `P`, parameter 1: axes.
     Axis,
-    /// `E`, parameter 2: the machine. After a change only communication works until the power was off.
+    /// `E`, parameter 2: machine. After a change only communication works until a power cycle.
     Machine,
-    /// `U`, parameter 3: not used normally.
+    /// `U`, parameter 3: not for normal use.
     Special,
     /// `T`: tables, with a row number.
     Table,
 }
 
 impl Group {
-    /// In words.
+    /// Readable name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Mode => "mode",
@@ -39,36 +39,36 @@ impl Group {
     }
 }
 
-/// A parameter, or a table whose rows have a number.
+/// A parameter, or a table with numbered rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parameter {
-    /// As the manual names it: `P01`, `T1`; a sheet of the MVM table is `T4.S1`.
+    /// Id of the manual: `P01`, `T1`; a sheet of the MVM table is `T4.S1`.
     pub id: &'static str,
-    /// As typed: `soft-limit-plus`.
+    /// Name for user input: `soft-limit-plus`.
     pub name: &'static str,
-    /// What it holds.
+    /// Content.
     pub about: &'static str,
-    /// All that a write says after `WPAR`.
+    /// Text of a write, after `WPAR`.
     pub layout: Layout,
-    /// All that a read says after `RPAR`: the id and, of a table, which row.
+    /// Text of a read, after `RPAR`: the id and, for a table, the row.
     pub key: Layout,
-    /// Controllers that have it; empty for all.
+    /// Controllers that support it; empty for all.
     pub only_on: Models,
 }
 
 impl Parameter {
-    /// By its id or its name, in any case.
+    /// The parameter with this id or name, in any case.
     pub fn named(name: &str) -> Option<&'static Self> {
         let is = |other: &str| other.eq_ignore_ascii_case(name);
         PARAMETERS.iter().find(|row| is(row.id) || is(row.name))
     }
 
-    /// The one that a text after `RPAR` or `WPAR` is about.
+    /// The parameter in a text after `RPAR` or `WPAR`.
     pub fn from_text(text: &str) -> Option<&'static Self> {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
             let mut given = text.split(' ').filter(|word| !word.is_empty());
-            // `T2 V` and the like end in letters that a number is glued to, or in a key.
+            // `T2 V` and similar ids end in letters followed directly by a number, or in a key.
             id.split(' ').all(|word| given.next().is_some_and(|given| given == word || is_key(word, given)))
         })
     }
@@ -84,17 +84,17 @@ impl Parameter {
         }
     }
 
-    /// The number of a row, for tables.
+    /// Field of the row number, for tables.
     pub const fn row(&self) -> Option<&'static Field> {
         self.key.fields.first()
     }
 
-    /// Its values, without the number of the row.
+    /// Values, without the row number.
     pub fn fields(&self) -> &'static [Field] {
         &self.layout.fields[self.key.fields.len()..]
     }
 
-    /// The values alone, as dumps and messages show them: `AX1=… AX2=…`.
+    /// Layout of the values only, for dumps and messages: `AX1=… AX2=…`.
     pub fn body(&self) -> Layout {
         let text = self.layout.text.strip_prefix(self.key.text).unwrap_or(self.layout.text);
         Layout { text: text.trim_start_matches([' ', '=']), fields: self.fields() }
@@ -127,9 +127,9 @@ impl Parameter {
 
 /// A bit of a port: `0/01/0`.
 const PORT_BIT: &[Field] = &[STATION, PORT, BIT];
-/// Only the controller's own ports (ambiguity R12).
+/// Only ports of the controller itself (ambiguity R12).
 const OWN_PORT_BIT: &[Field] = &[digits("station", 1, 0, 0, "I/O station"), PORT, BIT];
-/// Ports up to 13 only (ambiguity R12).
+/// Only ports up to 13 (ambiguity R12).
 const DIRECT: Field = digits("port", 2, 1, 13, "port");
 const DIRECT_BITS: &[Field] = &[
     STATION.named("station1"),
@@ -160,7 +160,7 @@ const TASK_BITS: &[Field] = &[
     BIT.named("bit4"),
 ];
 const CC_LINK_RATES: &[Word] = &[plain("156K"), plain("625K"), plain("2.5M"), plain("5M"), plain("10M")];
-/// The sample's 156K is of CC-Link (ambiguity R10).
+/// 156K in the sample of the manual belongs to CC-Link (ambiguity R10).
 const DEVICENET_RATES: &[Word] = &[plain("125K"), plain("250K"), plain("500K")];
 const OPTIONS: Field = digits("options", 4, 0, 9999, "option flags");
 
@@ -209,7 +209,7 @@ const TASK_STEPS: &[Field] = &[
     digits("task3", 4, 0, 5000, "steps"),
     digits("task4", 4, 0, 5000, "steps"),
 ];
-/// A digit a task: 0 no axes, 1 and 2 as many, 3 three in a plane, 4 three in space, 5 four.
+/// Axes per task, one digit each: 0 none, 1 and 2 that number, 3 three in a plane, 4 three in space, 5 four.
 const COMBINATIONS: &[Word] = &[
     plain("1000"),
     plain("1100"),
@@ -253,7 +253,7 @@ const fn pieces(name: &'static str) -> Field {
 
 const LIMIT_ROW: Field = digits("row", 2, 1, 8, "row");
 
-/// All of them, in the manual's order.
+/// All parameters, in the order of the manual.
 pub static PARAMETERS: [Parameter; 83] = [
     single("M01", "single-operation-input", "M01 {}/{}/{}", PORT_BIT, "input bit for single operation"),
     single("M02", "continuous-start-input", "M02 {}/{}/{}", OWN_PORT_BIT, "input bit for continuous start"),

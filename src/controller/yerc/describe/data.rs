@@ -1,4 +1,4 @@
-//! The data part, by the fields of its row.
+//! Decoder of the data part, by the fields of its row.
 
 use super::{Meaning, Notes, is_backup, little};
 use crate::units::{self, Unit};
@@ -7,7 +7,7 @@ use crate::yerc::request::Request;
 use crate::yerc::table::{Action, Bit, Field, Kind, Row, total};
 
 impl Notes<'_> {
-    /// Notes the data of a request that writes, or of an answer to one that reads.
+    /// Adds the data of a write request, or of a read answer.
     pub(super) fn payload(&mut self, row: &Row, request: &Request) {
         let Some(service) = row.service(request.service) else { return };
         if let Some(plural) = row.plural {
@@ -35,7 +35,7 @@ impl Notes<'_> {
         self.frame.get(super::ACK_AT) == Some(&0)
     }
 
-    /// Notes one element; controllers leave out axes they do not have, so it may end early between fields.
+    /// Adds one element. It may end early between fields: controllers omit missing axes.
     fn element(&mut self, fields: &[Field], prefix: &str) {
         let mut known = Meaning::default();
         for field in fields {
@@ -52,7 +52,6 @@ impl Notes<'_> {
     }
 }
 
-/// What the bytes of a field say.
 fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
     let unsigned = little(bytes);
     let word = u32::try_from(unsigned).unwrap_or_default();
@@ -65,7 +64,7 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
         Kind::F32 => f32::from_bits(word).to_string(),
         Kind::Bits(bits) => flags(bits, word),
         Kind::Choice(choices) => {
-            // A choice sets the unit of what follows: the data type of a position, the speed class of a move.
+            // A choice sets the unit of the following fields: the data type of a position, the speed class of a move.
             known.kind = Some(PositionKind::from_word(word));
             known.speed_class = Some(word);
             let meaning = choices.iter().find(|choice| choice.0 == word).map_or("not defined", |choice| choice.1);
@@ -92,7 +91,7 @@ fn in_unit(unit: Unit, value: i32) -> String {
     format!("{} {}", unit.show(value), unit.symbol)
 }
 
-/// Up to the first NUL, other than printable ASCII escaped.
+/// Text up to the first NUL, with other bytes than printable ASCII escaped.
 fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     format!("\"{}\"", bytes[..end].escape_ascii())

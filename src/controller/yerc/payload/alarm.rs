@@ -5,46 +5,46 @@ use super::text::Text;
 use crate::yerc::Model;
 use crate::yerc::subcode::{self, AlarmKind, SubCode};
 
-/// The three texts that 0x30A and 0x30B add.
+/// The three additional texts of 0x30A and 0x30B.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct AlarmTexts {
-    /// Where it comes from, e.g. `[SV#1]`.
+    /// Source, e.g. `[SV#1]`.
     pub source: Text<16>,
-    /// The sub-code as the pendant shows it.
+    /// Sub-code as displayed on the pendant.
     pub sub_code: Text<96>,
-    /// One `0` or `1` for each character of the text: 1 is shown reversed.
+    /// One `0` or `1` per character of the text: 1 is displayed reversed.
     pub reversed: Text<96>,
 }
 
-/// One alarm; all zero in an empty slot.
+/// An alarm; all zero in an empty slot.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Alarm {
     /// 1 to 9999; 0 for no alarm.
     pub code: u32,
-    /// The sub-code, to be read by `kind`.
+    /// Sub-code; its format depends on `kind`.
     pub data: u32,
-    /// How to read `data`.
+    /// Format of `data`.
     pub kind: AlarmKind,
     /// `YYYY/MM/DD HH:MM`.
     pub time: Text<16>,
-    /// In the pendant's language.
+    /// Name in the pendant language.
     pub name: Text<32>,
-    /// Present in answers to 0x30A and 0x30B.
+    /// Only in answers to 0x30A and 0x30B.
     pub texts: Option<AlarmTexts>,
 }
 
 impl Alarm {
-    /// Bytes of an answer to 0x70 and 0x71.
+    /// Size in bytes in answers to 0x70 and 0x71.
     pub const SIZE: usize = 60;
-    /// Bytes of an answer to 0x30A and 0x30B.
+    /// Size in bytes in answers to 0x30A and 0x30B.
     pub const SIZE_WITH_TEXTS: usize = 268;
 
-    /// Reads the 60-byte form.
+    /// Parses the 60-byte form.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         Self::read(&mut Reader::new("alarm", data))
     }
 
-    /// Reads the 268-byte form.
+    /// Parses the 268-byte form.
     pub fn parse_with_texts(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("alarm with sub-code strings", data);
         let alarm = Self::read(&mut reader)?;
@@ -63,7 +63,7 @@ impl Alarm {
         })
     }
 
-    /// 60 bytes, or 268 with texts.
+    /// Encodes 60 bytes, or 268 with texts.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE_WITH_TEXTS);
         push_u32s(&mut out, [self.code, self.data, self.kind.0]);
@@ -82,7 +82,7 @@ impl Alarm {
         self.code == 0
     }
 
-    /// The sub-code in words; the texts of 0x30A say more where a controller has them.
+    /// Readable sub-code. The texts of 0x30A are better where a controller has them.
     pub fn sub_code(&self, model: Model) -> SubCode {
         subcode::render(self.kind, self.data, model)
     }

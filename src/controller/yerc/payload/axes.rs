@@ -1,14 +1,14 @@
-//! Values and names by axis.
+//! Values and names of axes.
 
 use std::fmt;
 
 use super::reader::{PayloadError, Reader, push_words};
 use super::text::Text;
 
-/// Most axes of a control group.
+/// Maximum number of axes of a control group.
 pub const MAX_AXES: usize = 8;
 
-/// One signed word for each axis that the controller answered; real controllers send only the axes fitted.
+/// One signed word per axis in an answer; controllers send only fitted axes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Axes {
     values: [i32; MAX_AXES],
@@ -28,7 +28,7 @@ impl Axes {
         Some(axes)
     }
 
-    /// Reads as many whole words as there are, at most eight (torque 3.3.8, position error 3.3.7).
+    /// Parses all whole words, at most eight (torque 3.3.8, position error 3.3.7).
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         if data.len() < 4 {
             return Err(PayloadError::Short { what: "axis values", needed: 4, found: data.len() });
@@ -36,7 +36,7 @@ impl Axes {
         Ok(Self::take(data))
     }
 
-    /// The whole words of `data`, none included.
+    /// All whole words of `data`, perhaps none.
     pub(super) fn take(data: &[u8]) -> Self {
         let mut axes = Self::default();
         let mut reader = Reader::new("axis values", data);
@@ -48,19 +48,19 @@ impl Axes {
         axes
     }
 
-    /// The words that are there.
+    /// Encodes the existing words.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(4 * self.count);
         push_words(&mut out, self.as_slice().iter().copied());
         out
     }
 
-    /// The values that are there.
+    /// Existing values.
     pub fn as_slice(&self) -> &[i32] {
         &self.values[..self.count]
     }
 
-    /// Eight values, zero where the controller sent none.
+    /// Eight values, with zeros for missing ones.
     pub const fn padded(&self) -> [i32; MAX_AXES] {
         self.values
     }
@@ -72,7 +72,7 @@ impl fmt::Debug for Axes {
     }
 }
 
-/// The name of each axis; unused ones are empty (FS and DX 3.3.5).
+/// Axis names; unused ones are empty (FS and DX 3.3.5).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct AxisNames {
     /// Up to four bytes each.
@@ -80,7 +80,7 @@ pub struct AxisNames {
 }
 
 impl AxisNames {
-    /// Reads eight names; a shorter answer leaves the rest empty.
+    /// Parses eight names; missing ones are empty.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         if data.len() < 4 {
             return Err(PayloadError::Short { what: "axis names", needed: 4, found: data.len() });
@@ -92,7 +92,7 @@ impl AxisNames {
         Ok(names)
     }
 
-    /// The 32 bytes.
+    /// Encodes 32 bytes.
     pub fn emit(&self) -> Vec<u8> {
         self.names.iter().flat_map(Text::emit).collect()
     }

@@ -3,30 +3,30 @@
 use super::reader::{PayloadError, Reader, push_u32s};
 use super::text::Text;
 
-/// The job a task executes.
+/// Current job of a task.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct JobInfo {
     /// Without `.JBI`.
     pub name: Text<32>,
     /// 0 to 9999.
     pub line: u32,
-    /// 1 to 9998; 0 when none is executed.
+    /// 1 to 9998; 0 without execution.
     pub step: u32,
-    /// In 0.01 %.
+    /// Unit 0.01 %.
     pub speed_override: u32,
 }
 
 impl JobInfo {
-    /// Bytes of an answer.
+    /// Size of an answer in bytes.
     pub const SIZE: usize = 44;
 
-    /// Reads 44 bytes or more.
+    /// Parses at least 44 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("job information", data);
         Ok(Self { name: reader.text()?, line: reader.u32()?, step: reader.u32()?, speed_override: reader.u32()? })
     }
 
-    /// The 44 bytes.
+    /// Encodes 44 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.name.emit().to_vec();
         push_u32s(&mut out, [self.line, self.step, self.speed_override]);
@@ -34,39 +34,39 @@ impl JobInfo {
     }
 }
 
-/// A running-time counter.
+/// An operating-time counter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct ManagementTime {
-    /// When counting began, `YYYY/MM/DD HH:MM`.
+    /// Start of counting, `YYYY/MM/DD HH:MM`.
     pub start: Text<16>,
     /// `000123:45'06`, or unpadded as `18:19'02`.
     pub elapsed: Text<12>,
 }
 
 impl ManagementTime {
-    /// Bytes of an answer.
+    /// Size of an answer in bytes.
     pub const SIZE: usize = 28;
 
-    /// Reads 28 bytes or more.
+    /// Parses at least 28 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("management time", data);
         Ok(Self { start: reader.text()?, elapsed: reader.text()? })
     }
 
-    /// The 28 bytes.
+    /// Encodes 28 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.start.emit().to_vec();
         out.extend_from_slice(&self.elapsed.emit());
         out
     }
 
-    /// The elapsed time in seconds; `None` when the text is in no known form.
+    /// Elapsed time in seconds; `None` for an unknown format.
     pub fn seconds(&self) -> Option<u64> {
         elapsed_seconds(self.elapsed.as_bytes())
     }
 }
 
-/// Reads `H:MM'SS` with any number of hour digits and surrounding blanks; seconds may be missing, or stand after a colon.
+/// Parses `H:MM'SS` with any number of hour digits and surrounding blanks. Seconds may be missing, or follow a colon.
 pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(text).ok()?.trim();
     let mut parts = text.split([':', '\'']).map(|part| {
@@ -88,25 +88,25 @@ pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
 /// Versions and names.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct SystemInfo {
-    /// System software version; the same for every instance.
+    /// System software version, the same for every instance.
     pub version: Text<24>,
     /// Robot model, or application name.
     pub name: Text<16>,
-    /// Parameter version; robots only.
+    /// Parameter version, for robots only.
     pub parameters: Text<8>,
 }
 
 impl SystemInfo {
-    /// Bytes of an answer.
+    /// Size of an answer in bytes.
     pub const SIZE: usize = 48;
 
-    /// Reads 48 bytes or more.
+    /// Parses at least 48 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("system information", data);
         Ok(Self { version: reader.text()?, name: reader.text()?, parameters: reader.text()? })
     }
 
-    /// The 48 bytes.
+    /// Encodes 48 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.version.emit().to_vec();
         out.extend_from_slice(&self.name.emit());

@@ -1,7 +1,7 @@
-//! What travels in the data part, typed both ways.
+//! Typed payloads of the data part, in both directions.
 //!
-//! Parsing keeps what it does not know (reserved bits, new enumeration values) and takes more bytes than needed;
-//! emitting writes the sizes that the manuals print.
+//! Parsing keeps unknown content (reserved bits, new enumeration values) and accepts additional bytes. Encoding uses
+//! the sizes of the manuals.
 
 mod alarm;
 mod axes;

@@ -1,23 +1,23 @@
-//! The data of move instructions (FS and DX 3.3.39, 3.3.40).
+//! Data of move instructions (FS and DX 3.3.39, 3.3.40).
 
 use super::position::{ExtendedForm, Form, PositionKind};
 use super::reader::{PayloadError, Reader, push_u32s, push_words};
 
-/// What the speed word counts.
+/// Unit of the speed word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SpeedClass {
-    /// 0.01 % of the greatest speed; link moves.
+    /// 0.01 % of the maximum speed; link moves.
     Percent,
     /// 0.1 mm/s; straight moves.
     Linear,
     /// 0.1 degree/s; straight moves by rotation.
     Angular,
-    /// A number that the manuals do not define.
+    /// A number that is not in the manuals.
     Other(u32),
 }
 
 impl SpeedClass {
-    /// Any word has a class.
+    /// The class of a word.
     pub const fn from_word(word: u32) -> Self {
         match word {
             0 => Self::Percent,
@@ -27,7 +27,7 @@ impl SpeedClass {
         }
     }
 
-    /// The word on the wire.
+    /// Protocol word.
     pub const fn word(self) -> u32 {
         match self {
             Self::Percent => 0,
@@ -38,18 +38,18 @@ impl SpeedClass {
     }
 }
 
-/// How many words a cartesian move has.
+/// Layout of a cartesian move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MoveLayout {
-    /// 26 words with two reserved: printed for DX200, and what is known to have been run on an FS100.
+    /// 26 words with two reserved: the DX200 manual, and known use on an FS100.
     #[default]
     Words26,
-    /// 25 words with one reserved: printed for FS100.
+    /// 25 words with one reserved: the FS100 manual.
     Words25,
 }
 
 impl MoveLayout {
-    /// Bytes of the data.
+    /// Size in bytes.
     pub const fn size(self) -> usize {
         match self {
             Self::Words26 => 104,
@@ -58,18 +58,18 @@ impl MoveLayout {
     }
 }
 
-/// A move to cartesian coordinates, as it travels.
+/// A move to cartesian coordinates, in protocol units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CartesianMove {
     /// 25 or 26 words.
     pub layout: MoveLayout,
-    /// Robot number from 1, or 0 when a station moves.
+    /// Robot number from 1; 0 if a station moves.
     pub robot: u32,
-    /// Station number from 1, or 0 when a robot moves.
+    /// Station number from 1; 0 if a robot moves.
     pub station: u32,
-    /// What `speed` counts.
+    /// Unit of `speed`.
     pub class: SpeedClass,
-    /// By class in 0.01 %, 0.1 mm/s or 0.1 degree/s.
+    /// 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on the class.
     pub speed: u32,
     /// Base, robot, user or tool.
     pub coordinate: PositionKind,
@@ -77,9 +77,9 @@ pub struct CartesianMove {
     pub target: [i32; 6],
     /// Reserved, 0; the 25-word layout has only the first.
     pub reserved: [i32; 2],
-    /// The arm's form.
+    /// Form of the arm.
     pub form: Form,
-    /// The rest of the form.
+    /// Extended form.
     pub extended: ExtendedForm,
     /// 0 to 63.
     pub tool: u32,
@@ -92,7 +92,7 @@ pub struct CartesianMove {
 }
 
 impl CartesianMove {
-    /// Reads either layout, told apart by size.
+    /// Parses either layout, distinguished by size.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let layout = if data.len() < MoveLayout::Words26.size() { MoveLayout::Words25 } else { MoveLayout::Words26 };
         let mut reader = Reader::new("cartesian move", data);
@@ -117,7 +117,7 @@ impl CartesianMove {
         })
     }
 
-    /// 100 or 104 bytes.
+    /// Encodes 100 or 104 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.layout.size());
         push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed, self.coordinate.word()]);
@@ -134,16 +134,16 @@ impl CartesianMove {
     }
 }
 
-/// A move to pulses, as it travels.
+/// A move to pulses, in protocol units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PulseMove {
-    /// Robot number from 1, or 0 when a station moves.
+    /// Robot number from 1; 0 if a station moves.
     pub robot: u32,
-    /// Station number from 1, or 0 when a robot moves.
+    /// Station number from 1; 0 if a robot moves.
     pub station: u32,
-    /// What `speed` counts.
+    /// Unit of `speed`.
     pub class: SpeedClass,
-    /// By class in 0.01 %, 0.1 mm/s or 0.1 degree/s.
+    /// 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on the class.
     pub speed: u32,
     /// Robot axes.
     pub axes: [i32; 8],
@@ -156,10 +156,10 @@ pub struct PulseMove {
 }
 
 impl PulseMove {
-    /// Bytes of the data: 22 words.
+    /// Size in bytes: 22 words.
     pub const SIZE: usize = 88;
 
-    /// Reads 88 bytes or more.
+    /// Parses at least 88 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("pulse move", data);
         Ok(Self {
@@ -174,7 +174,7 @@ impl PulseMove {
         })
     }
 
-    /// The 88 bytes.
+    /// Encodes 88 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE);
         push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed]);

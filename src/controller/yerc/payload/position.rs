@@ -5,7 +5,7 @@ use super::reader::{PayloadError, Reader, push_u32s};
 use crate::units::{self, Unit};
 use crate::yerc::table::{EXTENDED_FORM_BITS, FORM_BITS};
 
-/// What the numbers of a position mean.
+/// Coordinate system of a position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PositionKind {
     /// Encoder pulses by axis.
@@ -18,12 +18,12 @@ pub enum PositionKind {
     User,
     /// Tool coordinates.
     Tool,
-    /// A number that the manuals do not define.
+    /// A number that is not in the manuals.
     Other(u32),
 }
 
 impl PositionKind {
-    /// Every defined kind with its number and name.
+    /// All defined kinds with number and name.
     pub const ALL: [(Self, u32, &'static str); 5] = [
         (Self::Pulse, 0, "pulse"),
         (Self::Base, 16, "base"),
@@ -32,12 +32,12 @@ impl PositionKind {
         (Self::Tool, 19, "tool"),
     ];
 
-    /// Any word has a kind.
+    /// The kind of a word.
     pub fn from_word(word: u32) -> Self {
         Self::ALL.iter().find(|row| row.1 == word).map_or(Self::Other(word), |row| row.0)
     }
 
-    /// The word on the wire.
+    /// Protocol word.
     pub fn word(self) -> u32 {
         match self {
             Self::Pulse => 0,
@@ -54,7 +54,7 @@ impl PositionKind {
         matches!(self, Self::Base | Self::Robot | Self::User | Self::Tool)
     }
 
-    /// The unit of an axis of a robot position, counted from 0; raw numbers where none is defined.
+    /// Unit of an axis of a robot position, counted from 0; raw if undefined.
     pub fn unit(self, axis: usize) -> Unit {
         match axis {
             0..=2 if self.is_cartesian() => units::MILLIMETRE,
@@ -71,12 +71,12 @@ macro_rules! flag_word {
         pub struct $name(pub u32);
 
         impl $name {
-            /// The word of every defined bit, set or clear.
+            /// Names of all defined bits, for their current states.
             pub fn words(self) -> impl Iterator<Item = &'static str> {
                 $bits.iter().map(move |bit| bit.word(self.0))
             }
 
-            /// The bits that have no meaning.
+            /// Bits without a meaning.
             pub fn reserved(self) -> u32 {
                 self.0 & !$bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit)
             }
@@ -85,36 +85,36 @@ macro_rules! flag_word {
 }
 
 flag_word! {
-    /// How the arm reaches a position; reserved bits are kept.
+    /// Form of the arm at a position; reserved bits are kept.
     Form, FORM_BITS
 }
 flag_word! {
-    /// More of the same, for axes L U B E W.
+    /// Extended form, for axes L U B E W.
     ExtendedForm, EXTENDED_FORM_BITS
 }
 
-/// A robot position: 13 words, or fewer where the controller leaves out axes it does not have.
+/// A robot position: 13 words, or fewer if the controller omits missing axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Position {
-    /// What `axes` mean.
+    /// Coordinate system of `axes`.
     pub kind: PositionKind,
-    /// The arm's form.
+    /// Form of the arm.
     pub form: Form,
     /// Tool number, 0 to 63.
     pub tool: u32,
-    /// User coordinate number; of use with [`PositionKind::User`].
+    /// User coordinate number, for [`PositionKind::User`].
     pub user: u32,
-    /// The rest of the form.
+    /// Extended form.
     pub extended: ExtendedForm,
-    /// Pulses; or 0.001 mm for the first three and 0.0001 degree for the next four.
+    /// Pulses; or 0.001 mm for the first three and 0.0001 degree for the next four axes.
     pub axes: Axes,
 }
 
 impl Position {
-    /// Bytes of all 13 words.
+    /// Size of all 13 words in bytes.
     pub const SIZE: usize = 52;
 
-    /// Reads five words and as many axes as there are.
+    /// Parses five words and all following axes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("position", data);
         Ok(Self {
@@ -127,13 +127,13 @@ impl Position {
         })
     }
 
-    /// All 13 words, as variables are written.
+    /// Encodes all 13 words, as in variables.
     pub fn emit(&self) -> Vec<u8> {
         let full = Self { axes: Axes::full(self.axes.padded()), ..*self };
         full.emit_fitted()
     }
 
-    /// The five words and only the axes there are, as controllers answer a position.
+    /// Encodes five words and the existing axes, as in the answer of a controller.
     pub fn emit_fitted(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE);
         push_u32s(&mut out, [self.kind.word(), self.form.0, self.tool, self.user, self.extended.0]);
@@ -163,16 +163,16 @@ pub struct ExternalPosition {
 macro_rules! nine_words {
     ($name:ident, $what:literal) => {
         impl $name {
-            /// Bytes of all 9 words.
+            /// Size of all 9 words in bytes.
             pub const SIZE: usize = 4 + 4 * MAX_AXES;
 
-            /// Reads the type and as many axes as there are.
+            /// Parses the type and all following axes.
             pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
                 let mut reader = Reader::new($what, data);
                 Ok(Self { kind: PositionKind::from_word(reader.u32()?), axes: Axes::take(reader.rest()) })
             }
 
-            /// All 9 words.
+            /// Encodes all 9 words.
             pub fn emit(&self) -> Vec<u8> {
                 let mut out = Vec::with_capacity(Self::SIZE);
                 push_u32s(&mut out, [self.kind.word()]);

@@ -1,5 +1,6 @@
-//! Positions as text: `base:x=100.000,y=0.000,z=0.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=1,user=0,form=back+upper+flip`
-//! and `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. Safe to type in a shell without quotes.
+//! Text format of positions:
+//! `base:x=100.000,y=0.000,z=0.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=1,user=0,form=back+upper+flip` and
+//! `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. It needs no quotes in a shell.
 
 use std::fmt;
 use std::str::FromStr;
@@ -15,76 +16,76 @@ use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
-/// The axes that a robot position must name, so that a forgotten one does not become 0.
+/// Mandatory axes of a robot position, so that a forgotten one does not become 0.
 const REQUIRED_AXES: usize = 6;
 
-/// An axis of a position as the text form names it.
+/// An axis in the text format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamedAxis {
-    /// `x`, `s`, or a number where axes have no letters.
+    /// `x`, `s`, or a number for an axis without a letter.
     pub key: &'static str,
-    /// What `value` counts.
+    /// Unit of `value`.
     pub unit: Unit,
-    /// As on the wire.
+    /// Protocol value.
     pub value: i32,
 }
 
-/// A text that is no position.
+/// An invalid position text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
-    /// No colon after the kind.
+    /// Without kind and colon.
     #[error("a position begins with its kind and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
     NoKind,
-    /// Not a kind this variable has.
+    /// A kind that this variable does not have.
     #[error("'{found}' is not a valid kind of position here; there are {allowed}")]
     Kind {
-        /// What was given.
+        /// The invalid text.
         found: String,
-        /// The kinds there are.
+        /// Valid kinds.
         allowed: String,
     },
-    /// Not `key=value`.
+    /// A part that is not `key=value`.
     #[error("'{found}' is not of the form key=value")]
     Pair {
-        /// What was given.
+        /// The invalid text.
         found: String,
     },
-    /// Not a key of this kind.
+    /// A key that this kind does not have.
     #[error("'{found}' is not a part of this position; there are {allowed}")]
     Key {
-        /// What was given.
+        /// The invalid text.
         found: String,
-        /// The keys there are.
+        /// Valid keys.
         allowed: String,
     },
-    /// Twice the same key.
+    /// A duplicate key.
     #[error("'{key}' is given twice")]
     Twice {
         /// The key.
         key: String,
     },
-    /// An axis left out.
+    /// A missing axis.
     #[error("axis '{axis}' is missing")]
     Missing {
         /// Its key.
         axis: &'static str,
     },
-    /// An axis with a value that cannot be sent.
+    /// An invalid value of an axis.
     #[error("{key}: {error}")]
     Axis {
         /// The key.
         key: String,
-        /// What is wrong with it.
+        /// The problem.
         error: UnitError,
     },
-    /// A tool, user coordinate or form with a value that cannot be sent.
+    /// An invalid value of tool, user coordinate or form.
     #[error("{key}: '{found}' is not {expected}")]
     Value {
         /// The key.
         key: &'static str,
-        /// What was given.
+        /// The invalid text.
         found: String,
-        /// What is possible.
+        /// Valid values.
         expected: String,
     },
 }
@@ -126,12 +127,12 @@ impl fmt::Display for Position {
 }
 
 impl Position {
-    /// All eight axes; 0 where the controller sent none.
+    /// All eight axes; 0 for missing ones.
     pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
         named(axis_names(self.kind), self.axes, |axis| self.kind.unit(axis))
     }
 
-    /// How many of them the text form shows: six, or up to the last that is not 0.
+    /// Number of axes in the text format: six, or up to the last nonzero one.
     pub fn shown_axes(&self) -> usize {
         shown_axes(&self.axes.padded(), REQUIRED_AXES)
     }
@@ -140,12 +141,12 @@ impl Position {
 macro_rules! nine_word_text {
     ($name:ident, $kinds:expr, $units:expr) => {
         impl $name {
-            /// All eight axes; 0 where the controller sent none.
+            /// All eight axes; 0 for missing ones.
             pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
                 named(group_axis_names(self.kind), self.axes, |_| $units(self.kind))
             }
 
-            /// How many of them the text form shows: up to the last that is not 0, and x, y, z of a base.
+            /// Number of axes in the text format: up to the last nonzero one, and x, y, z of a base.
             pub fn shown_axes(&self) -> usize {
                 shown_axes(&self.axes.padded(), if self.kind == PositionKind::Base { 3 } else { 1 })
             }
@@ -192,7 +193,7 @@ fn axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// Bases and external axes have no S, L, U; a base has X, Y, Z in base coordinates.
+/// Bases and external axes have no S, L, U letters; a base has X, Y, Z in base coordinates.
 fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     match kind {
         PositionKind::Base => ["x", "y", "z", "4", "5", "6", "7", "8"],
@@ -200,7 +201,7 @@ fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// Kinds without a name travel as `type7:`.
+/// A kind without a name has the form `type7:`.
 fn split_kind<'a>(
     text: &'a str,
     kinds: &[(PositionKind, u32, &str)],
@@ -220,7 +221,7 @@ fn split_kind<'a>(
     }
 }
 
-/// What has been read so far.
+/// Parts parsed so far.
 struct Parts<'a> {
     names: [&'static str; MAX_AXES],
     axes: [Option<i32>; MAX_AXES],
@@ -259,14 +260,14 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// All eight axes; the first `required` must be named, and none left out before the last.
+    /// All eight axes. The first `required` must be given, and the first six without a gap.
     fn axes(&self, required: usize) -> Result<Axes, PositionTextError> {
         let named = self.axes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         let mut values = [0; MAX_AXES];
         for (axis, value) in self.axes.iter().enumerate() {
             match value {
                 Some(value) => values[axis] = *value,
-                // The axes after the sixth are extras that few robots have; each stands for itself.
+                // Axes after the sixth are optional and independent.
                 None if axis < required || axis < named.min(REQUIRED_AXES) => {
                     return Err(PositionTextError::Missing { axis: self.names[axis] });
                 }
@@ -290,7 +291,7 @@ fn number(key: &'static str, text: Option<&str>) -> Result<u32, PositionTextErro
     })
 }
 
-/// Words joined by `+`; bits without a name as one hexadecimal number.
+/// Parses words joined by `+`; unnamed bits as one hexadecimal number.
 fn flags(key: &'static str, text: Option<&str>, bits: &[Bit]) -> Result<u32, PositionTextError> {
     let (mut value, mut given) = (0_u32, 0_u32);
     for word in text.into_iter().flat_map(|text| text.split('+')).map(str::trim) {
@@ -324,7 +325,7 @@ fn named(keys: [&'static str; MAX_AXES], axes: Axes, unit: impl Fn(usize) -> Uni
     std::array::from_fn(|axis| NamedAxis { key: keys[axis], unit: unit(axis), value: values[axis] })
 }
 
-/// At least so many axes, and up to the last that is not 0.
+/// Number of axes up to the last nonzero one, at least `least`.
 fn shown_axes(axes: &[i32; MAX_AXES], least: usize) -> usize {
     axes.iter().rposition(|&value| value != 0).map_or(0, |last| last + 1).max(least)
 }
@@ -349,7 +350,7 @@ fn write_axes(
     Ok(())
 }
 
-/// The first `always` bits in words whatever they are, the others when set.
+/// Formats the first `always` bits for both states, the others only if set.
 fn write_flags(f: &mut fmt::Formatter<'_>, key: &str, value: u32, bits: &[Bit], always: usize) -> fmt::Result {
     let known = bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit);
     let mut words: Vec<String> = bits

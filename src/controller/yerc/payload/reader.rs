@@ -1,35 +1,35 @@
-//! Reading and writing the data part.
+//! Reader and writer of the data part.
 
 use thiserror::Error;
 
 use super::text::Text;
 
-/// Answer data that does not hold what the command answers.
+/// Invalid answer data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum PayloadError {
-    /// Fewer bytes than the least that makes sense.
+    /// Too few bytes.
     #[error("{what}: {found} data bytes, at least {needed} expected")]
     Short {
-        /// The payload.
+        /// Name of the payload.
         what: &'static str,
-        /// Bytes needed.
+        /// Required bytes.
         needed: usize,
-        /// Bytes there.
+        /// Received bytes.
         found: usize,
     },
-    /// The count in front of the elements is not the one asked for.
+    /// Wrong number of elements.
     #[error("{what}: {answered} elements answered, {asked} asked for")]
     Count {
-        /// The payload.
+        /// Name of the payload.
         what: &'static str,
-        /// Elements requested.
+        /// Requested elements.
         asked: u32,
-        /// Elements announced.
+        /// Elements in the answer.
         answered: u32,
     },
 }
 
-/// Reads a payload front to back.
+/// Sequential reader of a payload.
 pub(in crate::yerc) struct Reader<'a> {
     what: &'static str,
     whole: usize,
@@ -37,12 +37,11 @@ pub(in crate::yerc) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader over `data`, whose errors speak of `what`.
+    /// A reader of `data`; `what` is the name in its errors.
     pub(in crate::yerc) fn new(what: &'static str, data: &'a [u8]) -> Self {
         Self { what, whole: data.len(), rest: data }
     }
 
-    /// The next `size` bytes.
     pub(in crate::yerc) fn bytes(&mut self, size: usize) -> Result<&'a [u8], PayloadError> {
         let Some((head, tail)) = self.rest.split_at_checked(size) else {
             let needed = (self.whole - self.rest.len()).saturating_add(size);
@@ -52,24 +51,20 @@ impl<'a> Reader<'a> {
         Ok(head)
     }
 
-    /// The next bytes as an array.
     pub(in crate::yerc) fn array<const N: usize>(&mut self) -> Result<[u8; N], PayloadError> {
         let mut out = [0; N];
         out.copy_from_slice(self.bytes(N)?);
         Ok(out)
     }
 
-    /// The next word.
     pub(in crate::yerc) fn u32(&mut self) -> Result<u32, PayloadError> {
         self.array().map(u32::from_le_bytes)
     }
 
-    /// The next signed word.
     pub(in crate::yerc) fn i32(&mut self) -> Result<i32, PayloadError> {
         self.array().map(i32::from_le_bytes)
     }
 
-    /// Several signed words.
     pub(in crate::yerc) fn words<const N: usize>(&mut self) -> Result<[i32; N], PayloadError> {
         let mut out = [0; N];
         for word in &mut out {
@@ -78,12 +73,11 @@ impl<'a> Reader<'a> {
         Ok(out)
     }
 
-    /// A text field of `N` bytes.
     pub(in crate::yerc) fn text<const N: usize>(&mut self) -> Result<Text<N>, PayloadError> {
         self.bytes(N).map(Text::cut)
     }
 
-    /// What has not been read.
+    /// Remaining bytes.
     pub(in crate::yerc) fn rest(self) -> &'a [u8] {
         self.rest
     }

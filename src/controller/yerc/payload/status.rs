@@ -3,7 +3,7 @@
 use super::reader::{PayloadError, Reader, push_u32s};
 use crate::yerc::table::{Bit, DATA_1_BITS, DATA_2_BITS};
 
-/// One condition of the controller.
+/// A condition of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum StatusBit {
     /// Step mode.
@@ -38,7 +38,7 @@ pub enum StatusBit {
 
 use StatusBit as S;
 
-/// Every condition, in the order of the bits.
+/// All conditions, in the order of the bits.
 const ALL: [StatusBit; 14] = [
     S::Step,
     S::OneCycle,
@@ -57,17 +57,17 @@ const ALL: [StatusBit; 14] = [
 ];
 
 impl StatusBit {
-    /// Every condition, in the order of the manual.
+    /// All conditions, in the order of the manual.
     pub fn all() -> impl Iterator<Item = Self> {
         ALL.into_iter()
     }
 
-    /// The name, e.g. `servo on`.
+    /// Name, e.g. `servo on`.
     pub fn name(self) -> &'static str {
         self.row().1.set
     }
 
-    /// Its word and its row of the table.
+    /// Word and table row.
     fn row(self) -> (usize, &'static Bit) {
         let index = self as usize;
         match index.checked_sub(DATA_1_BITS.len()) {
@@ -77,19 +77,19 @@ impl StatusBit {
     }
 }
 
-/// The cycle switch, as set by 0x84 (FS and DX 3.3.21).
+/// Cycle mode, as set by 0x84 (FS and DX 3.3.21).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CycleMode {
     /// One step at a time.
     Step,
     /// One cycle, then stop.
     Once,
-    /// Again and again.
+    /// Repeated cycles.
     Continuous,
 }
 
 impl CycleMode {
-    /// The data word of 0x84.
+    /// Data word of 0x84.
     pub const fn word(self) -> u32 {
         match self {
             Self::Step => 1,
@@ -99,7 +99,7 @@ impl CycleMode {
     }
 }
 
-/// Both status words as they travel; bits without a meaning are kept.
+/// Both status words; bits without a meaning are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ControllerStatus {
     /// Data 1 and data 2.
@@ -107,13 +107,13 @@ pub struct ControllerStatus {
 }
 
 impl ControllerStatus {
-    /// Reads 8 bytes or more.
+    /// Parses at least 8 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("controller status", data);
         Ok(Self { words: [reader.u32()?, reader.u32()?] })
     }
 
-    /// The 8 bytes.
+    /// Encodes 8 bytes.
     pub fn emit(self) -> Vec<u8> {
         let mut out = Vec::with_capacity(8);
         push_u32s(&mut out, self.words);
@@ -159,12 +159,12 @@ impl ControllerStatus {
         self.alarm() || self.error()
     }
 
-    /// Whether anything holds the robot.
+    /// Whether any HOLD is active.
     pub fn held(self) -> bool {
         [S::HoldPendant, S::HoldExternal, S::HoldCommand].into_iter().any(|bit| self.has(bit))
     }
 
-    /// The cycle mode, when exactly one of its three bits is set.
+    /// Cycle mode, if exactly one of its three bits is set.
     pub fn cycle(self) -> Option<CycleMode> {
         match self.words[0] & 0b111 {
             0b001 => Some(CycleMode::Step),

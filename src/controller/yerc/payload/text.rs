@@ -1,10 +1,10 @@
-//! Text fields: bytes in the pendant's language, zero filled.
+//! Text fields: bytes in the encoding of the pendant, padded with NUL.
 
 use std::fmt;
 
 use thiserror::Error;
 
-/// A text of at most `N` bytes without NUL; its encoding is the pendant's, so it stays bytes here.
+/// A text of at most `N` bytes without NUL, in the encoding of the pendant.
 #[derive(Clone, PartialEq, Eq, Hash, Default)]
 pub struct Text<const N: usize>(Vec<u8>);
 
@@ -14,9 +14,9 @@ pub enum TextError {
     /// Longer than the field.
     #[error("the text has {len} bytes in the controller's encoding; at most {most} fit")]
     TooLong {
-        /// Bytes given.
+        /// Length in bytes.
         len: usize,
-        /// Bytes that fit.
+        /// Size of the field in bytes.
         most: usize,
     },
     /// A NUL would end the text early.
@@ -28,7 +28,7 @@ pub enum TextError {
 }
 
 impl<const N: usize> Text<N> {
-    /// Takes bytes that fit the field whole.
+    /// Takes bytes that fit the field.
     pub fn new(bytes: &[u8]) -> Result<Self, TextError> {
         if bytes.len() > N {
             return Err(TextError::TooLong { len: bytes.len(), most: N });
@@ -39,14 +39,14 @@ impl<const N: usize> Text<N> {
         }
     }
 
-    /// Reads a field: up to the first NUL, or the whole width where there is none.
+    /// Parses a field: up to the first NUL, or its whole width.
     pub fn cut(field: &[u8]) -> Self {
         let field = &field[..field.len().min(N)];
         let end = field.iter().position(|&byte| byte == 0).unwrap_or(field.len());
         Self(field[..end].to_vec())
     }
 
-    /// The bytes before the fill.
+    /// Bytes without padding.
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
@@ -56,7 +56,7 @@ impl<const N: usize> Text<N> {
         self.0.is_empty()
     }
 
-    /// The field of `N` bytes, zero filled.
+    /// The field of `N` bytes, padded with NUL.
     pub fn emit(&self) -> [u8; N] {
         let mut field = [0; N];
         field[..self.0.len()].copy_from_slice(&self.0);

@@ -1,4 +1,4 @@
-//! Orders: reset, hold, servo, cycle, message, job, move (3.3.19 to 3.3.24, 3.3.39, 3.3.40).
+//! Control commands: reset, hold, servo, cycle, message, job, move (3.3.19 to 3.3.24, 3.3.39, 3.3.40).
 
 use super::{QueryError, WriteQuery, checked, in_range, known_task, write_one};
 use crate::yerc::Model;
@@ -7,15 +7,15 @@ use crate::yerc::payload::{CartesianMove, CycleMode, PulseMove, SpeedClass, Text
 use crate::yerc::request::Request;
 use crate::yerc::table::service;
 
-/// Greatest speed of a link move, in 0.01 %.
+/// Maximum speed of a link move, in 0.01 %.
 const FULL_SPEED: u32 = 10_000;
-/// Greatest tool and user coordinate number.
+/// Maximum tool and user coordinate number.
 const LAST_FRAME: u32 = 63;
-/// Most bytes of a message; the field has two more that the pendant does not show.
+/// Maximum length of a message in bytes; the field has two more that the pendant does not display.
 const MAX_MESSAGE: usize = 30;
-/// Greatest line number.
+/// Maximum line number.
 const LAST_LINE: u32 = 9999;
-/// Form bits that a move defines; 6 and 7 are reserved there.
+/// Form bits of a move; 6 and 7 are reserved.
 const MOVE_FORM: u32 = 0b11_1111;
 const MOVE_EXTENDED_FORM: u32 = 0b1_1111;
 
@@ -24,7 +24,7 @@ macro_rules! order {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub struct $name $((
-            /// On or off, or the mode.
+            /// State or mode.
             pub $field,
         ))?;
 
@@ -56,7 +56,7 @@ order! {
     CancelError, |_this| execute(0x82, 2)
 }
 order! {
-    /// Holds the robot, or lets it go on (0x83).
+    /// Applies or releases HOLD (0x83).
     Hold(bool), |this| switch(1, this.0)
 }
 order! {
@@ -68,7 +68,7 @@ order! {
     Hlock(bool), |this| switch(3, this.0)
 }
 order! {
-    /// Sets the cycle (0x84).
+    /// Sets the cycle mode (0x84).
     SetCycle(CycleMode), |this| write_one(0x84, 2, this.0.word().to_le_bytes())
 }
 order! {
@@ -76,14 +76,14 @@ order! {
     StartJob, |_this| execute(0x86, 1)
 }
 
-/// Shows a message on the pendant (0x85).
+/// Displays a message on the pendant (0x85).
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Say {
     text: Text<32>,
 }
 
 impl Say {
-    /// At most 30 bytes in the pendant's language; empty clears the message.
+    /// At most 30 bytes in the pendant encoding; empty clears the message.
     pub fn new(text: &[u8]) -> Result<Self, QueryError> {
         Text::<MAX_MESSAGE>::new(text).map_err(|error| QueryError::Text { what: "the message", error })?;
         Ok(Self { text: Text::cut(text) })
@@ -96,15 +96,15 @@ impl WriteQuery for Say {
     }
 }
 
-/// What a selected job is for.
+/// Purpose of a selected job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// To be executed, from a line on.
+    /// For execution, from a line on.
     Execute {
         /// 0 to 9999.
         line: u32,
     },
-    /// The master job of a task, 0 to 5 on FS100, to 15 on DX200.
+    /// As the master job of a task, 0 to 5 on FS100, to 15 on DX200.
     Master {
         /// The task.
         task: u8,
@@ -120,7 +120,7 @@ pub struct SelectJob {
 }
 
 impl SelectJob {
-    /// A name of 1 to 32 bytes in the pendant's language, without `.JBI`.
+    /// A name of 1 to 32 bytes in the pendant encoding, without `.JBI`.
     pub fn new(model: Model, name: &[u8], selection: Selection) -> Result<Self, QueryError> {
         if name.is_empty() {
             return Err(QueryError::Empty { what: "the job name" });
@@ -142,14 +142,14 @@ impl WriteQuery for SelectJob {
     }
 }
 
-/// The way a robot moves.
+/// Kind of move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum MoveKind {
-    /// Axes interpolated, to a position.
+    /// Joint interpolation to a position.
     Link,
-    /// Along a straight line, to a position.
+    /// Straight line to a position.
     Straight,
-    /// Along a straight line, by a distance; cartesian only.
+    /// Straight line by a distance; cartesian only.
     Incremental,
 }
 
@@ -171,7 +171,7 @@ pub struct MoveCartesian {
 }
 
 impl MoveCartesian {
-    /// Checks groups, speed, coordinate, form, tool and user coordinate.
+    /// Checks groups, speed, coordinate system, form, tool and user coordinate.
     pub fn new(model: Model, kind: MoveKind, target: CartesianMove) -> Result<Self, QueryError> {
         check_group(model, target.robot, target.station)?;
         check_speed(kind, target.class, target.speed)?;
@@ -200,7 +200,7 @@ pub struct MovePulse {
 }
 
 impl MovePulse {
-    /// Checks groups, speed and tool; there is no incremental pulse move.
+    /// Checks groups, speed and tool. There is no incremental pulse move.
     pub fn new(model: Model, kind: MoveKind, target: PulseMove) -> Result<Self, QueryError> {
         check_group(model, target.robot, target.station)?;
         check_speed(kind, target.class, target.speed)?;
@@ -219,7 +219,7 @@ fn moving(command: u16, kind: MoveKind, data: Vec<u8>) -> Request {
     Request { command, instance: kind.instance(), attribute: 1, service: service::SET_ALL, data }
 }
 
-/// Exactly one of robot and station; controllers refuse both with B008.
+/// Requires exactly one of robot and station; controllers refuse both with B008.
 fn check_group(model: Model, robot: u32, station: u32) -> Result<(), QueryError> {
     let (robots, _, stations) = Group::counts(model);
     match (robot, station) {

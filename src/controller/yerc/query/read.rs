@@ -1,4 +1,4 @@
-//! Queries that only read.
+//! Read queries.
 
 use super::{Query, QueryError, checked, in_range, known_group, known_task, read_all, reading};
 use crate::yerc::Model;
@@ -9,7 +9,7 @@ use crate::yerc::payload::{
 use crate::yerc::request::Request;
 use crate::yerc::table::{Row, service, total};
 
-/// Both status words (0x72).
+/// Reads both status words (0x72).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadStatus;
 
@@ -25,7 +25,7 @@ impl Query for ReadStatus {
     }
 }
 
-/// One of the up to four present alarms (0x70, with texts 0x30A).
+/// Reads one of up to four active alarms (0x70; with texts 0x30A).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadAlarm {
     slot: u8,
@@ -52,7 +52,7 @@ impl Query for ReadAlarm {
     }
 }
 
-/// The lists of past alarms (3.3.2).
+/// Lists of past alarms (3.3.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AlarmClass {
     /// Major failures.
@@ -68,7 +68,7 @@ pub enum AlarmClass {
 }
 
 impl AlarmClass {
-    /// Every class with the name for commands, in the order of the manual.
+    /// All classes with their names in commands, in the order of the manual.
     pub const ALL: [(Self, &'static str); 5] = [
         (Self::Major, "major"),
         (Self::Monitor, "monitor"),
@@ -88,7 +88,7 @@ impl AlarmClass {
     }
 }
 
-/// A past alarm (0x71, with texts 0x30B).
+/// Reads a past alarm (0x71; with texts 0x30B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadAlarmHistory {
     class: AlarmClass,
@@ -116,14 +116,14 @@ impl Query for ReadAlarmHistory {
     }
 }
 
-/// The job that a task executes (0x73).
+/// Reads the current job of a task (0x73).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadJob {
     task: u8,
 }
 
 impl ReadJob {
-    /// Task 0 is the master; sub tasks go to 5 on FS100, to 15 on DX200.
+    /// Task 0 is the master; sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
     pub fn new(model: Model, task: u8) -> Result<Self, QueryError> {
         Ok(Self { task: known_task(model, task)? })
     }
@@ -141,7 +141,7 @@ impl Query for ReadJob {
     }
 }
 
-/// Pulses, or cartesian coordinates.
+/// Pulses or cartesian coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coordinates {
     /// By axis.
@@ -150,7 +150,7 @@ pub enum Coordinates {
     Base,
 }
 
-/// The instance of a group in the wanted coordinates.
+/// Instance of a group in these coordinates.
 fn instance(model: Model, group: Group, coordinates: Coordinates) -> Result<u16, QueryError> {
     known_group(model, group)?;
     match coordinates {
@@ -161,7 +161,7 @@ fn instance(model: Model, group: Group, coordinates: Coordinates) -> Result<u16,
     }
 }
 
-/// The names of a group's axes (0x74).
+/// Reads the axis names of a group (0x74).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadAxes {
     instance: u16,
@@ -186,14 +186,14 @@ impl Query for ReadAxes {
     }
 }
 
-/// Where a group stands (0x75).
+/// Reads the current position of a group (0x75).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadPosition {
     instance: u16,
 }
 
 impl ReadPosition {
-    /// Any group in pulses, a robot in base coordinates.
+    /// Any group in pulses, or a robot in base coordinates.
     pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
         let instance = instance(model, group, coordinates)?;
         match (group, coordinates) {
@@ -247,30 +247,30 @@ macro_rules! read_axes {
 }
 
 read_axes! {
-    /// How far the axes are from where they should be, in pulses (0x76).
+    /// Reads the position error (deviation) of each axis in pulses (0x76).
     ReadPositionError, 0x76
 }
 read_axes! {
-    /// The torque of each axis, in a unit that the manuals do not print (0x77).
+    /// Reads the torque of each axis (0x77); the manuals do not specify the unit.
     ReadTorque, 0x77
 }
 
-/// What a running-time counter counts (3.3.25).
+/// Subject of an operating-time counter (3.3.25).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TimeCounter {
     /// Control power on.
     ControlPower,
-    /// Servo power on; of a robot or station, or in total.
+    /// Servo power on, of a robot or station, or in total.
     Servo(Option<Group>),
-    /// Playback; likewise.
+    /// Playback, of a robot or station, or in total.
     Playback(Option<Group>),
-    /// Motion; likewise.
+    /// Motion, of a robot or station, or in total.
     Motion(Option<Group>),
     /// Operation of an application, 1 to 8.
     Application(u8),
 }
 
-/// A running-time counter (0x88).
+/// Reads an operating-time counter (0x88).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadManagementTime {
     instance: u16,
@@ -312,7 +312,7 @@ impl Query for ReadManagementTime {
     }
 }
 
-/// What system information is about (3.3.26).
+/// Subject of system information (3.3.26).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SystemPart {
     /// A robot or station.
@@ -321,7 +321,7 @@ pub enum SystemPart {
     Application(u8),
 }
 
-/// Versions and names (0x89).
+/// Reads versions and names (0x89).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadSystemInfo {
     instance: u16,
@@ -361,7 +361,7 @@ const fn counter_offset(group: Group) -> u16 {
     }
 }
 
-/// One field of something readable, as bytes.
+/// Reads one field of an instance, as bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadField {
     command: u16,
@@ -371,7 +371,7 @@ pub struct ReadField {
 }
 
 impl ReadField {
-    /// Attribute counts from 1 as in the table.
+    /// Attributes count from 1, as in the table.
     pub fn new(model: Model, command: u16, instance: u16, attribute: u8) -> Result<Self, QueryError> {
         let request = reading(command, instance, attribute, service::GET_SINGLE);
         request.check(model)?;

@@ -42,7 +42,7 @@ macro_rules! signals {
         }
 
         impl $read_many {
-            /// A run inside one range of the model, as many as a frame holds.
+            /// A range of the model that fits a frame.
             pub fn new(model: Model, first: u16, count: u16) -> Result<Self, QueryError> {
                 checked(model, Self { first, count })
             }
@@ -90,7 +90,7 @@ macro_rules! signals {
         }
 
         impl $write_many {
-            /// A run inside one writable range of the model, as many as a frame holds.
+            /// A writable range of the model that fits a frame.
             pub fn new(model: Model, first: u16, values: Vec<$value>) -> Result<Self, QueryError> {
                 checked(model, Self { first, values })
             }

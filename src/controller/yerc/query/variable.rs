@@ -1,4 +1,4 @@
-//! Variables, one or several (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
+//! Queries of one or several variables (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
 
 use super::{
     Query, QueryError, WriteQuery, checked, elements, read_all, read_plural, reading, write_one, write_plural,
@@ -18,7 +18,7 @@ pub struct ReadVariable {
 }
 
 impl ReadVariable {
-    /// Any number; those beyond the standard exist where the controller's parameters say so.
+    /// Any number; extended ones exist only with the parameters of the controller.
     pub const fn new(kind: VariableKind, number: u16) -> Self {
         Self { kind, number }
     }
@@ -41,7 +41,7 @@ impl Query for ReadVariable {
     }
 }
 
-/// Reads several variables of a kind, one after the other.
+/// Reads several consecutive variables of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadVariables {
     kind: VariableKind,
@@ -50,8 +50,8 @@ pub struct ReadVariables {
 }
 
 impl ReadVariables {
-    /// As many as a frame holds; an even count of B variables. Standard and extended numbers may follow each other. The
-    /// string form that suits the model is chosen with [`VariableKind::string_form`].
+    /// The count must fit a frame; for B variables it must be even. Standard and extended numbers may be combined.
+    /// [`VariableKind::string_form`] selects the string form for the model.
     pub fn new(kind: VariableKind, first: u16, count: u16) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, first, count })
     }
@@ -77,7 +77,7 @@ pub struct WriteVariable {
 }
 
 impl WriteVariable {
-    /// The value's kind is the variable's.
+    /// The kind of the value is that of the variable.
     pub fn new(number: u16, value: Value) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { number, value })
     }
@@ -94,7 +94,7 @@ impl WriteQuery for WriteVariable {
     }
 }
 
-/// Writes several variables of a kind, one after the other.
+/// Writes several consecutive variables of a kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WriteVariables {
     kind: VariableKind,
@@ -103,7 +103,7 @@ pub struct WriteVariables {
 }
 
 impl WriteVariables {
-    /// As many as a frame holds; an even count of B variables.
+    /// The count must fit a frame; for B variables it must be even.
     pub fn new(first: u16, values: Vec<Value>) -> Result<Self, QueryError> {
         let kind = values.first().map(Value::kind).ok_or(QueryError::MixedKinds)?;
         if values.iter().any(|value| value.kind() != kind) {
@@ -120,7 +120,7 @@ impl WriteQuery for WriteVariables {
     }
 }
 
-/// Writes one word of a position variable and keeps the others (3.3.16 to 3.3.18, service 0x10).
+/// Writes one word of a position variable (3.3.16 to 3.3.18, service 0x10).
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct WriteField {
     kind: VariableKind,
@@ -130,7 +130,7 @@ pub struct WriteField {
 }
 
 impl WriteField {
-    /// Attribute counts from 1 as in the table: 1 is the data type.
+    /// Attributes count from 1, as in the table: 1 is the data type.
     pub fn new(kind: VariableKind, number: u16, attribute: u8, word: [u8; 4]) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, number, attribute, word })
     }

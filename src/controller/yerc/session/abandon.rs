@@ -1,9 +1,9 @@
-//! The end of a transfer that is broken off.
+//! Abort of a transfer.
 //!
-//! No manual has a request for it: a controller holds a transfer open until its timer ends (DX 5, E28B), and refuses
-//! others as busy meanwhile. It refuses a block or an ACK of a wrong number (E4A1, E4A2), and what is refused is over.
-//! So the wrong number is sent on purpose, without data and without the mark of the last block: nothing of it can be
-//! taken for content, nor for the end of the file.
+//! The manuals have no request for it. A controller keeps a transfer open until its timer expires (DX 5, E28B), and
+//! refuses others as busy until then. It also refuses a block or an ACK with a wrong number (E4A1, E4A2), and a
+//! refusal ends the transfer. So this session sends a wrong number on purpose, without data and without the
+//! last-block bit. It cannot be mistaken for content or for the end of the file.
 
 use std::time::Duration;
 
@@ -14,12 +14,12 @@ use crate::{Now, Session, Step};
 
 /// A block number that no transfer reaches.
 const NO_BLOCK: u32 = LAST_BLOCK - 1;
-/// Silence after which it is sent again.
+/// Repeat interval.
 const EVERY: Duration = Duration::from_millis(200);
-/// How often it is sent.
+/// Number of attempts.
 const TRIES: u32 = 3;
 
-/// Has a controller drop a transfer. The outcome is whether it confirmed that.
+/// Aborts a transfer at the controller. The outcome is whether the controller confirmed it.
 #[derive(Debug, Clone)]
 pub struct Abandon {
     frame: Vec<u8>,
@@ -30,14 +30,15 @@ pub struct Abandon {
 }
 
 impl Abandon {
-    /// What ends the transfer in which `last` was the last frame sent; `None` if that frame opens none, or ends it.
+    /// The session to abort the transfer in which `last` was the last frame sent. `None` if that frame neither opens
+    /// nor continues one.
     pub fn after(last: &[u8]) -> Option<Self> {
         let last = RequestFrame::parse(last).ok()?;
         let is_transfer = matches!(last.service, service::LOAD | service::SAVE | service::LIST);
         let is_end = last.ack && last.block & LAST_BLOCK != 0;
         (is_transfer && !is_end).then(|| Self {
             frame: RequestFrame { ack: true, block: NO_BLOCK, data: &[], ..last }.emit(),
-            // A block or an ACK follows an answer of the controller.
+            // A block or an ACK is only sent after an answer of the controller.
             is_open: last.ack,
             tries: 0,
             next: Now::ZERO,
@@ -45,12 +46,12 @@ impl Abandon {
         })
     }
 
-    /// The controller has answered the frame: it takes part in the transfer.
+    /// Records an answer of the controller, so the transfer is open there.
     pub fn answered(&mut self) {
         self.is_open = true;
     }
 
-    /// Whether the controller takes part in the transfer, as far as it has answered.
+    /// Whether the transfer is open at the controller, by its answers.
     pub fn is_open(&self) -> bool {
         self.is_open
     }

@@ -1,4 +1,4 @@
-//! A file or a list comes from the controller (save 0x16, list 0x32; DX 3.2.3 and 3.2.5).
+//! Download of a file or a list (save 0x16, list 0x32; DX 3.2.3 and 3.2.5).
 
 use std::time::Duration;
 
@@ -8,21 +8,21 @@ use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::{Now, Session, Step};
 
-/// Most times that a lost last ACK is made good.
+/// Maximum repeats of a lost final ACK.
 const MOST_LINGERS: u32 = 8;
 
-/// What a controller must not do in a transfer; going on would guess at the content.
+/// A protocol violation in a transfer. The session ends, because continuing would mean guessing the content.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Violation {
-    /// A block is missing before this one.
+    /// A block is missing.
     #[error("block {found} came where block {expected} is due")]
     Gap {
-        /// The number of the next block.
+        /// Number of the next block.
         expected: u32,
-        /// The number that came, without the mark of the last block.
+        /// Received number without the last-block bit.
         found: u32,
     },
-    /// A block without data that is not the last, so that the transfer might never end.
+    /// An empty block that is not the last: the transfer might never end.
     #[error("block {block} is empty but not the last")]
     EmptyBlock {
         /// Its number.
@@ -30,51 +30,51 @@ pub enum Violation {
     },
 }
 
-/// How a download ended. `bytes` counts what was handed out as [`Step::Data`] before the end.
+/// Outcome of a download. `bytes` counts the data returned as [`Step::Data`] before.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DownloadEnd {
-    /// Every block up to the last one.
+    /// All blocks up to the last one.
     Complete {
-        /// Size of the whole.
+        /// Total size.
         bytes: u64,
-        /// Blocks it came in.
+        /// Number of blocks.
         blocks: u32,
     },
-    /// Success without any block: the end of the batch backup (DX 3.4.6), or nothing to list.
+    /// Success without a block: the end of the batch backup (DX 3.4.6), or an empty list.
     Finished,
-    /// Success with an added status and without data: no such file or an empty one (E29C), nothing listed (E2A7).
+    /// Success with an added status and without data: the file is missing or empty (E29C), or the list is empty (E2A7).
     Nothing(Status),
-    /// The controller refused, at first or on the way.
+    /// The controller refused, at the start or later.
     Refused {
-        /// Its reason. A busy code if it was busy to the end.
+        /// The reason; a busy code if it was busy to the end.
         status: Status,
-        /// What had come by then.
+        /// Bytes received until then.
         bytes: u64,
     },
-    /// The controller broke the rules of a transfer.
+    /// The controller violated the protocol.
     Violated {
-        /// Which rule.
+        /// The violation.
         violation: Violation,
-        /// What had come by then.
+        /// Bytes received until then.
         bytes: u64,
     },
-    /// The next block would have exceeded the caller's limit.
+    /// The next block would exceed the limit of the caller.
     TooLarge {
         /// The limit.
         limit: u64,
-        /// What had come by then.
+        /// Bytes received until then.
         bytes: u64,
     },
-    /// Silence.
+    /// No answer.
     NoAnswer {
-        /// What had come by then; with 0 the request itself may not have arrived.
+        /// Bytes received until then. If 0, the request itself may be lost.
         bytes: u64,
-        /// What was seen instead.
+        /// What was received instead.
         counters: Counters,
     },
 }
 
-/// A transfer from the controller. Blocks leave as [`Step::Data`], each once and in order; one is held at most.
+/// A transfer from the controller. Returns each block once and in order as [`Step::Data`]; holds at most one.
 #[derive(Debug, Clone)]
 pub struct Download {
     inbox: Inbox,
@@ -84,30 +84,30 @@ pub struct Download {
     started: bool,
     /// The last frame sent: the request or an ACK.
     last_sent: Vec<u8>,
-    /// Whether `last_sent` has yet to leave for the first time.
+    /// Whether `last_sent` was not sent yet.
     unsent: bool,
-    /// The block that has yet to be handed out.
+    /// A block that was not returned yet.
     held: Option<Vec<u8>>,
     /// Number of the next block.
     expected: u32,
-    /// Block number in the last ACK, with the mark of the last block.
+    /// Block number of the last ACK, with the last-block bit.
     acknowledged: u32,
     bytes: u64,
-    /// The busy refusal that was the controller's last word.
+    /// The latest answer, if it was a busy refusal.
     busy: Option<Status>,
-    /// Whether the last frame sent was refused as busy and is due again later.
+    /// Whether the last frame was refused as busy and must be repeated later.
     pausing: bool,
-    /// ACKs sent once more after the end.
+    /// ACKs repeated after the end.
     lingered: u32,
     ended: Option<DownloadEnd>,
 }
 
 impl Download {
-    /// Sends `request` (save or list) under an id drawn from `ids`; the one in `request` is not looked at. A file of
-    /// more than `limit` bytes is not taken.
+    /// Sends `request` (save or list) with an id from `ids` instead of its own. Refuses a file of more than `limit`
+    /// bytes.
     ///
     /// # Panics
-    /// If the data of `request` is longer than a frame holds.
+    /// If the data of `request` is too long for a frame.
     pub fn new(request: &RequestFrame<'_>, limit: u64, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
@@ -128,27 +128,27 @@ impl Download {
         }
     }
 
-    /// Waits this long for the first answer and does not ask again meanwhile. The batch backup takes some ten minutes
-    /// before it answers, and a second request might start a second one.
+    /// Sets the time limit of the first answer, without repeats. The batch backup answers after about ten minutes, and
+    /// a second request might start a second one.
     #[must_use]
     pub fn with_first_wait(mut self, wait: Duration) -> Self {
         self.first_wait = Some(wait);
         self
     }
 
-    /// What was seen so far beside the blocks.
+    /// Unexpected events so far.
     pub fn counters(&self) -> Counters {
         self.inbox.counters
     }
 
-    /// What has come so far.
+    /// Bytes received so far.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// After a complete download: the ACK to send once more if `bytes` is the last block once more, which means that
-    /// the first ACK got lost. Without it the controller would hold the transfer open until its timer ends it. A few
-    /// times at most: a server that answers an ACK with the block again would be at it for ever.
+    /// After a complete download: the ACK to repeat if `bytes` is a repeat of the last block, which means that the ACK
+    /// was lost. Otherwise the controller would keep the transfer open until its timer expires. Limited, because a
+    /// server that repeats the block after each ACK would never end.
     pub fn linger(&mut self, bytes: &[u8]) -> Option<Vec<u8>> {
         let Some(DownloadEnd::Complete { .. }) = self.ended else { return None };
         let answer = self.inbox.current(bytes)?;
@@ -214,7 +214,7 @@ impl Download {
         }
     }
 
-    /// How a frame without a block ends the transfer, if it does.
+    /// The outcome of a frame without a block, if it ends the transfer.
     fn end_without_block(&self, answer: &AnswerFrame<'_>) -> Option<DownloadEnd> {
         let (status, bytes) = (answer.status, self.bytes);
         if !status.is_ok() {
@@ -279,7 +279,7 @@ impl Session for Download {
             self.last_sent.clone_from(&self.inbox.request);
             return self.send(now);
         }
-        // The ACK goes first: the controller fetches its next block while this one is being written.
+        // The ACK is sent first: the controller prepares its next block while this one is written.
         if self.unsent {
             self.unsent = false;
             return self.send(now);
@@ -306,7 +306,7 @@ impl Session for Download {
         if !self.started {
             return count(&mut self.inbox.counters.foreign);
         }
-        // A frame before the last one was polled for cannot be an answer to it.
+        // A frame that arrives before the last one was sent cannot be its answer.
         if self.ended.is_some() || self.unsent || self.held.is_some() {
             return count(&mut self.inbox.counters.duplicated);
         }
@@ -343,7 +343,7 @@ mod tests {
         AnswerFrame { division: Division::File, ack: true, id, block, service: 0x96, status, data }.emit()
     }
 
-    /// Hands in a block and takes the ACK and the data that follow.
+    /// Passes a block and returns the ACK and the data.
     fn exchange(session: &mut Download, now: Now, frame: &[u8]) -> (Vec<u8>, Vec<u8>) {
         session.handle(now, frame);
         let ack = sent(session, now);
@@ -353,14 +353,15 @@ mod tests {
         }
     }
 
-    /// The header of section 3.2.3's first block, its 479 bytes replaced: the manual prints none.
+    /// The header of the first block in section 3.2.3 with other data: the manual has no example with 479 bytes.
     fn full_block(head: &str, fill: u8) -> Vec<u8> {
         [hex(head), vec![fill; 479]].concat()
     }
 
     #[test]
     fn save_as_in_section_3_2_3() {
-        // The print raises the id with every ACK (02, 03, 04); here a transfer keeps its id, and the controller copies.
+        // The example of the manual increments the id with every ACK (02, 03, 04). Here a transfer keeps its id, and
+        // the controller copies it.
         let mut session = start(&SAVE, 2);
         assert_eq!(
             sent(&mut session, ms(0)),

@@ -1,4 +1,4 @@
-//! One request, one answer (DX 3.2.1, 3.2.2, 3.2.6).
+//! Exchange of one request and its answer (DX 3.2.1, 3.2.2, 3.2.6).
 
 use std::time::Duration;
 
@@ -6,27 +6,27 @@ use super::super::wire::{AnswerFrame, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy, is_damaged};
 use crate::{Now, Session, Step};
 
-/// What a controller answered. A refusal is an answer.
+/// Answer of a controller; a refusal is an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
-    /// The result code.
+    /// Result code.
     pub status: Status,
-    /// The data part, 0 to 479 bytes.
+    /// Data part, 0 to 479 bytes.
     pub data: Vec<u8>,
-    /// From the first copy of the request to the answer.
+    /// Time from the first attempt to the answer.
     pub elapsed: Duration,
-    /// Copies of the request that were sent.
+    /// Number of attempts.
     pub attempts: u32,
 }
 
-/// How an exchange ended.
+/// Outcome of an exchange.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ended {
     /// The controller answered; see the status.
     Answered(Reply),
-    /// No answer to a request that may be repeated without harm.
+    /// No answer to a request that can be repeated without harm.
     NoAnswer(Counters),
-    /// No answer to a request that changes state: it may or may not have been carried out.
+    /// No answer to a change: it may or may not have been carried out.
     OutcomeUnknown(Counters),
 }
 
@@ -38,19 +38,18 @@ pub struct Exchange {
     repeatable: bool,
     started: Option<Now>,
     attempts: u32,
-    /// The last refusal after which the request goes out again.
+    /// The last refusal that causes a repeat.
     busy: Option<Reply>,
-    /// Whether the last copy sent was so refused and the next one is due later.
+    /// Whether the last attempt was refused in this way, and the next one is due later.
     pausing: bool,
     ended: Option<Ended>,
 }
 
 impl Exchange {
-    /// Asks `request` under an id drawn from `ids`; the one in `request` is not looked at. With `repeatable`, silence
-    /// makes it ask again.
+    /// Sends `request` with an id from `ids` instead of its own. If `repeatable`, it is repeated after a timeout.
     ///
     /// # Panics
-    /// If the data of `request` is longer than a frame holds.
+    /// If the data of `request` is too long for a frame.
     pub fn new(request: &RequestFrame<'_>, repeatable: bool, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
@@ -64,7 +63,7 @@ impl Exchange {
         }
     }
 
-    /// What was seen so far beside the answer.
+    /// Unexpected events so far.
     pub fn counters(&self) -> Counters {
         self.inbox.counters
     }
@@ -138,7 +137,8 @@ impl Session for Exchange {
         }
         let damaged = self.repeatable && is_damaged(answer.status);
         if !damaged && !is_busy(answer.status) {
-            // Also under a former id: then the network doubled the request, and the other copy was carried out.
+            // An answer to an earlier id also counts: the network duplicated the request, and the other copy was
+            // carried out.
             self.ended = Some(Ended::Answered(self.reply(now, &answer)));
         } else if answer.id != self.inbox.id {
             count(&mut self.inbox.counters.late);
@@ -306,7 +306,7 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             };
-            // Pauses of 100, 200, 400, 800 ms and three of 1 s; another second would leave no time for an answer.
+            // Pauses of 100, 200, 400, 800 ms and three of 1 s. Another second would leave no time for an answer.
             assert_eq!((sends, now), (8, ms(4500)));
             let Ended::Answered(reply) = outcome else { panic!("not answered") };
             assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 8));

@@ -1,19 +1,22 @@
-//! Conversations with a controller: one request and its answer, a file or list to the PC, a file to the controller.
+//! Protocol sessions: a request with its answer, a download of a file or list, an upload of a file.
 //!
-//! Datagrams get lost, doubled, late and damaged, and the manuals say nothing about any of it. The rules here:
+//! Datagrams may be lost, duplicated, late or damaged; the manuals do not cover that. These rules apply:
 //!
-//! - **Reads repeat, changes do not.** A request that changes state leaves once; without an answer its outcome is
-//!   unknown, and is said to be. The one exception is a busy refusal, which states that nothing was done.
-//! - **A read that was damaged on its way goes out again** as one that was lost does.
-//! - **A busy refusal is waited out under a new id.** A second copy of the old refusal can then never pass for a refusal
-//!   of the request that followed it, which may well have been carried out.
-//! - **A transfer keeps one id** and is stop-and-wait. Only silence makes a session send its last frame again, never a
-//!   duplicate: two sides that answer every copy with a copy multiply the traffic until the end of the file.
-//! - **Blocks come in order or not at all.** A gap ends a transfer; nothing is guessed.
-//! - **A transfer that is broken off is ended at the controller too**, which else refuses others until its timer ends.
-//! - Frames that do not belong here are counted by class ([`Counters`]) and ignored.
+//! - **Reads repeat, changes do not.** A change is sent once. Without an answer its outcome is unknown and reported
+//!   as such. The exception is a busy refusal, which states that nothing was done.
+//! - **A damaged read is repeated** like a lost one.
+//! - **A request is repeated under a new id after a busy refusal.** So a second copy of the old refusal cannot be
+//!   mistaken for a refusal of the repeat, which may have been carried out.
+//! - **A transfer keeps one id** and is stop-and-wait. A session repeats its last frame only after a timeout, never
+//!   after a duplicate: two sides that answer each copy with a copy would multiply the traffic until the end of the
+//!   file.
+//! - **Blocks must arrive in order.** A gap ends a transfer.
+//! - **An aborted transfer is ended at the controller too.** Otherwise the controller refuses others until its timer
+//!   expires.
+//! - Frames that belong to no open request are counted by class ([`Counters`]) and ignored.
 //!
-//! Who sent a datagram is the driver's to check: only what comes from the controller's address and port belongs here.
+//! The driver must check the sender of a datagram: only frames from the address and port of the controller may be
+//! passed.
 
 use std::fmt;
 use std::sync::Arc;
@@ -34,38 +37,38 @@ pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
 
-/// The pause after the first busy refusal; it doubles with each, up to [`LONGEST_PAUSE`].
+/// Pause after the first busy refusal; it doubles with each refusal, up to [`LONGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// An id that is this many places behind that of a session belongs to one of its forerunners, and its frame came late.
+/// An id at most this far behind the id of a session belongs to an earlier session; its frame is late.
 const LATE_WINDOW: u8 = 32;
 
-/// Whether a controller refused only because it was busy.
+/// Whether the controller refused only because it was busy.
 pub fn is_busy(result: Status) -> bool {
     !result.is_ok() && status::is_busy(result.added)
 }
 
-/// Whether a controller refused a frame that was damaged on its way: size of the header, identifier, stated size (DX 5).
+/// Whether the controller refused a damaged frame: size of the header, identifier, stated size (DX 5).
 pub fn is_damaged(result: Status) -> bool {
     !result.is_ok() && matches!(result.added, 0xE4A5..=0xE4A7)
 }
 
-/// How long to wait and how often to try.
+/// Time limits and number of attempts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// The longest wait of one try for its answer. The last try has all of it.
+    /// Time limit of an attempt. Only the last attempt uses all of it.
     pub timeout: Duration,
-    /// Silence before the first further try, if that is shorter.
+    /// Time until the first repeat, if shorter.
     pub attempt: Duration,
-    /// Whether that silence doubles with each further try, up to `timeout`.
+    /// Whether that time doubles with each repeat, up to `timeout`.
     pub doubles: bool,
-    /// Most further tries of the same frame after silence.
+    /// Maximum number of repeats after a timeout.
     pub retries: u32,
 }
 
 impl Default for Policy {
-    /// A controller answers within 20 ms. With these, a frame goes out after 0, 0.3, 0.9 and 2.1 s and is given up
+    /// A controller answers within 20 ms. With these values a frame is sent after 0, 0.3, 0.9 and 2.1 s, and given up
     /// after 5.1 s.
     fn default() -> Self {
         Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
@@ -73,65 +76,65 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// The same with another wait for a try, and another number of further tries.
+    /// Sets the time limit of an attempt and the number of repeats.
     #[must_use]
     pub const fn with(self, timeout: Duration, retries: u32) -> Self {
         Self { timeout, retries, ..self }
     }
 
-    /// How long a frame that may be repeated is tried in all: `timeout` times (`retries` + 1) at most.
+    /// Total time for a repeatable frame: at most `timeout` times (`retries` + 1).
     pub fn patience(&self) -> Duration {
-        // After so many doublings the silence does not grow any more.
+        // After 32 doublings the time no longer grows.
         let growing = self.retries.min(u32::BITS);
         let grown = (0..growing).map(|tries| self.silence(tries)).fold(Duration::ZERO, Duration::saturating_add);
         let longest = self.silence(growing).saturating_mul(self.retries - growing);
         grown.saturating_add(longest).saturating_add(self.timeout)
     }
 
-    /// The silence after so many further tries, before the next one.
+    /// Time until the next repeat.
     fn silence(&self, tries: u32) -> Duration {
         let doubled = if self.doubles { 1_u32.checked_shl(tries).unwrap_or(u32::MAX) } else { 1 };
         self.attempt.saturating_mul(doubled).min(self.timeout)
     }
 }
 
-/// The request ids of a client: 0 to 255, then 0 again. Clones draw from the same sequence.
+/// Request ids of a client: 0 to 255, then 0 again. Clones share the sequence.
 #[derive(Debug, Clone, Default)]
 pub struct Ids(Arc<AtomicU8>);
 
 impl Ids {
-    /// Ids that begin with `first`; [`Ids::default`] begins with 0.
+    /// Starts with `first`; [`Ids::default`] starts with 0.
     pub fn starting_at(first: u8) -> Self {
         Self(Arc::new(AtomicU8::new(first)))
     }
 
-    /// The id of the next command.
+    /// Id of the next command.
     pub fn next_id(&self) -> u8 {
-        // Adding to an atomic wraps around, as the ids do.
+        // An atomic addition wraps around, as the ids do.
         self.0.fetch_add(1, Ordering::Relaxed)
     }
 }
 
-/// What a session saw and did beside the plain course of things.
+/// Counters of unexpected events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
     /// Frames that answer an earlier request of this client.
     pub late: u32,
-    /// Frames that answer nothing this client asked: other id, other service, other server, not marked as an answer.
+    /// Frames that answer no request of this client: other id, service or server, or not an answer.
     pub foreign: u32,
-    /// Second copies of what had been taken before.
+    /// Duplicates of accepted frames.
     pub duplicated: u32,
-    /// Datagrams shorter than they say, or than any frame.
+    /// Datagrams shorter than stated, or too short for a frame.
     pub truncated: u32,
-    /// Datagrams longer than they say, or than any frame.
+    /// Datagrams longer than stated, or too long for a frame.
     pub oversized: u32,
-    /// Datagrams that are no frames for another reason.
+    /// Other invalid datagrams.
     pub garbage: u32,
-    /// Frames sent again after silence.
+    /// Frames repeated after a timeout.
     pub repeats: u32,
     /// Busy refusals.
     pub busy: u32,
-    /// Refusals of a request that was damaged on its way.
+    /// Refusals of a damaged request.
     pub damaged: u32,
 }
 
@@ -150,24 +153,24 @@ impl Counters {
         ]
     }
 
-    /// All of them together.
+    /// Sum of all counters.
     pub fn total(&self) -> u64 {
         self.named().iter().map(|&(count, _)| u64::from(count)).sum()
     }
 
-    /// Whether datagrams arrived that were no answer, which tells "something else is there" from "nothing is there".
+    /// Whether datagrams arrived that were no answers: a peer exists.
     pub fn heard_something(&self) -> bool {
         self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")
     }
 
-    /// Whether something came that is no answer of the protocol to anything asked.
+    /// Whether datagrams arrived that are no answers of this protocol.
     pub fn is_garbage(&self) -> bool {
         [self.garbage, self.truncated, self.oversized, self.foreign].iter().any(|&count| count > 0)
     }
 }
 
 impl fmt::Display for Counters {
-    /// The counts that are not 0, as in "2 foreign, 1 truncated"; "nothing" if all are.
+    /// Nonzero counters, as in "2 foreign, 1 truncated"; "nothing" if all are 0.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
         for (count, name) in self.named().into_iter().filter(|&(count, _)| count > 0) {
@@ -178,7 +181,7 @@ impl fmt::Display for Counters {
     }
 }
 
-/// A copy of a frame of this client under another id.
+/// A copy of a frame with another id.
 fn with_id(frame: &[u8], id: u8) -> Vec<u8> {
     let frame = RequestFrame::parse(frame).expect("sessions build their frames with emit");
     RequestFrame { id, ..frame }.emit()
@@ -189,22 +192,22 @@ fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
 }
 
-/// Tells the answers to a request from everything else.
+/// Filter that finds the answers to a request.
 #[derive(Debug, Clone)]
 struct Inbox {
     request: Vec<u8>,
     ids: Ids,
     id: u8,
-    /// Ids this session used before its present one, youngest last.
+    /// Earlier ids of this session, newest last.
     former: Vec<u8>,
     counters: Counters,
 }
 
-/// Ids a session remembers of those it used before.
+/// Number of earlier ids to remember.
 const FORMER_IDS: usize = 8;
 
 impl Inbox {
-    /// For the answers to `request`, whose id is replaced by one drawn from `ids`.
+    /// Takes answers to `request`, whose id is replaced by one from `ids`.
     fn new(request: &RequestFrame<'_>, ids: &Ids) -> Self {
         let id = ids.next_id();
         let request = RequestFrame { id, ..*request }.emit();
@@ -215,7 +218,7 @@ impl Inbox {
         RequestFrame::parse(&self.request).expect("the inbox built this frame with emit")
     }
 
-    /// Goes on under a new id; answers to the old one are late from now on.
+    /// Assigns a new id; answers to the old one are late from now on.
     fn renew(&mut self) {
         if self.former.len() == FORMER_IDS {
             self.former.remove(0);
@@ -225,7 +228,7 @@ impl Inbox {
         self.request = with_id(&self.request, self.id);
     }
 
-    /// The answer in a datagram, if it is one to this session's present or former ids; counts anything else.
+    /// Parses an answer to the current or an earlier id; counts everything else.
     fn answer<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
         let counters = &mut self.counters;
         let answer = match AnswerFrame::parse(bytes) {
@@ -252,7 +255,7 @@ impl Inbox {
         None
     }
 
-    /// As [`Inbox::answer`], for the present id alone.
+    /// [`Inbox::answer`] for the current id only.
     fn current<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
         let answer = self.answer(bytes)?;
         if answer.id == self.id {
@@ -263,21 +266,21 @@ impl Inbox {
     }
 }
 
-/// When a frame goes out again and when patience ends.
+/// Timing of repeats.
 #[derive(Debug, Clone)]
 struct Pace {
     policy: Policy,
-    /// When patience ends with the frame and all its copies.
+    /// Deadline of a frame with all its repeats.
     patience: Now,
-    /// When the present wait ends.
+    /// End of the current wait.
     deadline: Now,
     repeat_at: Option<Now>,
-    /// Repeats of the present frame after silence.
+    /// Repeats of the current frame after a timeout.
     repeats: u32,
     pause: Duration,
 }
 
-/// What time it is for a session that waits for an answer.
+/// Timer state of a session that waits for an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Due {
     Nothing { before: Now },
@@ -290,7 +293,7 @@ impl Pace {
         Self { policy, patience: Now::ZERO, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
     }
 
-    /// Patience starts anew.
+    /// Restarts the total time limit.
     fn restart(&mut self, now: Now) {
         self.patience = now.saturating_add(self.policy.patience());
         self.repeat_at = None;
@@ -298,25 +301,25 @@ impl Pace {
         self.pause = FIRST_PAUSE;
     }
 
-    /// A frame left, to be repeated after silence if `repeatable`; else it has one try.
+    /// Records a sent frame. It has further attempts only if `repeatable`.
     fn sent(&mut self, now: Now, repeatable: bool) {
         let more = repeatable && self.repeats < self.policy.retries;
         self.repeat_at = more.then(|| now.saturating_add(self.policy.silence(self.repeats)));
         self.deadline = if repeatable { self.patience } else { now.saturating_add(self.policy.timeout) };
     }
 
-    /// A frame left that is not repeated, and whose answer takes as long as `wait`.
+    /// Records a sent frame without repeats, whose answer may take `wait`.
     fn sent_for(&mut self, now: Now, wait: Duration) {
         self.repeat_at = None;
         self.deadline = now.saturating_add(wait);
     }
 
-    /// The last frame is about to leave again because of silence.
+    /// Records a repeat after a timeout.
     fn repeat(&mut self) {
         self.repeats = self.repeats.saturating_add(1);
     }
 
-    /// Makes room for a pause before the frame goes out again; `false` if patience ends before an answer could come.
+    /// Schedules a pause before a repeat; `false` if no time would be left for an answer.
     fn pause(&mut self, now: Now) -> bool {
         let resume = now.saturating_add(self.pause);
         if resume.saturating_add(self.policy.silence(0)) > self.patience {
@@ -343,12 +346,12 @@ impl Pace {
 
 #[cfg(test)]
 mod testing {
-    //! What the tests of the sessions share.
+    //! Shared test helpers of the sessions.
 
     use super::*;
     use crate::yerc::wire::Division;
 
-    /// A request to the file server, of no service yet.
+    /// A request to the file server, without a service.
     pub(super) const FILE_REQUEST: RequestFrame<'static> = RequestFrame {
         division: Division::File,
         ack: false,
@@ -361,7 +364,7 @@ mod testing {
         data: b"TESTJOB.JBI",
     };
 
-    /// An answer with changed id, for the places where the manual's example raises it within a transfer.
+    /// An answer with another id, for examples of the manual that increment it within a transfer.
     pub(super) fn under_id(frame: &[u8], id: u8) -> Vec<u8> {
         let frame = AnswerFrame::parse(frame).unwrap();
         AnswerFrame { id, ..frame }.emit()

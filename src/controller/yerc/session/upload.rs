@@ -1,101 +1,100 @@
-//! A file goes to the controller (load 0x15; DX 3.2.4).
+//! Upload of a file (load 0x15; DX 3.2.4).
 
 use super::super::wire::{LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::{Now, Session, Step};
 
-/// How an upload ended. `sent` counts the file's bytes in the blocks that left, `taken` those in blocks the controller
-/// acknowledged.
+/// Outcome of an upload. `sent` counts the bytes of the blocks sent, `taken` those of the acknowledged blocks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UploadEnd {
     /// The controller acknowledged every block up to the last one.
     Complete {
-        /// Size of the whole.
+        /// Total size.
         bytes: u64,
-        /// Blocks it went in.
+        /// Number of blocks.
         blocks: u32,
     },
-    /// The controller took every block, but acknowledged the last one without its number, as `0x80000000`. That is most
-    /// likely the end; only a look at the controller tells.
+    /// The controller acknowledged all blocks, but the last one without its number, as `0x80000000`. That is most
+    /// likely the end; only a check at the controller can confirm it.
     Unnumbered {
-        /// Size of the whole.
+        /// Total size.
         bytes: u64,
-        /// Blocks it went in.
+        /// Number of blocks.
         blocks: u32,
     },
-    /// The file has no bytes; nothing was sent. A transfer ends with a block of data that is marked as the last, and
-    /// neither manual knows one without data: the controller would be left with an open transfer or half a file.
+    /// The file is empty; nothing was sent. A transfer ends with a data block with the last-block bit, and the manuals
+    /// have none without data. The controller would be left with an open transfer or a partial file.
     Empty,
     /// The file needs more blocks than there are block numbers.
     TooLong {
-        /// Bytes that left before the numbers ran out.
+        /// Bytes sent before the numbers ran out.
         sent: u64,
     },
-    /// The controller refused, at first or on the way.
+    /// The controller refused, at the start or later.
     Refused {
-        /// Its reason. A busy code if it was busy to the end.
+        /// The reason; a busy code if it was busy to the end.
         status: Status,
-        /// Bytes that left.
+        /// Bytes sent.
         sent: u64,
-        /// Bytes that were acknowledged.
+        /// Bytes acknowledged.
         taken: u64,
-        /// Whether the refused frame had been sent before without an answer: then that copy may have been taken, and
-        /// if it was the last block, the file may be there in spite of the refusal.
+        /// Whether an earlier attempt of the refused frame had no answer. That attempt may have been accepted; if it
+        /// was the last block, the file may exist despite the refusal.
         repeated: bool,
     },
-    /// Silence: the controller may hold nothing, a part, or after the last block the whole file. Silence after the request
-    /// (`sent` is 0) leaves open whether the controller waits for the data.
+    /// No answer: the controller may have nothing, a part, or after the last block the whole file. After the request
+    /// (`sent` is 0) the controller may be waiting for data.
     OutcomeUnknown {
-        /// Bytes that left.
+        /// Bytes sent.
         sent: u64,
-        /// Bytes that were acknowledged.
+        /// Bytes acknowledged.
         taken: u64,
-        /// What was seen instead of an acknowledgement.
+        /// What was received instead of an acknowledgement.
         counters: Counters,
     },
 }
 
-/// The frame whose acknowledgement is due.
+/// The frame that waits for an acknowledgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// None: the next block is being gathered.
+    /// None: the next block is being collected.
     Gather,
     /// The request.
     Request,
-    /// The block that was sent last.
+    /// The last block sent.
     Block { last: bool },
 }
 
-/// A transfer to the controller. It asks for content with [`Step::Feed`], first of all before anything is sent, so that
-/// a source that is empty or cannot be read costs nothing.
+/// A transfer to the controller. It requests content with [`Step::Feed`] before it sends anything, so that an empty
+/// or unreadable source has no effect.
 #[derive(Debug, Clone)]
 pub struct Upload {
     inbox: Inbox,
     pace: Pace,
     block_size: usize,
-    /// What was fed and has yet to leave.
+    /// Content that was not sent yet.
     buffer: Vec<u8>,
     source_ended: bool,
     stage: Stage,
-    /// The block number with which the request was accepted.
+    /// Block number in the acceptance of the request.
     accepted: Option<u32>,
     last_sent: Vec<u8>,
-    /// Number of the block that was sent last, 0 before the first.
+    /// Number of the last block sent; 0 before the first.
     block: u32,
     sent: u64,
     taken: u64,
-    /// Whether the last frame sent was sent before and that copy not answered.
+    /// Whether an earlier attempt of the last frame had no answer.
     repeated: bool,
-    /// The busy refusal of the last frame sent; that frame is due again later.
+    /// Busy refusal of the last frame, which is repeated later.
     busy: Option<Status>,
     ended: Option<UploadEnd>,
 }
 
 impl Upload {
-    /// Sends `request` (load) under an id drawn from `ids`; the one in `request` is not looked at.
+    /// Sends `request` (load) with an id from `ids` instead of its own.
     ///
     /// # Panics
-    /// If the data of `request` is longer than a frame holds.
+    /// If the data of `request` is too long for a frame.
     pub fn new(request: &RequestFrame<'_>, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
@@ -115,7 +114,7 @@ impl Upload {
         }
     }
 
-    /// Sends blocks of this many bytes instead of 479. Other clients are known to use 400.
+    /// Sets the block size instead of 479 bytes. Other clients are known to use 400.
     ///
     /// # Panics
     /// If `size` is not 1 to 479.
@@ -126,8 +125,8 @@ impl Upload {
         self
     }
 
-    /// The answer to [`Step::Feed`]: the next piece of the file, of any size, and whether it ends there. The end may
-    /// come with a piece or, empty, after the last one. What is fed after the end is dropped.
+    /// Answer to [`Step::Feed`]: the next piece of the file, of any size, and whether the file ends with it. The last
+    /// piece may be empty. Data after the end is ignored.
     pub fn feed(&mut self, data: &[u8], last: bool) {
         if self.source_ended {
             return;
@@ -136,24 +135,24 @@ impl Upload {
         self.source_ended = last;
     }
 
-    /// What was seen so far beside the acknowledgements.
+    /// Unexpected events so far.
     pub fn counters(&self) -> Counters {
         self.inbox.counters
     }
 
-    /// Bytes that have left so far.
+    /// Bytes sent so far.
     pub fn sent(&self) -> u64 {
         self.sent
     }
 
-    /// Bytes the controller has acknowledged so far.
+    /// Bytes acknowledged so far.
     pub fn taken(&self) -> u64 {
         self.taken
     }
 
-    /// The frame that follows the last acknowledged one, or the need for more content.
+    /// The next frame, or a request for more content.
     fn next_frame(&mut self, now: Now) -> Step<UploadEnd> {
-        // Only a further byte shows that a full block is not the last one.
+        // A full block is known not to be the last one only after another byte.
         if !self.source_ended && self.buffer.len() <= self.block_size {
             return Step::Feed;
         }
@@ -186,7 +185,7 @@ impl Upload {
     }
 
     fn send(&mut self, now: Now) -> Step<UploadEnd> {
-        // A block has a number, so that a controller tells a copy from the next one. The request has none.
+        // A controller recognizes a repeated block by its number. The request has no number.
         self.pace.sent(now, self.stage != Stage::Request);
         Step::Send(self.last_sent.clone())
     }
@@ -233,9 +232,9 @@ impl Upload {
     }
 
     fn take_ack(&mut self, block: u32) {
-        // A controller that acknowledges the last block without its mark means the same block all the same.
+        // An acknowledgement of the last block without its mark also counts.
         let number = block & !LAST_BLOCK;
-        // Where the request was answered so, too, a late copy of that answer would look the same.
+        // If the request was accepted with this number too, a late copy of that answer looks the same.
         let is_unnumbered = block == LAST_BLOCK && self.accepted != Some(LAST_BLOCK);
         if is_unnumbered && self.stage == (Stage::Block { last: true }) {
             self.taken = self.sent;
@@ -289,7 +288,7 @@ impl Session for Upload {
         if is_busy(status) {
             self.take_busy(now, status);
         } else if !status.is_ok() || status.added != 0 {
-            // Success with an added status tells of something missing when reading; here it is no acknowledgement.
+            // In a read, success with an added status means missing data; here it is not an acknowledgement.
             self.ended = Some(self.refused(status));
         } else {
             self.take_ack(answer.block);
@@ -324,7 +323,7 @@ mod tests {
 
     #[test]
     fn load_as_in_section_3_2_4() {
-        // The print raises the id with every block (05, 06, 07); here a transfer keeps its id.
+        // The example of the manual increments the id with every block (05, 06, 07); here a transfer keeps its id.
         let content = [&[0x41; 479][..], b"   END\r\n"].concat();
         let mut session = start(&content);
         assert_eq!(
@@ -343,7 +342,7 @@ mod tests {
         assert_eq!(session.counters(), Counters::default());
     }
 
-    /// The data of every block of a fault-free upload, fed in pieces, with the end apart or with the last piece.
+    /// Blocks of an upload without faults: fed in pieces, with the end separate or in the last piece.
     fn blocks(length: usize, piece: usize, block_size: usize, end_apart: bool) -> Vec<(u32, usize)> {
         let content = vec![9; length];
         let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5)).with_block_size(block_size);
@@ -457,7 +456,7 @@ mod tests {
             session
         };
         assert_eq!(done(&mut to_last_block(0), ms(30)), UploadEnd::Unnumbered { bytes: 958, blocks: 2 });
-        // Where the request was answered so, it may be a late copy of that answer.
+        // If the request was accepted with this number, it may be a late copy of that answer.
         assert!(matches!(to_last_block(LAST_BLOCK).poll(ms(30)), Step::Wait(_)));
     }
 

@@ -1,4 +1,4 @@
-//! Alarms: the four that may be active and the history of five classes (DX 3.3.1, 3.3.2, 3.3.37, 3.3.38).
+//! Alarms: up to four active ones, and a history of five classes (DX 3.3.1, 3.3.2, 3.3.37, 3.3.38).
 
 use std::collections::VecDeque;
 
@@ -7,14 +7,13 @@ use encoding_rs::SHIFT_JIS;
 use crate::yerc::Model;
 use crate::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
 
-/// Alarms that can be active at a time.
 pub(super) const ACTIVE: usize = 4;
-/// Entries the controller keeps in each class of the history.
+/// Entries per class of the history.
 const HISTORY: usize = 100;
-/// Instances of a class start at multiples of this, plus 1.
+/// Instance numbers of a class start at multiples of this, plus 1.
 const CLASS_STEP: u16 = 1000;
 
-/// The part of the history an alarm goes to.
+/// Class of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Class {
@@ -26,7 +25,7 @@ pub(super) enum Class {
 }
 
 impl Class {
-    /// The class of an alarm number: 0001-3999 stop the controller, 8000 up are raised by jobs and ladder.
+    /// The class of an alarm number: 0001-3999 stop the controller; 8000 and above are raised by jobs and ladder.
     pub(super) fn from_code(code: u32) -> Self {
         match code {
             0..=3999 => Self::Major,
@@ -37,7 +36,7 @@ impl Class {
     }
 }
 
-/// An alarm whose texts follow from code, sub-code and alarm type; `name` where it is not the usual one.
+/// An alarm with the texts for its code, sub-code and type; `name` replaces the usual name.
 pub(super) fn alarm(code: u32, data: u32, kind: u32, time: &str, name: Option<&str>) -> Alarm {
     let alarm = Alarm {
         code,
@@ -57,7 +56,7 @@ pub(super) fn alarm(code: u32, data: u32, kind: u32, time: &str, name: Option<&s
     Alarm { texts: Some(texts), ..alarm }
 }
 
-/// What is wrong now, and what was.
+/// Active alarms and history.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AlarmLog {
     active: VecDeque<Alarm>,
@@ -71,7 +70,7 @@ impl AlarmLog {
         self.active.truncate(ACTIVE);
     }
 
-    /// Adds to the history as its newest entry.
+    /// Adds the newest entry of the history.
     pub(super) fn record(&mut self, class: Class, alarm: Alarm) {
         let history = &mut self.history[class as usize];
         history.push_front(alarm);
@@ -82,7 +81,7 @@ impl AlarmLog {
         !self.active.is_empty()
     }
 
-    /// Whether one is active that only a restart clears.
+    /// Whether an alarm is active that only a restart clears.
     pub(super) fn major_is_active(&self) -> bool {
         self.active.iter().any(|alarm| Class::from_code(alarm.code) == Class::Major)
     }
@@ -95,7 +94,7 @@ impl AlarmLog {
         self.active.iter()
     }
 
-    /// Instances 1 to 4, newest first; outside of them there is nothing to ask. An empty place reads as zeros.
+    /// Instances 1 to 4, newest first; other instances do not exist. An empty slot is all zeros.
     pub(super) fn current(&self, instance: u16) -> Option<Vec<u8>> {
         let place = usize::from(instance).checked_sub(1).filter(|&place| place < ACTIVE)?;
         Some(bytes_or_zeros(self.active.get(place)))
@@ -113,7 +112,7 @@ fn bytes_or_zeros(alarm: Option<&Alarm>) -> Vec<u8> {
     alarm.map_or_else(|| vec![0; Alarm::SIZE_WITH_TEXTS], Alarm::emit)
 }
 
-/// Text as a Japanese controller stores it.
+/// Text in the encoding of a Japanese controller.
 pub(super) fn sjis(text: &str) -> Vec<u8> {
     SHIFT_JIS.encode(text).0.into_owned()
 }
@@ -134,7 +133,8 @@ fn known_name(code: u32) -> &'static str {
     }
 }
 
-/// Text and reverse-video map of a sub-code by alarm type (DX 3.3.1); which bit is which axis is this simulator's choice.
+/// Text and reverse-video map of a sub-code by alarm type (DX 3.3.1). The assignment of bits to axes is specific to
+/// this simulator.
 fn sub_code(alarm: &Alarm) -> (String, String) {
     const ROBOT: &[&str] = &["S", "L", "U", "R", "B", "T"];
     let names = match alarm.kind.0 {
@@ -163,13 +163,14 @@ fn sub_code(alarm: &Alarm) -> (String, String) {
     axes(names, alarm.data)
 }
 
-/// A sub-code of type 21 as this simulator lays it out: axes at their lower limit, at their upper limit, robot number.
+/// Sub-code of type 21 in the layout of this simulator: axes at the lower limit, axes at the upper limit, robot
+/// number.
 pub(super) fn limit_data(robot: u16, axis: usize, upper: bool) -> u32 {
     let bit = 1u32 << axis.min(7);
     u32::from(robot) << 16 | if upper { bit << 8 } else { bit }
 }
 
-/// Names in brackets; the ones whose bit is set are shown reversed.
+/// Names in brackets; names with a set bit are displayed reversed.
 fn axes(names: &[&str], bits: u32) -> (String, String) {
     let (mut text, mut reverse) = (String::from("["), String::from("0"));
     for (bit, name) in names.iter().enumerate() {

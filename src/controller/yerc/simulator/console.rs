@@ -1,4 +1,4 @@
-//! What somebody at the machine can do: one line, one action.
+//! Console commands of an operator at the machine.
 
 use super::alarms::Class;
 use super::memory::io_class;
@@ -6,7 +6,7 @@ use super::world::{Mode, World};
 use crate::simulator::console::{self, expected, number, on_off, unknown};
 use crate::yerc::payload::CycleMode;
 
-/// The lines there are, as `help` shows them.
+/// Lines of `help`.
 const HELP: &[(&str, &str)] = &[
     ("alarm CODE [DATA [TYPE]] [NAME]", "raise an alarm: alarm 4315 1 2 COLLISION DETECT"),
     ("alarm clear", "take all alarms away"),
@@ -24,7 +24,6 @@ const HELP: &[(&str, &str)] = &[
     ("register NUMBER VALUE", "set a register: register 0 17"),
 ];
 
-/// Carries out a line; the answer says what is now.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
@@ -115,7 +114,7 @@ fn servo(world: &mut World, on: bool) -> Result<(), String> {
     Ok(())
 }
 
-/// HLOCK keeps the pendant from everything but the emergency stop (DX 3.3.20).
+/// HLOCK locks the pendant, except the emergency stop (DX 3.3.20).
 fn unlocked(world: &World) -> Result<(), String> {
     if world.switches.hlock { Err("the pendant is locked by HLOCK".into()) } else { Ok(()) }
 }
@@ -143,7 +142,7 @@ fn register(world: &mut World, register: &str, value: &str) -> Result<String, St
     }
 }
 
-/// One line about everything that decides what is refused.
+/// One line with all states that decide about refusals.
 fn summary(world: &World) -> String {
     let switches = &world.switches;
     let always = [
@@ -175,7 +174,7 @@ fn summary(world: &World) -> String {
     console::summary(&always, optional)
 }
 
-/// The summary, then job, alarms, message and positions.
+/// Summary, job, alarms, message and positions.
 fn state(world: &World) -> Vec<(String, String)> {
     let text = |bytes: &[u8]| encoding_rs::SHIFT_JIS.decode(bytes).0.into_owned();
     let mut rows = vec![("now".to_owned(), summary(world))];

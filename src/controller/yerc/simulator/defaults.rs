@@ -1,4 +1,4 @@
-//! What a controller has in it before anybody tells it otherwise.
+//! Default content of a controller.
 
 use super::alarms::{Class, alarm, sjis};
 use super::memory::{Kind, Memory};
@@ -8,8 +8,8 @@ use crate::yerc::Model;
 use crate::yerc::names::written;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
-/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26; the letters of the
-/// software are those that [`Model::from_software`] knows a controller by).
+/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26). The letters of the
+/// software version are those that [`Model::from_software`] recognizes.
 pub(super) const fn versions(model: Model) -> [&'static str; 4] {
     match model {
         Model::Fs100 => ["FS1.14.00A(JP/US)-00", "MPP0003-A0*", "GENERAL", "12.34"],
@@ -19,10 +19,10 @@ pub(super) const fn versions(model: Model) -> [&'static str; 4] {
     }
 }
 
-/// A name that needs two bytes a character: a job, and what the pendant calls it.
+/// A job name with two bytes per character, as displayed on the pendant.
 const JAPANESE_JOB: &str = "テスト";
 
-/// Jobs: name and instructions between NOP and END.
+/// Jobs: name, and instructions between NOP and END.
 const JOBS: [(&str, &str); 6] = [
     (
         "TESTJOB",
@@ -37,7 +37,7 @@ JUMP *AGAIN IF B000<3",
     (JAPANESE_JOB, "'日本語のコメント\nTIMER T=1.00"),
 ];
 
-/// Taught positions of every job above.
+/// Taught positions of all jobs above.
 const POSITIONS: &str = "C00000=0,0,0,0,0,0\nC00001=0,0,-300000,0,0,0\nC00002=68000,100000,0,0,-30000,0";
 
 /// Data, parameter, system and list files.
@@ -59,12 +59,12 @@ const FILES: [(&str, &str); 12] = [
     ("VARNAME.LST", "//VARNAME\nB000 PARTS"),
 ];
 
-/// Lines of the sections for signals: of the first 128 of each.
+/// Lines of the signal sections: the first 128 signals of each.
 const SIGNAL_LINES: usize = 32;
-/// Lines of the sections for variables and registers.
+/// Lines of the sections of variables and registers.
 const LINES: usize = 100;
 
-/// Names that people gave, in the files that a controller keeps them in; see [`crate::yerc::names`].
+/// Files with user-defined names; see [`crate::yerc::names`].
 pub(super) fn name_files() -> Vec<(&'static str, Vec<u8>)> {
     let signals = |lines: &[(usize, &str)]| section(SIGNAL_LINES, ",,,", lines);
     let variables = |number: usize, name: &str| section(LINES, "", &[(0, &format!("{number:04} 1,0,{name}"))]);
@@ -106,13 +106,13 @@ pub(super) fn name_files() -> Vec<(&'static str, Vec<u8>)> {
     .into()
 }
 
-/// So many lines of nothing, but for these.
+/// A section of empty lines, except for these.
 fn section(lines: usize, nothing: &str, named: &[(usize, &str)]) -> Vec<String> {
     let line = |at| named.iter().find(|(line, _)| *line == at).map_or(nothing, |(_, text)| text).to_owned();
     (0..lines).map(line).collect()
 }
 
-/// Everything a fresh controller knows, so that each list and each read has something to show.
+/// Adds the default content, so that every list and every read returns data.
 pub(super) fn fill(world: &mut World) {
     files(&mut world.files);
     variables(&mut world.memory);
@@ -131,7 +131,7 @@ fn files(files: &mut Storage) {
     }
 }
 
-/// A job file as a controller writes it.
+/// A job file in the format of a controller.
 pub(super) fn job(name: &str, body: &str) -> Vec<u8> {
     let text = format!(
         "/JOB\n//NAME {name}\n//POS\n///NPOS 3,0,0,0,0,0\n///TOOL 0\n///POSTYPE PULSE\n///PULSE\n{POSITIONS}\n//INST\n\

@@ -1,4 +1,4 @@
-//! Job files (JBI): what a controller checks when one is loaded, and the program it runs.
+//! Job files (JBI): checks of a load, and the program.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -6,28 +6,28 @@ use std::time::Duration;
 use super::memory::Kind;
 use super::motion::{AXES, Pulses};
 
-/// Added status: neither NOP at the head nor END at the tail, or lines that do not end in CR LF.
+/// Added status: NOP at the start or END at the end is missing, or lines do not end in CR LF.
 const NOP_OR_END_MISSING: u16 = 0x5130;
-/// Added status: the file does not begin as a job does.
+/// Added status: the file does not start as a job.
 const FORMAT: u16 = 0x5170;
-/// Added status: the name inside is another.
+/// Added status: the name in the file differs.
 const JOB_RECORD: u16 = 0x5390;
-/// Added status: an instruction the controller knows, written wrongly.
+/// Added status: a known instruction with wrong syntax.
 const SYNTAX: u16 = 0x5110;
 
-/// A job, ready to run.
+/// A parsed job.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     /// Instructions by line number; line 0 is NOP.
     pub(super) lines: Vec<Instruction>,
-    /// Positions in the file, by number.
+    /// Positions of the file, by number.
     pub(super) positions: BTreeMap<u32, Target>,
 }
 
 impl Program {
-    /// Reads a job file, or says with which added status a controller refuses it.
+    /// Parses a job file. An error is the added status with which a controller refuses it.
     ///
-    /// `stem` is the file's name without `.JBI`; the job must bear the same.
+    /// `stem` is the file name without `.JBI`; the name in the job must be equal.
     pub(super) fn parse(stem: &[u8], text: &[u8]) -> Result<Self, u16> {
         let lines = lines(text)?;
         if lines.first() != Some(&b"/JOB".as_slice()) {
@@ -44,18 +44,17 @@ impl Program {
         Ok(Self { lines: instructions?, positions: positions(&lines[..head]) })
     }
 
-    /// The line of a label.
     pub(super) fn label(&self, name: &[u8]) -> Option<usize> {
         self.lines.iter().position(|line| matches!(line, Instruction::Label(label) if label == name))
     }
 
-    /// The step a line belongs to: motions up to and including it.
+    /// Step number of a line: the motions up to and including it.
     pub(super) fn step(&self, line: usize) -> usize {
         self.lines.iter().take(line + 1).filter(|line| matches!(line, Instruction::Move(_))).count()
     }
 }
 
-/// The file's lines, each of which must end in CR LF (the last may lack it).
+/// The lines of the file; each must end in CR LF, except the last.
 fn lines(text: &[u8]) -> Result<Vec<&[u8]>, u16> {
     let mut lines = Vec::new();
     let mut rest = text;
@@ -71,7 +70,7 @@ fn lines(text: &[u8]) -> Result<Vec<&[u8]>, u16> {
     Ok(lines)
 }
 
-/// A position a motion goes to.
+/// Target of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Target {
     Pulses(Pulses),
@@ -79,7 +78,7 @@ pub(super) enum Target {
     Base([f64; 7]),
 }
 
-/// The `C00000=…` lines, each in the form the last `///POSTYPE` named.
+/// The `C00000=…` lines, in the format of the preceding `///POSTYPE`.
 fn positions(lines: &[&[u8]]) -> BTreeMap<u32, Target> {
     let mut base = false;
     let mut found = BTreeMap::new();
@@ -102,7 +101,6 @@ fn positions(lines: &[&[u8]]) -> BTreeMap<u32, Target> {
     found
 }
 
-/// A value in an instruction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operand {
     Number(f64),
@@ -112,7 +110,7 @@ pub(super) enum Operand {
     Output(u32),
 }
 
-/// `B000=5`, `IN#(1)=ON` and the like.
+/// A condition such as `B000=5`, `IN#(1)=ON`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Condition {
     pub(super) left: Operand,
@@ -120,7 +118,6 @@ pub(super) struct Condition {
     pub(super) right: Operand,
 }
 
-/// How a condition compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Comparison {
     Equal,
@@ -132,7 +129,7 @@ pub(super) enum Comparison {
 }
 
 impl Comparison {
-    /// Longer signs first.
+    /// Longer operators first.
     const SIGNS: [(&str, Self); 6] = [
         ("<>", Self::NotEqual),
         ("<=", Self::LessOrEqual),
@@ -155,7 +152,6 @@ impl Comparison {
     }
 }
 
-/// What an arithmetic instruction does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arithmetic {
     Set,
@@ -165,7 +161,7 @@ pub(super) enum Arithmetic {
     Div,
 }
 
-/// Where a motion goes.
+/// Target of a motion instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MoveTarget {
     /// A position of the job file.
@@ -174,7 +170,6 @@ pub(super) enum MoveTarget {
     Variable(usize),
 }
 
-/// A motion instruction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Move {
     pub(super) straight: bool,
@@ -183,7 +178,6 @@ pub(super) struct Move {
     pub(super) speed: f64,
 }
 
-/// One line of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Instruction {
     End,
@@ -198,12 +192,12 @@ pub(super) enum Instruction {
     Jump(Vec<u8>, Option<Condition>),
     Call(Vec<u8>, Option<Condition>),
     Label(Vec<u8>),
-    /// Comments, NOP, and whatever this simulator does not act on.
+    /// Comments, NOP, and instructions without effect in this simulator.
     Pass,
 }
 
 impl Instruction {
-    /// Reads one line. What is not known passes; what is known and malformed is a syntax error.
+    /// Parses one line. An unknown instruction passes; a malformed known one is a syntax error.
     fn parse(line: &[u8]) -> Result<Self, u16> {
         if let Some(label) = line.strip_prefix(b"*") {
             return Ok(Self::Label(label.to_vec()));
@@ -266,7 +260,7 @@ impl Instruction {
     }
 }
 
-/// `P003 VJ=10.00`, `C00001 V=100.0 PL=1`.
+/// Parses `P003 VJ=10.00`, `C00001 V=100.0 PL=1`.
 fn motion(rest: &str, straight: bool, speed_tag: &str) -> Option<Instruction> {
     let mut words = rest.split_whitespace();
     let place = words.next()?;
@@ -283,7 +277,7 @@ fn duration(text: &str) -> Option<Duration> {
     (0.0..=655.35).contains(&seconds).then(|| Duration::from_secs_f64(seconds))
 }
 
-/// `*LABEL IF B000=1` and `JOB:NAME IF …`; names may hold any bytes but blanks.
+/// Parses `*LABEL IF B000=1` and `JOB:NAME IF …`; names may contain any bytes except blanks.
 fn jump(rest: &[u8], mark: &[u8]) -> Option<(Vec<u8>, Option<Condition>)> {
     let rest = rest.strip_prefix(mark)?;
     let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());

@@ -1,20 +1,19 @@
-//! Variables, I/O and registers, kept as the bytes that travel.
+//! Variables, I/O and registers, stored in protocol format.
 //!
-//! The protocol is little-endian and so are the banks: an element's bytes are its wire form, for the single and for the
-//! plural commands alike.
+//! Protocol and banks are little-endian, so the bytes of an element are the same for single and plural commands.
 
 use crate::yerc::Model;
 use crate::yerc::table::{Row, Span};
 
-/// Elements of the byte, integer, double, real and string variables (DX 3.3.11 to 3.3.15).
+/// Number of byte, integer, double, real and string variables each (DX 3.3.11 to 3.3.15).
 const SCALARS: usize = 100;
-/// Elements of the position variables (DX 3.3.16 to 3.3.18).
+/// Number of position variables of each kind (DX 3.3.16 to 3.3.18).
 const POSITIONS: usize = 128;
 /// Registers 0 to 999 (DX 3.3.10).
 const REGISTERS: usize = 1000;
-/// The command whose instances are the I/O classes.
+/// The command with the I/O classes as instances.
 const SINGLE_IO: u16 = 0x78;
-/// One past the highest I/O instance of any model.
+/// One more than the highest I/O instance of any model.
 const IO_END: usize = 8221;
 
 /// Words of a robot position variable: type, form, tool, user frame, extended form, eight axes.
@@ -22,7 +21,7 @@ pub(super) const POSITION_WORDS: usize = 13;
 /// Words of a base or station position variable: type, eight axes.
 pub(super) const AXIS_WORDS: usize = 9;
 
-/// The kinds of variables, in the order of their commands.
+/// Kinds of variables, in the order of their commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Kind {
     B,
@@ -36,7 +35,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Every kind; longer names first, so that a prefix search finds `BP` before `B`.
+    /// All kinds; longer names first, so that a prefix search finds `BP` before `B`.
     pub(super) const BY_NAME: [(&'static str, Self); 8] = [
         ("BP", Self::Bp),
         ("EX", Self::Ex),
@@ -48,7 +47,7 @@ impl Kind {
         ("P", Self::P),
     ];
 
-    /// Bytes of an element in memory.
+    /// Size of an element in bytes.
     const fn size(self) -> usize {
         match self {
             Self::B => 1,
@@ -60,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// Position variables exist only once something was written to them.
+    /// Position variables are undefined until they are written.
     pub(super) const fn starts_undefined(self) -> bool {
         matches!(self, Self::P | Self::Bp | Self::Ex)
     }
@@ -69,7 +68,7 @@ impl Kind {
         if self.starts_undefined() { POSITIONS } else { SCALARS }
     }
 
-    /// `B12`, `BP3` and the like.
+    /// Parses `B12`, `BP3` and so on.
     pub(super) fn parse(text: &str) -> Option<(Self, usize)> {
         let (kind, digits) =
             Self::BY_NAME.into_iter().find_map(|(name, kind)| Some((kind, text.strip_prefix(name)?)))?;
@@ -96,14 +95,13 @@ impl Bank {
     }
 }
 
-/// What a controller remembers.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
     model: Model,
     banks: [Bank; 8],
     io: Vec<u8>,
     registers: Vec<u16>,
-    /// Registers that the ladder program writes each cycle: a write is accepted and does not last.
+    /// Registers that the ladder program writes in each cycle: a write is accepted but does not last.
     pub(super) ladder: Vec<u16>,
 }
 
@@ -122,16 +120,16 @@ impl Memory {
     /// The bytes of an element; `None` while it is undefined.
     ///
     /// # Panics
-    /// If `index` is outside the kind's count, which callers check first.
+    /// If `index` is out of range, which callers check first.
     pub(super) fn element(&self, kind: Kind, index: usize) -> Option<&[u8]> {
         let bank = &self.banks[kind as usize];
         bank.defined[index].then(|| &bank.bytes[index * bank.size..][..bank.size])
     }
 
-    /// Writes an element; what `value` does not cover is cleared (a 16-byte text on a 32-byte variable).
+    /// Writes an element; bytes after `value` are cleared (a 16-byte text in a 32-byte variable).
     ///
     /// # Panics
-    /// If `index` or the length is outside the kind's, which callers check first.
+    /// If `index` or the length is out of range, which callers check first.
     pub(super) fn store(&mut self, kind: Kind, index: usize, value: &[u8]) {
         let bank = &mut self.banks[kind as usize];
         let place = &mut bank.bytes[index * bank.size..][..bank.size];
@@ -140,16 +138,16 @@ impl Memory {
         bank.defined[index] = true;
     }
 
-    /// A position variable is not taught any more.
+    /// Makes a position variable undefined.
     ///
     /// # Panics
-    /// If `index` is outside the kind's count, which callers check first.
+    /// If `index` is out of range, which callers check first.
     pub(super) fn forget(&mut self, kind: Kind, index: usize) {
         let bank = &mut self.banks[kind as usize];
         bank.defined[index] = !kind.starts_undefined();
     }
 
-    /// A numeric variable as jobs see it.
+    /// A numeric variable as a number, for jobs.
     pub(super) fn number(&self, kind: Kind, index: usize) -> f64 {
         let Some(bytes) = self.element(kind, index) else { return 0.0 };
         match (kind, bytes) {
@@ -161,7 +159,7 @@ impl Memory {
         }
     }
 
-    /// Writes a numeric variable; `false` when the value does not fit it.
+    /// Writes a numeric variable; `false` if the value does not fit.
     #[expect(clippy::cast_possible_truncation, reason = "the ranges are checked first; R holds single precision")]
     pub(super) fn store_number(&mut self, kind: Kind, index: usize, value: f64) -> bool {
         let whole = value.trunc() as i64;
@@ -175,7 +173,7 @@ impl Memory {
         bytes.map(|bytes| self.store(kind, index, &bytes)).is_some()
     }
 
-    /// The I/O byte of an instance that exists.
+    /// The byte of an existing I/O instance.
     pub(super) fn io(&self, instance: u16) -> u8 {
         self.io.get(usize::from(instance)).copied().unwrap_or(0)
     }
@@ -186,12 +184,12 @@ impl Memory {
         }
     }
 
-    /// Whether a signal is on; digits 8 and 9 address nothing.
+    /// Whether a signal is on; digits 8 and 9 do not exist.
     pub(super) fn signal(&self, number: u32) -> bool {
         signal_place(number).is_some_and(|(instance, bit)| self.io(instance) & bit != 0)
     }
 
-    /// Switches a signal; `false` when no such signal exists on this model.
+    /// Switches a signal; `false` if it does not exist on this model.
     pub(super) fn set_signal(&mut self, number: u32, on: bool) -> bool {
         let Some((instance, bit)) =
             signal_place(number).filter(|&(instance, _)| io_class(self.model, instance).is_some())
@@ -207,20 +205,20 @@ impl Memory {
         self.registers.get(usize::from(number)).copied()
     }
 
-    /// A client's write: the ladder wins where it writes too.
+    /// Write by a client: the ladder has priority in its own registers.
     pub(super) fn write_register(&mut self, number: u16, value: u16) {
         if !self.ladder.contains(&number) {
             self.force_register(number, value);
         }
     }
 
-    /// The ladder's or the console's write; `false` when there is no such register.
+    /// Write by the ladder or the console; `false` if the register does not exist.
     pub(super) fn force_register(&mut self, number: u16, value: u16) -> bool {
         self.registers.get_mut(usize::from(number)).map(|register| *register = value).is_some()
     }
 }
 
-/// The class an I/O instance belongs to (DX and FS 3.3.9).
+/// The class of an I/O instance (DX and FS 3.3.9).
 pub(super) fn io_class(model: Model, instance: u16) -> Option<&'static Span> {
     Row::from_number(SINGLE_IO)?.instances.find(model, instance)
 }

@@ -1,19 +1,20 @@
-//! A simulated FS100, DX100, DX200 or YRC1000: a controller with a life, without sockets and without a clock.
+//! Simulated FS100, DX100, DX200 or YRC1000, without sockets and without a clock.
 //!
-//! A server hands it datagrams and the time, and sends what it answers. It shares the table of commands and the payload
-//! types with the client, but checks everything by itself and more strictly than a real controller is known to.
+//! A server passes datagrams and the time, and sends the answers. The simulator shares the command table and the
+//! payload types with the client, but validates everything independently, and more strictly than a real controller is
+//! known to.
 //!
-//! | module | holds |
+//! | module | content |
 //! |---|---|
-//! | `start` | the start state, from TOML |
-//! | `defaults` | what a fresh controller has in it |
-//! | `world` | switches, power, alarms, what may be done when, the passing of time |
+//! | `start` | start state from TOML |
+//! | `defaults` | content of a new controller |
+//! | `world` | switches, power, alarms, permissions, time |
 //! | `memory`, `alarms`, `storage` | variables and I/O, alarm log, files |
 //! | `variables` | the file of all variables |
-//! | `motion`, `job`, `playback` | groups that move, job files, jobs that run |
-//! | `robot`, `reads`, `operate`, `moves` | the robot server |
-//! | `transfer` | the file server |
-//! | `console` | what somebody at the machine does |
+//! | `motion`, `job`, `playback` | moving groups, job files, running jobs |
+//! | `robot`, `reads`, `operate`, `moves` | robot server |
+//! | `transfer` | file server |
+//! | `console` | operator actions |
 
 mod alarms;
 mod console;
@@ -43,29 +44,29 @@ use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, Req
 use crate::Now;
 use crate::simulator::answers::{Answers, Busy};
 
-/// Answers that wait to be fetched.
+/// Limit of pending answers.
 const MAX_WAITING: usize = 4096;
-/// Places of the raw request that even a malformed one is answered by.
+/// Offsets in the raw request that the answer to a malformed one needs.
 const ID_AT: usize = 11;
 const SERVICE_AT: usize = 29;
 
 /// A datagram of the controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outgoing {
-    /// From which of the two ports.
+    /// Sending port.
     pub division: Division,
-    /// To whom, by the token that came with the request.
+    /// Receiver: the token of its request.
     pub peer: u64,
-    /// What.
+    /// Content.
     pub bytes: Vec<u8>,
 }
 
-/// The files in which it keeps names for signals, variables and registers at the start.
+/// Default files with names of signals, variables and registers.
 pub fn name_files() -> Vec<(&'static str, Vec<u8>)> {
     defaults::name_files()
 }
 
-/// A controller.
+/// A simulated controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {
     world: World,
@@ -85,8 +86,7 @@ impl Simulator {
         }
     }
 
-    /// Takes a datagram that arrived at `now` on the robot or the file port, from the client that the caller knows as
-    /// `peer`.
+    /// Takes a datagram that arrived at `now` on the robot or file port. `peer` is the caller's token of the client.
     pub fn receive(&mut self, now: Now, division: Division, peer: u64, bytes: &[u8]) {
         self.advance(now);
         let now = self.world.now;
@@ -105,22 +105,22 @@ impl Simulator {
             Err(_) => None,
         };
         self.post(division, reply);
-        // What the request began may have something due at once.
+        // The request may have started something that is due at once.
         self.advance(now);
     }
 
-    /// The next datagram that is due at `now`, if any.
+    /// Takes the next datagram that is due at `now`.
     pub fn transmit(&mut self, now: Now) -> Option<Outgoing> {
         self.advance(now);
         self.answers.take(now)
     }
 
-    /// When [`Simulator::transmit`] will have something, or the world changes by itself.
+    /// Time of the next datagram or internal event.
     pub fn wake(&self) -> Option<Now> {
         [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
     }
 
-    /// Carries out one line of the console: `alarm 4315 3 1`, `remote off`, `state`. What to print, or what is wrong.
+    /// Executes a console line: `alarm 4315 3 1`, `remote off`, `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         let answer = console::execute(&mut self.world, line);
@@ -128,7 +128,7 @@ impl Simulator {
         answer
     }
 
-    /// Lets world and transfers reach `now`, which never runs back.
+    /// Advances world and transfers to `now`, which never runs backwards.
     fn advance(&mut self, now: Now) {
         let now = now.max(self.world.now);
         while let Some(at) = self.files.wake().filter(|&at| at <= now) {
@@ -164,7 +164,7 @@ impl Simulator {
     }
 }
 
-/// The code for a datagram that is no frame; none for one too short to be answered.
+/// The code for an invalid frame; `None` if it is too short for an answer.
 fn malformed(error: &WireError) -> Option<u16> {
     match error {
         WireError::Truncated { .. } => None,
@@ -177,7 +177,7 @@ fn malformed(error: &WireError) -> Option<u16> {
     }
 }
 
-/// A frame as a controller sends it.
+/// A frame in the format of a controller.
 fn answer_frame(division: Division, service: u8, id: u8, block: u32, status: Status, data: &[u8]) -> Vec<u8> {
     AnswerFrame { division, ack: true, id, block, service: service | ANSWER_BIT, status, data }.emit()
 }

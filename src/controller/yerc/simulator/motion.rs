@@ -1,21 +1,21 @@
-//! The mechanical part: control groups, a stand-in for their kinematics, and motion over time.
+//! Mechanics: control groups, simplified kinematics, and motion over time.
 //!
-//! The stand-in is a cylinder, so that joint and straight paths differ and both ends are exact: S turns about the
-//! vertical, L is the reach, U the height, R, B and T turn the tool. Positions are kept as fractions of pulses, which
-//! are finer than the 0.001 mm and 0.0001 degrees of the protocol; a target in either form is therefore read back as
-//! it was commanded. A base carries its robot along X.
+//! The kinematics is a cylinder, so that joint and straight paths differ and both end points are exact: S rotates
+//! about the vertical, L is the reach, U the height, and R, B and T rotate the tool. Positions are stored as
+//! fractional pulses, which are finer than 0.001 mm and 0.0001 degrees of the protocol. So a target in either form is
+//! reported as it was commanded. A base moves its robot along X.
 
 use std::time::Duration;
 
 use crate::Now;
 
-/// Axes a group can have in the protocol.
+/// Maximum number of axes in the protocol.
 pub(super) const AXES: usize = 8;
-/// Time in which a moving group comes to rest when it is held.
+/// Stopping time of a held group.
 pub(super) const STOP_TIME: Duration = Duration::from_millis(100);
-/// Fastest straight motion.
+/// Maximum speed of a straight motion.
 pub(super) const MAX_LINEAR_MM_S: f64 = 1500.0;
-/// Fastest rotation of the tool.
+/// Maximum rotation speed of the tool.
 pub(super) const MAX_ANGULAR_DEG_S: f64 = 180.0;
 
 /// Pulses of all axes of a group.
@@ -23,7 +23,7 @@ pub(super) type Pulses = [f64; AXES];
 /// X, Y, Z in mm, Rx, Ry, Rz, Re in degrees.
 pub(super) type Pose = [f64; 7];
 
-/// What kind of thing a group is.
+/// Kind of group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Family {
     Robot,
@@ -41,7 +41,7 @@ impl Family {
     }
 }
 
-/// One axis: travel in pulses, speed in pulses a second at 100 %.
+/// An axis: range in pulses, and maximum speed in pulses per second.
 #[derive(Debug, Clone, Copy)]
 struct Axis {
     min: f64,
@@ -60,7 +60,7 @@ const PULSES_PER_MM: f64 = 1000.0;
 const REACH_AT_ZERO_MM: f64 = 1000.0;
 const HEIGHT_AT_ZERO_MM: f64 = 1200.0;
 
-/// S, L, U, R, B, T, E of a robot.
+/// Axes S, L, U, R, B, T, E of a robot.
 const ROBOT: [Axis; 7] = [
     axis(-244_800.0, 244_800.0, 200.0 * S_PULSES_PER_DEG),
     axis(-999_000.0, 2_000_000.0, MAX_LINEAR_MM_S * PULSES_PER_MM),
@@ -73,13 +73,12 @@ const ROBOT: [Axis; 7] = [
 const BASE: [Axis; 1] = [axis(-5_000_000.0, 5_000_000.0, 1000.0 * PULSES_PER_MM)];
 const STATION: [Axis; 2] = [axis(-1_000_000.0, 1_000_000.0, 180_000.0); 2];
 
-/// A group that is fitted, and where it is.
+/// A fitted group and its position.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     pub(super) family: Family,
     /// 1 for R1.
     pub(super) number: u16,
-    /// How many axes it has.
     pub(super) axes: usize,
     pub(super) pulses: Pulses,
     pub(super) form: u32,
@@ -88,7 +87,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// `R1`, `B2`, `S3`; a robot has 6 axes, or 7 where `robot_axes` says so.
+    /// Parses `R1`, `B2`, `S3`. A robot has 6 axes, or 7 according to `robot_axes`.
     pub(super) fn parse(name: &str, robot_axes: usize) -> Option<Self> {
         let (letter, number) = (name.chars().next()?, name.get(1..)?.parse().ok().filter(|&number| number > 0)?);
         let (family, axes) =
@@ -110,14 +109,14 @@ impl Group {
         }
     }
 
-    /// The first axis that would be outside its travel.
+    /// The first axis outside its range.
     fn beyond_limit(&self, pulses: &Pulses) -> Option<usize> {
-        // A micro-pulse of rounding is no violation.
+        // Tolerance for rounding errors.
         let outside = |(axis, &pulse): (&Axis, &f64)| pulse < axis.min - 1e-6 || pulse > axis.max + 1e-6;
         self.spec().iter().zip(&pulses[..self.axes]).position(outside)
     }
 
-    /// Seconds a joint motion takes at 100 %.
+    /// Duration of a joint motion at 100 %, in seconds.
     fn joint_seconds(&self, to: &Pulses) -> f64 {
         self.spec()
             .iter()
@@ -128,7 +127,7 @@ impl Group {
     }
 }
 
-/// Where the tool of a robot is, in robot coordinates.
+/// Tool position of a robot in robot coordinates.
 pub(super) fn forward(pulses: &Pulses) -> Pose {
     let turn = pulses[0] / S_PULSES_PER_DEG;
     let reach = REACH_AT_ZERO_MM + pulses[1] / PULSES_PER_MM;
@@ -144,7 +143,7 @@ pub(super) fn forward(pulses: &Pulses) -> Pose {
     ]
 }
 
-/// The pulses for a pose, choosing the turn of each wrist axis nearest to `near`.
+/// Pulses of a pose, with the turn of each wrist axis nearest to `near`.
 pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
     let reach = pose[0].hypot(pose[1]);
     let turn = if reach < 1e-6 { near[0] / S_PULSES_PER_DEG } else { pose[1].atan2(pose[0]).to_degrees() };
@@ -161,36 +160,35 @@ pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
     ]
 }
 
-/// Degrees within -180 (excluded) and 180.
+/// Normalizes degrees to -180 (excluded) to 180.
 pub(super) fn wrap(degrees: f64) -> f64 {
     let turned = degrees.rem_euclid(360.0);
-    // The rounding keeps a hair above 180 from becoming -180.
+    // The tolerance keeps a value slightly above 180 from becoming -180.
     if turned > 180.0 + 1e-9 { turned - 360.0 } else { turned }
 }
 
-/// The angle equal to `degrees` modulo a turn that is nearest to `near`.
+/// The angle equivalent to `degrees` that is nearest to `near`.
 fn nearest(degrees: f64, near: f64) -> f64 {
     near + wrap(degrees - near)
 }
 
-/// The nearest whole number that a word of the protocol can carry.
+/// The nearest integer that fits a protocol word.
 #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates, which is what a counter does")]
 pub(super) fn whole(value: f64) -> i32 {
     value.round() as i32
 }
 
-/// One group's share of a motion.
+/// Motion of one group.
 #[derive(Debug, Clone)]
 pub(super) struct Leg {
     pub(super) group: usize,
     from: Pulses,
     to: Pulses,
-    /// Set when the tool follows a straight line.
+    /// Start and end of a straight line of the tool.
     line: Option<(Pose, Pose)>,
 }
 
 impl Leg {
-    /// The pulses at a fraction of the way.
     fn at(&self, fraction: f64) -> Pulses {
         if fraction >= 1.0 {
             return self.to;
@@ -210,31 +208,30 @@ fn lerp(from: f64, to: f64, fraction: f64) -> f64 {
     from + (to - from) * fraction
 }
 
-/// A motion under way.
+/// A running motion.
 #[derive(Debug, Clone)]
 pub(super) struct Motion {
     legs: Vec<Leg>,
     begun: Now,
     length: Duration,
-    /// Fraction at which an axis meets its soft limit, and which.
+    /// Fraction at which an axis reaches its soft limit, with group and axis.
     limit: Option<(f64, usize, usize)>,
-    /// When and at what fraction the braking began.
+    /// Start time and fraction of the deceleration.
     braking: Option<(Now, f64)>,
 }
 
-/// How a motion ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// At its target.
+    /// Target reached.
     Arrived,
-    /// Held on the way.
+    /// Stopped by a hold.
     Stopped,
     /// Group and axis at a soft limit.
     Limit(usize, usize),
 }
 
 impl Motion {
-    /// The fraction of the way covered at `now`.
+    /// Completed fraction of the path at `now`.
     fn fraction(&self, now: Now) -> f64 {
         let length = self.length.as_secs_f64();
         let covered = match self.braking {
@@ -253,7 +250,7 @@ impl Motion {
         self.begun.saturating_add(self.length.mul_f64(fraction))
     }
 
-    /// When it will be over.
+    /// End time.
     pub(super) fn end(&self) -> Now {
         let planned = self.moment_of(self.limit.map_or(1.0, |(fraction, ..)| fraction));
         match self.braking {
@@ -263,7 +260,7 @@ impl Motion {
     }
 }
 
-/// All groups, and the motion under way.
+/// All groups, and the running motion.
 #[derive(Debug, Clone)]
 pub(super) struct Arm {
     pub(super) groups: Vec<Group>,
@@ -287,12 +284,12 @@ impl Arm {
         self.motion.as_ref().map(Motion::end)
     }
 
-    /// Millimetres the base of robot `number` has travelled.
+    /// Travel of the base of robot `number` in mm.
     pub(super) fn base_offset(&self, number: u16) -> f64 {
         self.find(Family::Base, number).map_or(0.0, |base| self.groups[base].pulses[0] / PULSES_PER_MM)
     }
 
-    /// The tool of a robot in base coordinates.
+    /// Tool position of a robot in base coordinates.
     pub(super) fn base_pose(&self, robot: usize) -> Pose {
         let group = &self.groups[robot];
         let mut pose = forward(&group.pulses);
@@ -300,14 +297,14 @@ impl Arm {
         pose
     }
 
-    /// Starts a joint motion at a share of the greatest speed (1.0 is 100 %).
+    /// Starts a joint motion at a share of the maximum speed (1.0 is 100 %).
     pub(super) fn joint(&mut self, now: Now, targets: &[(usize, Pulses)], share: f64) {
         let seconds = targets.iter().map(|&(group, to)| self.groups[group].joint_seconds(&to)).fold(0.0, f64::max);
         let legs = targets.iter().map(|&(group, to)| self.leg(group, to, false)).collect();
         self.begin(now, legs, Duration::from_secs_f64(seconds / share.max(1e-4)));
     }
 
-    /// Starts a straight motion; the first target is the robot whose tool draws the line.
+    /// Starts a straight motion; the first target is the robot with the tool.
     pub(super) fn straight(&mut self, now: Now, targets: &[(usize, Pulses)], speed: Speed) {
         let legs: Vec<_> = targets.iter().map(|&(group, to)| self.leg(group, to, true)).collect();
         let line = legs.iter().find_map(|leg| leg.line);
@@ -315,7 +312,7 @@ impl Arm {
             Some((from, to)) => speed.seconds(&from, &to),
             None => 0.0,
         };
-        // A base that travels along may need longer than the tool does.
+        // A moving base may take longer than the tool.
         let others = targets.iter().map(|&(group, to)| (group, self.groups[group].joint_seconds(&to)));
         let base = others
             .filter(|&(group, _)| self.groups[group].family != Family::Robot)
@@ -341,7 +338,7 @@ impl Arm {
         self.motion = Some(Motion { legs, begun: now, length, limit, braking: None });
     }
 
-    /// Walks the path in small steps and halves the step in which a limit is met.
+    /// Searches the first limit in small steps, then by bisection.
     fn first_limit(&self, legs: &[Leg]) -> Option<(f64, usize, usize)> {
         const STEPS: u32 = 128;
         let violation = |fraction: f64| {
@@ -359,20 +356,20 @@ impl Arm {
         violation(outside).map(|(group, axis)| (inside, group, axis))
     }
 
-    /// Lets the motion run out; [`Arm::advance`] reports its end.
+    /// Decelerates the motion; [`Arm::advance`] reports its end.
     pub(super) fn brake(&mut self, now: Now) {
         if let Some(motion) = self.motion.as_mut().filter(|motion| motion.braking.is_none()) {
             motion.braking = Some((now, motion.fraction(now)));
         }
     }
 
-    /// Stops where it is, as brakes do without servo power.
+    /// Stops at once, as brakes do without servo power.
     pub(super) fn halt(&mut self, now: Now) {
         self.place(now);
         self.motion = None;
     }
 
-    /// Brings the positions to `now`; says so when the motion is over.
+    /// Updates the positions to `now`; returns the end of a motion.
     pub(super) fn advance(&mut self, now: Now) -> Option<End> {
         self.place(now);
         let motion = self.motion.as_ref()?;
@@ -397,7 +394,7 @@ impl Arm {
         }
     }
 
-    /// Pulses a second of each axis of a group at `now`.
+    /// Speed of each axis of a group at `now`, in pulses per second.
     pub(super) fn velocity(&self, group: usize, now: Now) -> Pulses {
         const SPAN: Duration = Duration::from_millis(1);
         let Some(motion) = &self.motion else { return [0.0; AXES] };
@@ -407,17 +404,17 @@ impl Arm {
     }
 }
 
-/// The speed of a straight motion.
+/// Speed of a straight motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Speed {
-    /// mm/s of the tool's tip.
+    /// mm/s of the tool tip.
     Linear(f64),
-    /// deg/s of its turn.
+    /// Degrees per second of the tool rotation.
     Angular(f64),
 }
 
 impl Speed {
-    /// Time for the way; the other part of the movement stretches it where it could not keep up.
+    /// Duration of the motion, extended if the other part of the movement needs longer.
     fn seconds(self, from: &Pose, to: &Pose) -> f64 {
         let way = |range: std::ops::Range<usize>| range.map(|i| (to[i] - from[i]).powi(2)).sum::<f64>().sqrt();
         let (distance, turn) = (way(0..3), way(3..7));

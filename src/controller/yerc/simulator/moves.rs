@@ -1,7 +1,7 @@
-//! The move commands: checks, coordinate systems, and the order to the arm (DX 3.3.39, 3.3.40).
+//! Move commands: checks, coordinate systems, start of the motion (DX 3.3.39, 3.3.40).
 //!
-//! The checks come in the order of the request's words. User frames are an origin and a turn about Z; tool
-//! increments are turned by the tool's orientation.
+//! The checks are in the order of the request words. User frames have an origin and a rotation about Z; tool
+//! increments use the orientation of the tool.
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
@@ -11,18 +11,18 @@ use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, S
 /// Instances of the moves.
 const LINK: u16 = 1;
 const INCREMENT: u16 = 3;
-/// Highest tool and user frame number.
+/// Maximum tool and user frame number.
 const LAST_NUMBER: u32 = 63;
-/// Form bits that a move defines; the manuals reserve the others.
+/// Form bits of a move; the others are reserved in the manuals.
 const FORM_BITS: u32 = 0x3F;
 const EXTENDED_FORM_BITS: u32 = 0x1F;
-/// Fastest straight motion during in-guard safe operation.
+/// Maximum straight speed in guarded operation.
 const GUARDED_MM_S: f64 = 250.0;
 
 impl World {
     /// Command 0x8A.
     pub(super) fn move_cartesian(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        // Only the FS100 manual prints 25 words, and FS100s are known to take 26.
+        // Only the FS100 manual has 25 words, and FS100s are known to accept 26.
         let layouts = match self.model {
             Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
             Model::Dx100 | Model::Dx200 | Model::Yrc1000 => &[MoveLayout::Words26],
@@ -36,7 +36,7 @@ impl World {
         let speed = speed_of(instance, order.class, order.speed)?;
         let known = match order.coordinate {
             PositionKind::Base | PositionKind::Robot | PositionKind::User => true,
-            // A target in the tool's own frame says something only as an increment.
+            // A target in tool coordinates is valid only as an increment.
             PositionKind::Tool => instance == INCREMENT,
             PositionKind::Pulse | PositionKind::Other(_) => false,
         };
@@ -98,7 +98,7 @@ impl World {
             Ordered::Share(share) => self.arm.joint(self.now, targets, share),
             Ordered::Speed(speed) => {
                 if targets.iter().any(|&(group, _)| self.arm.groups[group].family == Family::Station) {
-                    // A station turns; it draws no line.
+                    // A station rotates and cannot move along a line.
                     return Err(Refusal::Added(code::WRONG_GROUP));
                 }
                 let speed = match speed {
@@ -111,7 +111,7 @@ impl World {
         Ok(())
     }
 
-    /// The group that moves: robot or station, one of them, and fitted.
+    /// The moving group: exactly one fitted robot or station.
     fn moved_group(&self, robot: u32, station: u32) -> Result<usize, Refusal> {
         let (family, number) = match (robot, station) {
             (1.., 0) => (Family::Robot, robot),
@@ -122,7 +122,7 @@ impl World {
         number.and_then(|number| self.arm.find(family, number)).ok_or(Refusal::Added(code::GROUP))
     }
 
-    /// Pulses of a group; words of axes that it does not have must be 0.
+    /// Pulses of a group; words of missing axes must be 0.
     fn pulses(&self, group: usize, words: &[i32]) -> Result<Pulses, Refusal> {
         let axes = self.arm.groups[group].axes;
         check_unused(words.get(axes..).unwrap_or_default())?;
@@ -141,7 +141,7 @@ impl World {
         Ok((group, to))
     }
 
-    /// Where the robot's base goes, in pulses (one for each 0.001 mm); `None` for a robot that stands still.
+    /// Target of the robot base in pulses (one per 0.001 mm); `None` for a robot without base.
     fn base_target(&self, robot: u16, words: &[f64; 3], increment: bool) -> Result<Option<(usize, Pulses)>, Refusal> {
         let base = self.arm.find(Family::Base, robot);
         let axes = base.map_or(0, |base| self.arm.groups[base].axes);
@@ -157,7 +157,7 @@ impl World {
         }))
     }
 
-    /// The origin and turn of the user frame where one is needed.
+    /// Origin and rotation of the user frame, if one is required.
     fn user_frame(&self, coordinate: PositionKind, number: u32) -> Result<[f64; 4], Refusal> {
         if number > LAST_NUMBER || coordinate == PositionKind::User && number == 0 {
             return Err(Refusal::Added(code::USER_FRAME));
@@ -170,15 +170,15 @@ impl World {
     }
 }
 
-/// A speed as ordered.
+/// Commanded speed.
 #[derive(Debug, Clone, Copy)]
 enum Ordered {
-    /// Of the greatest joint speed.
+    /// Share of the maximum joint speed.
     Share(f64),
     Speed(Speed),
 }
 
-/// The speed; its class must be the instance's, its value within what the robot can do.
+/// Validates the speed: its class must fit the instance, its value the limits of the robot.
 fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Refusal> {
     let (scale, most) = match class {
         SpeedClass::Percent if instance == LINK => (0.01, 100.0),
@@ -197,7 +197,7 @@ fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Ref
     })
 }
 
-/// Words of axes that nothing has.
+/// Words of missing axes must be 0.
 fn check_unused(words: &[i32]) -> Result<(), Refusal> {
     if words.iter().all(|&word| word == 0) { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
 }
@@ -206,7 +206,7 @@ fn check_tool(tool: u32) -> Result<(), Refusal> {
     if tool > LAST_NUMBER { Err(Refusal::Added(code::TOOL)) } else { Ok(()) }
 }
 
-/// The target in robot coordinates.
+/// Target in robot coordinates.
 fn target_pose(order: &CartesianMove, increment: bool, from: &Pose, base_mm: f64, frame: [f64; 4]) -> Pose {
     let words = order.target.map(f64::from);
     let (mut place, mut turn) = (
@@ -238,7 +238,7 @@ fn turned_about_z([x, y, z]: [f64; 3], degrees: f64) -> [f64; 3] {
     [x * cos - y * sin, x * sin + y * cos, z]
 }
 
-/// A direction of the tool in robot coordinates: about X, then Y, then Z.
+/// Converts a tool direction to robot coordinates: rotation about X, then Y, then Z.
 fn turned([x, y, z]: [f64; 3], pose: &Pose) -> [f64; 3] {
     let (sin, cos) = pose[3].to_radians().sin_cos();
     let (y, z) = (y * cos - z * sin, y * sin + z * cos);

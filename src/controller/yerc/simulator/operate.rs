@@ -1,22 +1,22 @@
-//! The commands that act: reset, switches, messages, jobs (DX 3.3.19 to 3.3.24).
+//! Control commands: reset, switches, messages, jobs (DX 3.3.19 to 3.3.24).
 
 use super::robot::{Answer, command};
 use super::world::{Mode, Refusal, World, code};
 use crate::yerc::payload::{CycleMode, Text};
 use crate::yerc::table::Row;
 
-/// Usable characters of a message; the field has two more bytes.
+/// Usable length of a message; the field has two more bytes.
 const MESSAGE_LEN: usize = 30;
 const MESSAGE_FIELD: usize = 32;
 /// Name and line of a selection.
 const SELECTION: usize = 36;
 const NAME_FIELD: usize = 32;
-/// The instance that selects the job to execute; others select master jobs.
+/// Instance that selects the job to execute; others select master jobs.
 const EXECUTE: u16 = 1;
 const FIRST_MASTER: u16 = 10;
 
 impl World {
-    /// Carries out a command that is not about stored data.
+    /// Executes a command other than a read or write of data.
     pub(super) fn operate(&mut self, row: &Row, instance: u16, data: &[u8]) -> Answer {
         match row.number {
             command::RESET => self.reset(instance, data),
@@ -36,7 +36,7 @@ impl World {
         execute_word(data)?;
         self.may_command()?;
         if instance == 1 {
-            // What stops the whole controller stays until it is restarted.
+            // An alarm that stops the whole controller persists until a restart.
             if self.alarms.major_is_active() {
                 return Err(Refusal::Added(code::ALARM));
             }
@@ -135,12 +135,12 @@ impl World {
     }
 }
 
-/// The one word of a request.
+/// The only word of a request.
 pub(super) fn word(data: &[u8]) -> Result<u32, Refusal> {
     data.try_into().map(u32::from_le_bytes).map_err(|_| Refusal::Added(code::REQUEST_SIZE))
 }
 
-/// The word 1 that resets and starts carry.
+/// The word 1 of reset and start requests.
 fn execute_word(data: &[u8]) -> Result<(), Refusal> {
     if word(data)? == 1 { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
 }

@@ -1,4 +1,4 @@
-//! Jobs over time: which one is selected, which line is next, and what the lines do.
+//! Job execution: selected job, next line, effects of the lines.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,9 +11,8 @@ use super::world::World;
 use crate::Now;
 use crate::yerc::payload::{CycleMode, JobInfo, Text};
 
-/// What a line takes that neither moves nor waits.
+/// Duration of a line without motion or wait.
 const LINE_TIME: Duration = Duration::from_millis(2);
-/// Jobs that may wait for the return of a called one.
 const MAX_CALLS: usize = 12;
 /// Signal number of general-purpose output 1.
 const FIRST_OUTPUT: u32 = 10010;
@@ -22,7 +21,7 @@ const FIRST_INPUT: u32 = 10;
 /// 100 % in the unit of 0x73.
 const FULL_OVERRIDE: u32 = 10_000;
 
-/// A job and the line that is next in it.
+/// A job and its next line.
 #[derive(Debug, Clone)]
 struct Cursor {
     name: Vec<u8>,
@@ -30,7 +29,7 @@ struct Cursor {
     line: usize,
 }
 
-/// What the player does.
+/// State of the player.
 #[derive(Debug, Clone, Default)]
 enum State {
     #[default]
@@ -39,17 +38,16 @@ enum State {
     Due(Now),
     /// The line ends with the motion.
     Moving,
-    /// The line ends when the condition holds, or at this time.
+    /// The line ends when the condition is true, or at this time.
     Waiting(Condition, Option<Now>),
 }
 
-/// The master task.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Player {
     cursor: Option<Cursor>,
     callers: Vec<Cursor>,
     state: State,
-    /// Master jobs by task, as selected with instances 10 and up of 0x87.
+    /// Master jobs by task, selected with instances 10 and above of 0x87.
     pub(super) masters: BTreeMap<u16, Vec<u8>>,
 }
 
@@ -70,12 +68,12 @@ impl Player {
         }
     }
 
-    /// Stays at the line it is at; a start takes it up again.
+    /// Stops at the current line; a start continues there.
     pub(super) fn stop(&mut self) {
         self.state = State::Stopped;
     }
 
-    /// Makes a job the one to execute; `false` when it has no such line.
+    /// Selects the job to execute; `false` if the line does not exist.
     pub(super) fn select(&mut self, name: &[u8], program: Program, line: usize) -> bool {
         if line >= program.lines.len() {
             return false;
@@ -85,7 +83,7 @@ impl Player {
         true
     }
 
-    /// Forgets a job whose file is gone.
+    /// Removes a job whose file was deleted.
     pub(super) fn forget(&mut self, name: &[u8]) {
         self.masters.retain(|_, master| master != name);
         if self.cursor.iter().chain(&self.callers).any(|cursor| cursor.name == name) {
@@ -97,7 +95,7 @@ impl Player {
         self.state = State::Due(now + LINE_TIME);
     }
 
-    /// What 0x73 answers for the master task.
+    /// Answer of 0x73 for the master task.
     pub(super) fn info(&self) -> JobInfo {
         let Some(cursor) = &self.cursor else {
             return JobInfo { speed_override: FULL_OVERRIDE, ..JobInfo::default() };
@@ -111,7 +109,7 @@ impl Player {
         }
     }
 
-    /// Goes on with the line after this one, in `time`.
+    /// Schedules the next line at this time.
     fn next_line(&mut self, at: Now) {
         if let Some(cursor) = &mut self.cursor {
             cursor.line += 1;
@@ -129,7 +127,7 @@ const TOO_MANY_CALLS: Fault = Fault(4417, 1);
 const OUT_OF_RANGE: Fault = Fault(4446, 1);
 
 impl World {
-    /// The motion has reached its target: the line that ordered it is done.
+    /// The motion of the current line has reached its target.
     pub(super) fn motion_done(&mut self) {
         if matches!(self.player.state, State::Moving) {
             self.line_done(self.now);
@@ -149,7 +147,7 @@ impl World {
         }
     }
 
-    /// Goes on, unless the cycle switch says one line at a time.
+    /// Continues with the next line, unless the cycle mode is step.
     fn line_done(&mut self, at: Now) {
         self.player.next_line(at);
         if self.switches.cycle == CycleMode::Step {
@@ -246,7 +244,7 @@ impl World {
         Ok(())
     }
 
-    /// END or RET: back to the caller; at the end of the master job the cycle switch decides.
+    /// END or RET: returns to the caller. At the end of the master job the cycle mode decides.
     fn end_of_job(&mut self) {
         let soon = self.now + LINE_TIME;
         if let Some(caller) = self.player.callers.pop() {
@@ -283,7 +281,7 @@ impl World {
         Ok(())
     }
 
-    /// A P variable as a target; user and tool frames are not taken by jobs here.
+    /// A P variable as a target; user and tool frames are not supported in jobs here.
     fn position_variable(&self, index: usize) -> Option<Target> {
         let words: Vec<i32> = self
             .memory
@@ -301,7 +299,7 @@ impl World {
                 let mut pose: Pose =
                     std::array::from_fn(|i| f64::from(axes[i]) / if i < 3 { 1000.0 } else { 10_000.0 });
                 if kind == 17 {
-                    // Robot coordinates travel with the base.
+                    // Robot coordinates move with the base.
                     pose[0] += self.arm.base_offset(1);
                 }
                 Some(Target::Base(pose))
@@ -325,7 +323,7 @@ impl World {
     }
 }
 
-/// The signal number of general-purpose input or output `number`, from 1: eight to each ten.
+/// Signal number of general-purpose input or output `number`, from 1: eight per ten numbers.
 fn signal(first: u32, number: u32) -> u32 {
     let place = number.saturating_sub(1);
     first.saturating_add((place / 8).saturating_mul(10)).saturating_add(place % 8)

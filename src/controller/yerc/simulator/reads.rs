@@ -1,4 +1,4 @@
-//! What the read-only commands show.
+//! Read commands.
 
 use super::motion::{AXES, Family, Group, MAX_LINEAR_MM_S, whole};
 use super::robot::{Answer, Store, command};
@@ -9,23 +9,23 @@ use crate::yerc::payload::{
 };
 use crate::yerc::table::Row;
 
-/// Instances of the groups: robots from 1, bases from 11, stations from 21; robots and bases once more, cartesian.
+/// Instances of groups: robots from 1, bases from 11, stations from 21; cartesian robots and bases from 101.
 const FIRST_BASE: u16 = 11;
 const FIRST_STATION: u16 = 21;
 const CARTESIAN: u16 = 100;
 /// Axes of the usual robot.
 const SIX: usize = 6;
-/// The only task that runs.
+/// The only running task.
 const MASTER_TASK: u16 = 1;
-/// Lag of a servo axis: pulses behind for each pulse a second.
+/// Servo lag in pulses per (pulse per second).
 const SERVO_LAG_S: f64 = 0.02;
-/// Names of axes (DX 3.3.5); the seventh cartesian one is misprinted there.
+/// Axis names (DX 3.3.5); the seventh cartesian one is misprinted there.
 const ROBOT_AXES: [&str; 7] = ["S", "L", "U", "R", "B", "T", "E"];
 const CARTESIAN_AXES: [&str; 7] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re"];
 const OTHER_AXES: [&str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
 
 impl World {
-    /// All fields of something readable.
+    /// All fields of an instance.
     pub(super) fn read(&self, row: &Row, instance: u16) -> Answer {
         if let Some(store) = Store::from_number(row.number) {
             return self.read_element(store, instance, row.size());
@@ -44,12 +44,12 @@ impl World {
             command::TORQUE => Ok(self.torque(instance)?.emit()),
             command::TIMES => Ok(self.management_time(instance)?.emit()),
             command::SYSTEM => Ok(self.system(instance).emit()),
-            // Tasks that are not set up, as seen on a controller; and whatever cannot be read at all.
+            // Tasks that are not set up answer like this on a controller; so do instances that cannot be read.
             _ => Err(Refusal::Added(code::INSTANCE)),
         }
     }
 
-    /// The fitted group of an instance, and whether it is asked for in coordinates.
+    /// The fitted group of an instance, and whether the request is cartesian.
     fn group(&self, instance: u16) -> Result<(usize, bool), Refusal> {
         let (place, cartesian) = match instance.checked_sub(CARTESIAN) {
             Some(place) if place > 0 => (place, true),
@@ -98,7 +98,7 @@ impl World {
         })
     }
 
-    /// The words of a group's axes. Some controllers answer only the axes a group has, some a word for each there could be.
+    /// Axis words of a group. Some controllers answer only existing axes, some a word for each possible axis.
     fn answered(&self, group: &Group, values: &[i32; AXES]) -> Axes {
         let is_trimmed = self.trim_axes.unwrap_or(group.family != Family::Robot || group.axes != SIX);
         if is_trimmed {
@@ -107,14 +107,14 @@ impl World {
         Axes::full(std::array::from_fn(|axis| if axis < group.axes { values[axis] } else { 0 }))
     }
 
-    /// The lag of each axis while it moves.
+    /// Lag of each moving axis.
     fn position_error(&self, instance: u16) -> Result<Axes, Refusal> {
         let (index, _) = self.group(instance)?;
         let lag = self.arm.velocity(index, self.now).map(|speed| whole(speed * SERVO_LAG_S));
         Ok(self.answered(&self.arm.groups[index], &lag))
     }
 
-    /// A share for holding the arm up, and one for its speed; the brakes hold it without servo power.
+    /// Holding torque plus a part for the speed; 0 without servo power, because the brakes hold.
     fn torque(&self, instance: u16) -> Result<Axes, Refusal> {
         const HOLDING: [f64; AXES] = [0.0, 14.0, 9.0, 1.0, 2.0, 0.0, 0.0, 0.0];
         const FULL_SPEED: f64 = MAX_LINEAR_MM_S * 1000.0;
@@ -131,13 +131,13 @@ impl World {
     }
 
     fn management_time(&self, instance: u16) -> Result<ManagementTime, Refusal> {
-        /// Hundreds tell what is counted, the rest for which group; 10 is the total.
+        /// Hundreds select the counter, the rest the group; 10 is the total.
         const TOTAL: u16 = 10;
         let (kind, place) = (instance / 100, instance % 100);
         let counted = if instance == 1 || kind == 3 || place == TOTAL {
             true
         } else {
-            // Here robots are counted from 11 on, where positions have the bases.
+            // Robots are counted from 11 here; in positions that is the first base.
             let (family, number) = match place {
                 FIRST_STATION.. => (Family::Station, place - FIRST_STATION + 1),
                 _ => (Family::Robot, place.saturating_sub(TOTAL)),
@@ -150,7 +150,7 @@ impl World {
             (1, _) => self.meters.control,
             (_, 0) => self.meters.servo,
             (_, 2) => self.meters.motion,
-            // Application 1 works while jobs run; no other is installed.
+            // Application 1 runs with jobs; no other is installed.
             (_, 1) | (301, _) => self.meters.playback,
             _ => Now::ZERO,
         };
@@ -160,7 +160,7 @@ impl World {
         })
     }
 
-    /// Groups that do not exist answer empty names, not a refusal (DX 3.3.26).
+    /// A missing group answers with empty names instead of a refusal (DX 3.3.26).
     fn system(&self, instance: u16) -> SystemInfo {
         let (name, parameters) = match instance {
             101 => (self.application.as_str(), ""),
@@ -184,7 +184,7 @@ fn short(alarm: Option<Vec<u8>>) -> Answer {
     Ok(bytes)
 }
 
-/// `HHHHHH:MM'SS`.
+/// Format `HHHHHH:MM'SS`.
 fn elapsed_text(elapsed: Now) -> String {
     let seconds = elapsed.as_secs();
     format!("{:06}:{:02}'{:02}", seconds / 3600 % 1_000_000, seconds / 60 % 60, seconds % 60)

@@ -1,6 +1,6 @@
-//! The robot server: takes a request apart by the table, and reads or writes.
+//! Robot server: decodes requests by the table, and reads or writes.
 //!
-//! The order of checks: command, service, instance, attribute, fitted or not, size, state, value.
+//! Order of checks: command, service, instance, attribute, fitted, size, state, value.
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
@@ -8,20 +8,19 @@ use crate::yerc::Model;
 use crate::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
 use crate::yerc::wire::RequestFrame;
 
-/// The data of an answer, or why there is none.
+/// Answer data, or a refusal.
 pub(super) type Answer = Result<Vec<u8>, Refusal>;
 
-/// First system software of an FS100 with the newer commands.
+/// First FS100 software with the newer commands.
 const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
 
-/// Answers a request of the robot server.
 pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
     let row = Row::from_number(frame.command).filter(|row| has(world, row.availability)).ok_or(Refusal::Command)?;
     let service = row.service(frame.service).ok_or(Refusal::Command)?;
     let instance = frame.instance;
     let span = row.instances.find(world.model, instance).ok_or(Refusal::Instance)?;
     if span.extended {
-        // No parameter of this controller adds variables.
+        // This controller has no parameter that adds variables.
         return Err(Refusal::Instance);
     }
     check_attribute(row, service, frame.attribute)?;
@@ -36,7 +35,7 @@ pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
     }
 }
 
-/// Whether this controller has something that not every one has.
+/// Whether this controller supports a feature of some controllers.
 pub(super) fn has(world: &World, availability: Availability) -> bool {
     match (availability, world.model) {
         (Availability::Fs114, Model::Fs100) => software(&world.software) >= FS_FULL_SOFTWARE,
@@ -44,7 +43,7 @@ pub(super) fn has(world: &World, availability: Availability) -> bool {
     }
 }
 
-/// Major and minor of `FS1.14.00A(JP/US)-00`.
+/// Major and minor version of `FS1.14.00A(JP/US)-00`.
 fn software(version: &str) -> (u32, u32) {
     let mut numbers =
         version.trim_start_matches(|c: char| !c.is_ascii_digit()).split('.').map(|part| part.parse().ok());
@@ -53,26 +52,26 @@ fn software(version: &str) -> (u32, u32) {
 }
 
 fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Refusal> {
-    // The manuals want 1 for a variable; clients that run on controllers send 0 with either pair of services.
+    // The manuals require 1 for a variable; real clients send 0 with either pair of services.
     let lenient = row.services.iter().any(|service| service.attribute == Attribute::OneOrZero);
     let known = match service.attribute {
         Attribute::Zero => attribute == 0,
         Attribute::One if !lenient => attribute == 1,
         Attribute::One | Attribute::OneOrZero => attribute <= 1,
-        // Position variables are also read and written whole with the single services (attribute 0), as one client does.
+        // The single services with attribute 0 also read and write whole position variables; one client does that.
         Attribute::Field => {
             usize::from(attribute) <= row.fields.len() && (attribute != 0 || row.service(service::SET_ALL).is_some())
         }
     };
     match known {
         true => Ok(()),
-        // A controller was seen to answer A002 to a job selection with an attribute.
+        // A controller was observed to answer A002 to a job selection with an attribute.
         false if row.number == command::SELECT => Err(Refusal::Added(code::ATTRIBUTE)),
         false => Err(Refusal::Attribute),
     }
 }
 
-/// The part of a payload that was asked for. Axes that are not fitted have no field.
+/// The requested part of a payload. Missing axes have no field.
 fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> Result<&'a [u8], Refusal> {
     let Some(index) = field_index(service, attribute) else { return Ok(payload) };
     let from = total(row.fields.get(..index).unwrap_or_default());
@@ -80,7 +79,7 @@ fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> 
     payload.get(from..from + size).ok_or(Refusal::Added(code::ATTRIBUTE))
 }
 
-/// The field a single read or write addresses; `None` for all.
+/// The field of a single read or write; `None` for all.
 fn field_index(service: &Service, attribute: u8) -> Option<usize> {
     match service.attribute {
         Attribute::Field => usize::from(attribute).checked_sub(1),
@@ -88,7 +87,7 @@ fn field_index(service: &Service, attribute: u8) -> Option<usize> {
     }
 }
 
-/// Command numbers that need a name here; everything else about them is in the table.
+/// Command numbers that are used by name; the table has everything else.
 pub(super) mod command {
     pub(in super::super) const ALARM: u16 = 0x70;
     pub(in super::super) const HISTORY: u16 = 0x71;
@@ -114,7 +113,7 @@ pub(super) mod command {
     pub(in super::super) const HISTORY_TEXTS: u16 = 0x30B;
 }
 
-/// The memory that a variable, I/O or register command addresses.
+/// Memory area of a variable, I/O or register command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Store {
     Variable(Kind),
@@ -156,7 +155,7 @@ impl Store {
 }
 
 impl World {
-    /// The bytes of an element as the command shows them: all of it, or the first 16 of a long string.
+    /// The bytes of an element in the size of the command: complete, or the first 16 of a long string.
     pub(super) fn read_element(&self, store: Store, instance: u16, size: usize) -> Answer {
         let bytes = match store {
             Store::Io => vec![self.io(instance)],
@@ -173,7 +172,7 @@ impl World {
         Ok(bytes)
     }
 
-    /// Stores an element whose bytes were checked.
+    /// Stores a validated element.
     fn write_element(&mut self, store: Store, instance: u16, bytes: &[u8]) {
         match (store, bytes) {
             (Store::Io, &[byte]) => self.memory.set_io(instance, byte),
@@ -222,7 +221,7 @@ fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last:
     Ok(Vec::new())
 }
 
-/// The instances of a plural request; they must stay inside the span that the first is in.
+/// Instances of a plural request, which must be in the range of the first one.
 fn plural_range(
     plural: Plural,
     count: u32,
@@ -248,7 +247,7 @@ fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFra
     let (instance, data) = (frame.instance, frame.data);
     let element = match field_index(service, frame.attribute) {
         None => whole_element(row, data)?,
-        // One word of a position: the rest stays, so there must be a rest.
+        // One word of a position: only a defined position has the other words.
         Some(index) => {
             let Ok(value) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
             let mut element = world.read_element(store, instance, row.size())?;
@@ -263,7 +262,7 @@ fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFra
     Ok(Vec::new())
 }
 
-/// The bytes of an element from a request's data: its own size, or four bytes that hold no more than it can.
+/// The bytes of an element from request data: its own size, or four bytes with a value in range.
 fn whole_element(row: &Row, data: &[u8]) -> Answer {
     let size = row.size();
     if data.len() == size {
@@ -288,7 +287,7 @@ fn check_writable(world: &World, row: &Row, instance: u16) -> Result<(), Refusal
     }
 }
 
-/// What a position may hold: known type, tool, frame and forms (DX 3.3.16 to 3.3.18). Other elements hold anything.
+/// Validates a position: known type, tool, frame and forms (DX 3.3.16 to 3.3.18). Other elements may have any value.
 fn check_value(store: Store, element: &[u8]) -> Result<(), Refusal> {
     let word = |index: usize| {
         let bytes = element.get(4 * index..4 * index + 4).and_then(|bytes| <[u8; 4]>::try_from(bytes).ok());

@@ -1,7 +1,7 @@
-//! The start state: what a TOML file can say about the controller to be simulated.
+//! Start state from TOML.
 //!
-//! Everything has a default, so an empty file is a DX200 in play mode with command remote and servo power. What the
-//! file names comes on top of what a fresh controller has in it. Each mistake is told with its line.
+//! All keys have defaults: an empty file is a DX200 in play mode with command remote and servo power. The file adds
+//! to the content of a new controller. An error gives its line.
 
 use std::time::Duration;
 
@@ -23,8 +23,7 @@ use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
-/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
-/// is a DX200.
+/// Start state of a simulated controller; [`Start::parse`] reads it (see [`EXAMPLE`]). [`Start::default`] is a DX200.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) world: World,
@@ -36,7 +35,7 @@ pub struct Start {
     pub(super) idle_limit: Duration,
 }
 
-/// A start state that names the keys there are; each can be left out.
+/// A start state with all keys; each is optional.
 pub const EXAMPLE: &str = r#"model = "dx200"                 # or "fs100", "dx100", "yrc1000"
 mode = "play"                   # or "teach"
 remote = true                   # command remote (#82015)
@@ -108,15 +107,15 @@ impl Start {
     /// The default state of a model.
     ///
     /// # Panics
-    /// Never: the defaults are correct.
+    /// Never: the defaults are valid.
     pub fn for_model(model: Model) -> Self {
         let entries = Entries { model, ..Entries::default() };
         build(&entries, "", &mut |_| Err(String::new())).expect("the defaults are correct")
     }
 
-    /// Reads a start state. `read` fetches the files that entries name by `path`.
+    /// Parses a start state. `read` loads the files that entries refer to by `path`.
     ///
-    /// The error says what is wrong, and in which line.
+    /// An error gives the problem and the line.
     pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
         build(&start::parse(text)?, text, &mut read)
     }
@@ -126,20 +125,19 @@ impl Start {
         self.world.model
     }
 
-    /// Another seed for everything random.
+    /// Sets the random seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// Refuses a share of robot requests as busy (D8FA), 0.0 to 1.0.
+    /// Refuses a random share of robot requests as busy (D8FA), 0.0 to 1.0.
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
     }
 }
 
-/// The keys of the file.
 #[derive(Debug, Deserialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
 #[serde(default, deny_unknown_fields)]
@@ -155,7 +153,7 @@ struct Entries {
     play_write: bool,
     /// Date and time at the start.
     clock: Spanned<String>,
-    /// Date and time from which running times count.
+    /// Start of the operating-time counters.
     installed: Spanned<String>,
     software: Option<String>,
     robot_model: Option<String>,
@@ -183,14 +181,14 @@ struct Entries {
     io: Table<bool>,
     /// Pulses by group.
     positions: Table<Vec<i32>>,
-    /// X, Y, Z in mm and a turn about Z in degrees, by number.
+    /// X, Y, Z in mm and a rotation about Z in degrees, by number.
     user_frames: Table<[f64; 4]>,
     #[serde(rename = "alarm")]
     alarms: Vec<AlarmEntry>,
     history: Option<Vec<AlarmEntry>>,
     #[serde(rename = "file")]
     files: Vec<Spanned<FileEntry>>,
-    /// Whether the files, variables and alarms of a fresh controller are there.
+    /// Whether to add files, variables and alarms of a new controller.
     stock: bool,
     #[serde(rename = "event")]
     events: Vec<Spanned<Event>>,
@@ -240,7 +238,7 @@ impl Default for Entries {
     }
 }
 
-/// Running times before the start.
+/// Operating times before the start.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Hours {
@@ -337,7 +335,7 @@ fn build(
         world.player.select(&name, program, 0);
         Ok(())
     })?;
-    // On a copy: the world is as it begins.
+    // A copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start {
@@ -368,7 +366,7 @@ fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
     })
 }
 
-/// The controller with nothing in it.
+/// A controller without content.
 fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let [software, robot_model, application, parameter_version] = defaults::versions(entries.model);
     let or = |entry: &Option<String>, default: &str| entry.clone().unwrap_or_else(|| default.to_owned());
@@ -454,7 +452,6 @@ fn groups(entries: &Entries, source: Source<'_>) -> Result<Vec<Group>, String> {
     Ok(groups)
 }
 
-/// The bytes of a variable.
 fn element(kind: Kind, value: &Value) -> Result<Vec<u8>, String> {
     let range = |text: &str| format!("the value must be {text}");
     match (kind, value) {

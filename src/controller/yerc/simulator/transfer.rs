@@ -1,13 +1,13 @@
-//! The file server: block transfers (DX 3.2.3 to 3.2.6, 3.4).
+//! File server: block transfers (DX 3.2.3 to 3.2.6, 3.4).
 //!
-//! The manual says nothing about loss. Here, what is repeated is answered again: a repeated ACK or request by the block
-//! that is waiting for its ACK, a repeated data block by its ACK. Repeats that come close upon the last frame are
-//! network echoes and get nothing, lest every copy breed another. One transfer is served at a time; it is dropped when
-//! nothing comes for a while (E28B) and when the mode changes (FFFE).
+//! The manual does not cover loss. Here a repeated frame is answered again: a repeated ACK or request by the block
+//! that waits for its ACK, a repeated data block by its ACK. A repeat shortly after the last frame counts as a
+//! network echo and gets no answer, so that copies do not multiply. Only one transfer is open at a time. It is
+//! dropped after a timeout (E28B) and after a change of mode (FFFE).
 //!
-//! The batch backup shares service and path with fetching its file, and no manual says how the two differ. Here the
-//! first request makes a backup and is answered without data when it is done; the next one fetches the file; once it
-//! was fetched to its end, another request makes a new one.
+//! The batch backup has the same service and path as fetching its file, and the manuals do not specify the
+//! difference. Here the first request creates a backup, and is answered without data when it is complete. The next
+//! request fetches the file. After a complete fetch, another request creates a new backup.
 
 use std::time::Duration;
 
@@ -19,53 +19,52 @@ use crate::yerc::Model;
 use crate::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 
-/// A repeat within this time of the last frame is an echo.
+/// A repeat within this time after the last frame is an echo.
 const ECHO: Duration = Duration::from_millis(20);
-/// A request within this time of the last frame of the same transfer is a copy of the one that began it.
+/// A request within this time after the last frame of a transfer is a copy of its first request.
 const COPY: Duration = Duration::from_millis(500);
 
-/// Where a transfer is.
+/// State of a transfer.
 #[derive(Debug, Clone)]
 enum Stage {
-    /// Blocks go out; `block` waits for its ACK.
+    /// Sending blocks; `block` waits for its ACK.
     Sending { content: Content, block: u32, is_backup: bool },
-    /// Blocks come in; `received` of them have.
+    /// Receiving blocks; `received` blocks so far.
     Receiving { name: Vec<u8>, bytes: Vec<u8>, received: u32 },
-    /// The backup is being written.
+    /// Writing the backup.
     BackingUp { done: Now },
-    /// All is done; the last frame can still be repeated.
+    /// Complete; the last frame can still be repeated.
     Finished { block: u32 },
-    /// Dropped; the next frame of it is told why.
+    /// Dropped; the next frame is refused with this code.
     Dropped(u16),
 }
 
-/// The conversation with one peer.
+/// Transfer with one peer.
 #[derive(Debug, Clone)]
 struct Transfer {
     peer: u64,
     service: u8,
-    /// Id and data of the request that began it.
+    /// Id and data of the first request.
     request: (u8, Vec<u8>),
-    /// Id of the transfer before this one: what bears it and comes first is a late copy.
+    /// Id of the transfer before this one: a first frame with it is a late copy.
     previous: Option<u8>,
-    /// Id of the latest frame, which answers bear.
+    /// Id of the latest frame, used in answers.
     id: u8,
     stage: Stage,
     last_frame: Vec<u8>,
     sent: Now,
-    /// When the peer was heard last.
+    /// Time of the last frame of the peer.
     heard: Now,
     mode_changes: u64,
 }
 
 impl Transfer {
-    /// Whether it still goes on.
     fn is_open(&self) -> bool {
         matches!(self.stage, Stage::Sending { .. } | Stage::Receiving { .. } | Stage::BackingUp { .. })
     }
 
-    /// Whether a request is a late copy of the one that has just loaded a file. Beginning anew would spoil the repeated
-    /// last block of a client that did not get its ACK.
+    /// Whether a request is a late copy of the one that has just loaded a file. A new transfer would break the repeat
+    /// of the last block by a client that missed its ACK.
     fn loaded_by(&self, peer: u64, request: &RequestFrame<'_>, now: Now) -> bool {
         matches!(self.stage, Stage::Finished { .. })
             && (self.peer, self.service, service::LOAD) == (peer, request.service, request.service)
@@ -74,7 +73,7 @@ impl Transfer {
             && now < self.heard + COPY
     }
 
-    /// Whether no block has been acknowledged yet.
+    /// Whether no block is acknowledged yet.
     fn at_start(&self) -> bool {
         match self.stage {
             Stage::Sending { block, .. } => block == 1,
@@ -83,7 +82,7 @@ impl Transfer {
         }
     }
 
-    /// Whether it keeps others waiting. Once the last block is out only its ACK is missing, and that may be lost.
+    /// Whether other transfers are refused. After the last block only its ACK is missing, which may be lost.
     fn is_busy(&self) -> bool {
         match &self.stage {
             Stage::Sending { content, block, .. } => !is_last(content, *block),
@@ -92,7 +91,6 @@ impl Transfer {
     }
 }
 
-/// The file server's own state.
 #[derive(Debug, Clone)]
 pub(super) struct FileServer {
     transfer: Option<Transfer>,
@@ -110,7 +108,7 @@ impl FileServer {
         Self { transfer: None, backup_time, backup_size, idle_limit, backups: 0 }
     }
 
-    /// When a transfer times out or a backup is done.
+    /// Time of the next timeout or of the end of a backup.
     pub(super) fn wake(&self) -> Option<Now> {
         let transfer = self.transfer.as_ref()?;
         match transfer.stage {
@@ -120,7 +118,7 @@ impl FileServer {
         }
     }
 
-    /// Drops what has waited too long, and finishes a backup.
+    /// Drops a transfer after its timeout, and completes a backup.
     pub(super) fn advance(&mut self, world: &mut World, now: Now) -> Reply {
         let due = self.wake().is_some_and(|at| at <= now);
         let transfer = self.transfer.as_mut()?;
@@ -147,7 +145,6 @@ impl FileServer {
         }
     }
 
-    /// Takes a frame of a client.
     pub(super) fn receive(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Reply {
         let reply = if request.ack {
             self.continues(world, now, peer, request)
@@ -169,7 +166,7 @@ impl FileServer {
             let same =
                 transfer.peer == peer && transfer.service == request.service && transfer.request.1 == request.data;
             if same && matches!(transfer.stage, Stage::BackingUp { .. }) {
-                // Asked again while the answer is being made.
+                // A repeated request while the backup is written.
                 transfer.id = request.id;
                 return None;
             }
@@ -184,7 +181,7 @@ impl FileServer {
         Some(result.unwrap_or_else(|refused| refusal(world, request, refused))).filter(|bytes| !bytes.is_empty())
     }
 
-    /// Starts what a request asks for; an empty frame where the answer comes later.
+    /// Starts a transfer; returns an empty frame if the answer comes later.
     fn open(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Result<Vec<u8>, Refusal> {
         let row =
             Row::of_file(request.service, request.data).filter(|_| request.command == 0).ok_or(Refusal::Command)?;
@@ -252,11 +249,11 @@ impl FileServer {
         Ok(last_frame)
     }
 
-    /// A data block or an ACK.
+    /// Handles a data block or an ACK.
     fn continues(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Option<Vec<u8>> {
         let known = |transfer: &&mut Transfer| transfer.peer == peer && transfer.service == request.service;
         let Some(transfer) = self.transfer.as_mut().filter(known) else {
-            // An ACK that nothing waits for is a late copy; data that nobody asked for is an error.
+            // An unexpected ACK is a late copy; an unexpected data block is an error.
             let stray = request.service == service::LOAD;
             return stray.then(|| refusal(world, request, Refusal::Added(code::ACK)));
         };
@@ -278,7 +275,7 @@ impl FileServer {
             }
             Stage::Sending { content, block, is_backup } => {
                 let current = if is_last(content, *block) { *block | LAST_BLOCK } else { *block };
-                // One client leaves the top bit out of its last ACK.
+                // One client omits the top bit in its last ACK.
                 if request.block == current || request.block == *block {
                     if current & LAST_BLOCK != 0 {
                         if *is_backup {
@@ -309,7 +306,7 @@ impl FileServer {
     }
 }
 
-/// Takes a data block of a load; says what to reply and whether the transfer goes on.
+/// Handles a data block of a load; returns the reply, and whether the transfer continues.
 fn take_block(
     transfer: &mut Transfer,
     world: &mut World,
@@ -319,7 +316,7 @@ fn take_block(
     let Stage::Receiving { name, bytes, received } = &mut transfer.stage else { return (None, true) };
     let last = request.block & LAST_BLOCK != 0;
     let number = request.block & !LAST_BLOCK;
-    // A single block numbered 0x80000000 is what some clients send for 0x80000001.
+    // Some clients send 0x80000000 instead of 0x80000001 for a single block.
     let next = number == *received + 1 || last && number == 0 && *received == 0;
     if !next && number == *received {
         return (repeat(transfer, now, request.id), true);
@@ -352,7 +349,7 @@ fn take_block(
     (Some(transfer.last_frame.clone()), true)
 }
 
-/// The last frame once more, with the id of what asked for it; nothing for an echo.
+/// Repeats the last frame with the id of the request; `None` for an echo.
 fn repeat(transfer: &mut Transfer, now: Now, id: u8) -> Option<Vec<u8>> {
     if now < transfer.sent + ECHO {
         return None;

@@ -1,15 +1,15 @@
-//! `VAR.DAT`, the file of all variables: it is made of them when it is read, and sets them when it is loaded.
+//! `VAR.DAT`, the file of all variables: generated when it is read, and applied when it is loaded.
 //!
-//! No source of ours shows the whole file. The head and the rows of B are those of controllers; positions are rows of the
-//! words that the protocol has for them, which is the simulator's own form.
+//! No known source shows the whole file. Head and B rows are those of controllers. Positions are rows of protocol
+//! words, a format that is specific to the simulator.
 
 use super::memory::{AXIS_WORDS, Kind, Memory, POSITION_WORDS};
 
-/// The name of the file.
+/// File name.
 pub(super) const NAME: &[u8] = b"VAR.DAT";
-/// What it begins with.
+/// First lines.
 const HEAD: [&[u8]; 2] = [b"//VAR", b"///SHARE"];
-/// Its sections, in their order.
+/// Sections in order.
 const SECTIONS: [(&str, Kind); 8] = [
     ("////B", Kind::B),
     ("////I", Kind::I),
@@ -20,13 +20,13 @@ const SECTIONS: [(&str, Kind); 8] = [
     ("////BP", Kind::Bp),
     ("////EX", Kind::Ex),
 ];
-/// Numbers in a row.
+/// Numbers per row.
 const ROW: usize = 10;
 
-/// What a loaded file sets.
+/// A value in a loaded file.
 type Setting = (Kind, usize, Vec<u8>);
 
-/// The file as it is now.
+/// Generates the current file.
 pub(super) fn written(memory: &Memory) -> Vec<u8> {
     let mut lines: Vec<Vec<u8>> = HEAD.map(<[u8]>::to_vec).into();
     for (section, kind) in SECTIONS {
@@ -47,8 +47,8 @@ pub(super) fn written(memory: &Memory) -> Vec<u8> {
     lines.into_iter().flat_map(|line| [line, b"\r\n".to_vec()].concat()).collect()
 }
 
-/// Sets the variables that a file has; `false` where it is none, and nothing is set then. Positions of its sections that
-/// it does not have are not taught any more.
+/// Applies the variables of a file; `false`, and no change, if it is invalid. Positions that are missing in its
+/// sections become undefined.
 pub(super) fn load(memory: &mut Memory, file: &[u8]) -> bool {
     let Some((sections, settings)) = read(file) else { return false };
     for kind in sections.into_iter().filter(|kind| kind.starts_undefined()) {
@@ -75,7 +75,7 @@ fn read(file: &[u8]) -> Option<(Vec<Kind>, Vec<Setting>)> {
         }
         let Some(kind) = sections.last().copied() else { continue };
         if kind == Kind::S {
-            // The last line end of the file begins no text.
+            // The last line end of the file does not start a text.
             if next < kind.count() {
                 settings.push((kind, next, line.get(..line.len().min(32))?.to_vec()));
             }
@@ -129,7 +129,7 @@ fn words(bytes: &[u8]) -> String {
     words.collect::<Vec<_>>().join(",")
 }
 
-/// A text up to the first zero.
+/// Text up to the first NUL or line end.
 fn text(bytes: Option<&[u8]>) -> Vec<u8> {
     bytes.unwrap_or_default().iter().copied().take_while(|byte| !matches!(byte, 0 | b'\r' | b'\n')).collect()
 }

@@ -1,4 +1,4 @@
-//! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
+//! Machine state: switches, power, alarms, permissions, time.
 
 use jiff::SignedDuration;
 use jiff::civil::DateTime;
@@ -15,7 +15,7 @@ use crate::yerc::Model;
 use crate::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use crate::yerc::wire::Status;
 
-/// Added status codes (DX chapter 4) that several parts answer.
+/// Added status codes (DX chapter 4) that several modules use.
 pub(super) mod code {
     pub(in super::super) const OPERAND_RANGE: u16 = 0x1012;
     pub(in super::super) const MOVING: u16 = 0x2010;
@@ -75,21 +75,21 @@ pub(super) mod code {
     pub(in super::super) const MODE_CHANGED: u16 = 0xFFFE;
 }
 
-/// Why a request is not carried out.
+/// Reason of a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Refusal {
-    /// Command or service not known.
+    /// Unknown command or service.
     Command,
-    /// Attribute number not known.
+    /// Unknown attribute.
     Attribute,
-    /// Instance number not known.
+    /// Unknown instance.
     Instance,
-    /// Anything with an added status.
+    /// An added status.
     Added(u16),
 }
 
 impl Refusal {
-    /// How a model says it. The FS100 manual prints no status but 0x1F, so that model answers its A000 to A002.
+    /// Status of a model. The FS100 manual has only status 0x1F, so that model answers with A000 to A002.
     pub(super) fn status(self, model: Model) -> Status {
         let plain = |code| Status { code, ..Status::OK };
         match (self, model) {
@@ -104,7 +104,6 @@ impl Refusal {
     }
 }
 
-/// The mode switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Mode {
@@ -112,7 +111,7 @@ pub(super) enum Mode {
     Play,
 }
 
-/// The three sources of hold.
+/// Sources of HOLD.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Holds {
     pub(super) pendant: bool,
@@ -121,7 +120,7 @@ pub(super) struct Holds {
 }
 
 impl Holds {
-    /// The added status that names the source.
+    /// Added status of the source.
     fn refusal(self) -> Option<u16> {
         [(self.pendant, code::HOLD_PENDANT), (self.external, code::HOLD_EXTERNAL), (self.command, code::HOLD_COMMAND)]
             .into_iter()
@@ -129,7 +128,7 @@ impl Holds {
     }
 }
 
-/// Everything an operator can switch.
+/// Operator switches.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Switches {
@@ -142,19 +141,19 @@ pub(super) struct Switches {
     pub(super) guard: bool,
     pub(super) hlock: bool,
     pub(super) estop: bool,
-    /// Somebody edits a job on the pendant.
+    /// A job is being edited on the pendant.
     pub(super) editing: bool,
-    /// One of the screens is open during which axis names cannot be read (DX 3.3.5).
+    /// A screen is open during which axis names cannot be read (DX 3.3.5).
     pub(super) converting: bool,
-    /// Parameter S2C541: variables and I/O may not be written in play mode.
+    /// Parameter S2C541: variables and I/O cannot be written in play mode.
     pub(super) play_lock: bool,
-    /// An error (not an alarm) is shown.
+    /// An error (not an alarm) is displayed.
     pub(super) error: bool,
-    /// What command 0x85 put on the pendant.
+    /// Message of command 0x85.
     pub(super) message: Vec<u8>,
 }
 
-/// Running-time counters (DX 3.3.25).
+/// Operating-time counters (DX 3.3.25).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Meters {
     pub(super) control: Now,
@@ -163,7 +162,6 @@ pub(super) struct Meters {
     pub(super) motion: Now,
 }
 
-/// The controller.
 #[derive(Debug, Clone)]
 pub(super) struct World {
     pub(super) model: Model,
@@ -172,9 +170,9 @@ pub(super) struct World {
     pub(super) robot_model: String,
     pub(super) application: String,
     pub(super) parameter_version: String,
-    /// Date and time when `Now` was zero.
+    /// Date and time at `Now` zero.
     pub(super) clock: DateTime,
-    /// When its running times began to count.
+    /// Start of the operating-time counters.
     pub(super) installed: DateTime,
     pub(super) now: Now,
     pub(super) switches: Switches,
@@ -183,23 +181,22 @@ pub(super) struct World {
     pub(super) arm: Arm,
     pub(super) player: Player,
     pub(super) files: Storage,
-    /// Whether positions and the like are answered without the axes that a group does not have; `None`: by all groups
-    /// but robots of six axes.
+    /// Whether answers omit missing axes. `None`: for all groups except robots with six axes.
     pub(super) trim_axes: Option<bool>,
-    /// Counters when `Now` was zero and since.
+    /// Counters, including the time before the start.
     pub(super) meters: Meters,
-    /// User frames that were taught: number and origin with its turn about Z.
+    /// Taught user frames: number, origin, and rotation about Z.
     pub(super) user_frames: Vec<(u32, [f64; 4])>,
     pub(super) events: Timeline,
-    /// Counts changes of mode and remote, on which file transfers are dropped.
+    /// Number of changes of mode and remote, each of which drops file transfers.
     pub(super) mode_changes: u64,
 }
 
-/// Steps of one call to [`World::advance`]; a longer gap passes at rest.
+/// Limit of steps per call of [`World::advance`]; the remaining time is one step.
 const MAX_STEPS: u32 = 1_000_000;
 
 impl World {
-    /// Lets time pass up to `to`.
+    /// Advances the time to `to`.
     pub(super) fn advance(&mut self, to: Now) {
         for _ in 0..MAX_STEPS {
             let Some(next) = self.wake().filter(|&next| next <= to) else { break };
@@ -210,12 +207,12 @@ impl World {
         self.act();
     }
 
-    /// When something happens by itself.
+    /// Time of the next internal event.
     pub(super) fn wake(&self) -> Option<Now> {
         [self.arm.motion_end(), self.player.due(), self.events.due()].into_iter().flatten().min()
     }
 
-    /// Counts the time from `now` to `to`, in which nothing switches.
+    /// Counts the time from `now` to `to`, without changes of switches.
     fn pass(&mut self, to: Now) {
         let span = to.saturating_sub(self.now);
         self.meters.control += span;
@@ -231,13 +228,13 @@ impl World {
         self.now = to;
     }
 
-    /// Does what is due now.
+    /// Handles the events that are due.
     fn act(&mut self) {
         match self.arm.advance(self.now) {
             Some(End::Arrived) => self.motion_done(),
             Some(End::Limit(group, axis)) => {
                 let Group { family, number, pulses, .. } = &self.arm.groups[group];
-                // Alarm type 21 shows a robot's axes at their lower and at their upper limit.
+                // Alarm type 21 contains the robot axes at the lower and upper limit.
                 let (kind, data) = match family {
                     Family::Robot => (21, limit_data(*number, axis, pulses[axis] > 0.0)),
                     Family::Base | Family::Station => (0, 0),
@@ -248,18 +245,19 @@ impl World {
         }
         self.play();
         while let Some(line) = self.events.take(self.now) {
-            // Lines were tried when the start state was read; one that is refused by now has no effect, as on a pendant.
+            // The lines were checked when the start state was parsed; an impossible line has no effect now, as on a
+            // pendant.
             let _refused = console::execute(self, &line);
         }
     }
 
-    /// Date and time as alarms carry them.
+    /// Date and time in alarms.
     pub(super) fn timestamp(&self) -> String {
         let passed = SignedDuration::try_from(self.now).unwrap_or(SignedDuration::MAX);
         format_time(self.clock.saturating_add(passed))
     }
 
-    /// Raises an alarm: everything stops, and but for user alarms power goes off.
+    /// Raises an alarm: stops everything, and switches power off except for user alarms.
     pub(super) fn raise(&mut self, code: u32, data: u32, kind: u32, name: Option<&str>) {
         self.alarms.raise(alarm(code, data, kind, &self.timestamp(), name));
         if code < 8000 {
@@ -269,25 +267,25 @@ impl World {
         }
     }
 
-    /// Brings motion to rest and leaves the job where it is.
+    /// Decelerates the motion and stops the job at its line.
     pub(super) fn stop(&mut self) {
         self.arm.brake(self.now);
         self.player.stop();
     }
 
-    /// Servo power off: brakes hold the axes where they are.
+    /// Switches servo power off: brakes hold the axes.
     pub(super) fn power_off(&mut self) {
         self.switches.servo = false;
         self.arm.halt(self.now);
         self.player.stop();
     }
 
-    /// Whether a job runs or anything moves.
+    /// Whether a job or a motion runs.
     pub(super) fn is_running(&self) -> bool {
         self.player.is_running() || self.arm.is_moving()
     }
 
-    /// The two words of 0x72.
+    /// Both words of 0x72.
     pub(super) fn status(&self) -> ControllerStatus {
         let Switches { mode, remote, servo, cycle, hold, guard, error, .. } = self.switches;
         [
@@ -310,7 +308,8 @@ impl World {
         .fold(ControllerStatus::default(), |status, (bit, on)| status.with(bit, on))
     }
 
-    /// An I/O byte; system outputs follow the state. Their places are this simulator's, after the usual ladder.
+    /// An I/O byte; system outputs follow the state. Their positions are specific to this simulator, based on the usual
+    /// ladder.
     pub(super) fn io(&self, instance: u16) -> u8 {
         let Switches { mode, remote, servo, hold, error, .. } = &self.switches;
         let signals: &[(u8, bool)] = match instance {
@@ -327,12 +326,12 @@ impl World {
         signals.iter().fold(self.memory.io(instance), |byte, &(bit, on)| byte & !(1 << bit) | u8::from(on) << bit)
     }
 
-    /// Whether commands that change anything are taken at all.
+    /// Whether changes are accepted at all.
     pub(super) fn may_command(&self) -> Result<(), Refusal> {
         if self.switches.remote { Ok(()) } else { Err(Refusal::Added(code::NOT_REMOTE)) }
     }
 
-    /// Whether variables, I/O and registers may be written.
+    /// Whether variables, I/O and registers can be written.
     pub(super) fn may_write(&self) -> Result<(), Refusal> {
         self.may_command()?;
         let Switches { mode, editing, play_lock, .. } = self.switches;
@@ -345,7 +344,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether a motion or a job may begin.
+    /// Whether a motion or a job can start.
     pub(super) fn may_move(&self) -> Result<(), Refusal> {
         let Switches { mode, servo, hold, editing, .. } = self.switches;
         if mode == Mode::Teach {
@@ -364,7 +363,7 @@ impl World {
         obstacle.map_or(Ok(()), |code| Err(Refusal::Added(code)))
     }
 
-    /// Whether servo power may be switched on.
+    /// Whether servo power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Refusal> {
         if self.alarms.is_active() {
             return Err(Refusal::Added(code::ALARM));
@@ -375,7 +374,7 @@ impl World {
         Ok(())
     }
 
-    /// Switches mode or remote; running work and transfers do not survive it.
+    /// Switches mode or remote; stops jobs and drops transfers.
     pub(super) fn set_mode(&mut self, mode: Mode, remote: bool) {
         if (self.switches.mode, self.switches.remote) == (mode, remote) {
             return;
@@ -389,7 +388,7 @@ impl World {
     }
 }
 
-/// `YYYY/MM/DD HH:MM`.
+/// Format `YYYY/MM/DD HH:MM`.
 pub(super) fn format_time(time: DateTime) -> String {
     time.strftime("%Y/%m/%d %H:%M").to_string()
 }

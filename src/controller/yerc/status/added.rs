@@ -1,38 +1,38 @@
-//! The table of added status codes: what a row holds, and how one is found.
+//! Table of added status codes.
 
 use super::super::Model;
 use super::super::wire::Status;
 use super::{link, robot};
 
-/// What an added status is about.
+/// Subject of an added status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// The command or the values that came with it.
+    /// The command or its values.
     Operand,
-    /// What the controller is doing, and its mode.
+    /// Activity and mode of the controller.
     State,
     /// Servo power, positions, panel locks, coordinates.
     Servo,
     /// Jobs and positions stored in the controller.
     Job,
-    /// The text of a job or condition file that was loaded.
+    /// Syntax of a loaded job or condition file.
     Syntax,
-    /// Backup functions and the devices they write to.
+    /// Backup functions and their devices.
     Backup,
     /// Command, instance or attribute of the request.
     Address,
     /// The data of the request.
     Data,
-    /// An error inside the controller.
+    /// An internal error of the controller.
     System,
-    /// The controller has no time now.
+    /// The controller is busy.
     Busy,
-    /// Files, and the frames they travel in.
+    /// Files and transfer frames.
     File,
 }
 
 impl Class {
-    /// The class in words, for tables and JSON.
+    /// Name for tables and JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Operand => "command and operands",
@@ -50,20 +50,20 @@ impl Class {
     }
 }
 
-/// One added status code (FS and DX chapter 5).
+/// An added status code (FS and DX chapter 5).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AddedRow {
     /// The code, 0x1010 to 0xFFFE.
     pub code: u16,
-    /// What it is about.
+    /// Subject.
     pub class: Class,
-    /// The models whose manual prints it; none for the two codes that only other sources list (0xA100, 0xA102).
+    /// Models whose manual contains it; empty for the two codes of other sources (0xA100, 0xA102).
     pub models: &'static [Model],
-    /// A few words.
+    /// Short name.
     pub name: &'static str,
-    /// What happened, and what usually leads to it.
+    /// What happened, and usual causes.
     pub cause: &'static str,
-    /// What to do now.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -71,7 +71,7 @@ pub(super) const BOTH: &[Model] = &[Model::Fs100, Model::Dx200];
 pub(super) const DX200: &[Model] = &[Model::Dx200];
 pub(super) const NONE: &[Model] = &[];
 
-/// A row of the tables, in their column order.
+/// A row in column order.
 pub(super) const fn row(
     code: u16,
     class: Class,
@@ -83,7 +83,7 @@ pub(super) const fn row(
     AddedRow { code, class, models, name, cause, remedy }
 }
 
-/// The row of an added status code, if the code is known.
+/// The row of an added status code, if known.
 pub fn added(code: u32) -> Option<&'static AddedRow> {
     let code = u16::try_from(code).ok()?;
     [robot::ROWS, link::ROWS].into_iter().find_map(|rows| {
@@ -92,21 +92,21 @@ pub fn added(code: u32) -> Option<&'static AddedRow> {
     })
 }
 
-/// Every added status code, ascending.
+/// All added status codes, in ascending order.
 pub fn all_added() -> impl Iterator<Item = &'static AddedRow> {
     robot::ROWS.iter().chain(link::ROWS)
 }
 
-/// Whether an added status says that the controller has no time now, so that the same request may succeed a moment
-/// later (DX chapter 5: 0xD8F1, 0xD8FA, 0xE444, 0xFFF6).
+/// Whether an added status means busy, so that a repeat may succeed soon (DX chapter 5: 0xD8F1, 0xD8FA, 0xE444,
+/// 0xFFF6).
 pub fn is_busy(code: u32) -> bool {
     added(code).is_some_and(|row| row.class == Class::Busy)
 }
 
-/// Whether a refusal says that the thing asked for does not exist: an instance the controller does not know, or data
-/// and groups that it does not have. What controllers answer for a group that is not fitted is not printed.
+/// Whether a refusal means that the object does not exist: an unknown instance, or data and groups that the
+/// controller does not have. The manuals do not specify the answer for a group that is not fitted.
 pub fn is_absent(status: Status) -> bool {
-    /// Wrong control group or base axis, instance, and data or types that are not there.
+    /// Wrong control group or base axis, instance, and data or types that do not exist.
     const ABSENT: [u32; 8] = [0x3370, 0x3380, 0xA001, 0xB002, 0xB004, 0xB005, 0xB007, 0xB008];
     match (status.code, status.added) {
         (0x00, _) => false,

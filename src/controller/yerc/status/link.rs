@@ -1,4 +1,4 @@
-//! Added status codes from 0x6010 on: what devices, requests, files and the link object to.
+//! Added status codes from 0x6010 on: devices, requests, files, communication.
 
 use super::added::{AddedRow, BOTH, Class, DX200, NONE, row};
 
@@ -12,8 +12,8 @@ const BUSY_CAUSE: &str = "The controller is still at work on another command, fr
 const BUSY_REMEDY: &str = "Repeat after a moment. If it stays, find the other host that talks to this controller.";
 const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. In other software, correct it there.";
 
-/// In ascending order; one row is code, class, models, name, cause, remedy.
-#[rustfmt::skip] // Eight lines a row would hide the table.
+/// In ascending order. Columns: code, class, models, name, cause, remedy.
+#[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x6010, Class::Backup, BOTH, "robot or station is operating",
         "The backup or device function does not run while a robot or station is in operation.",

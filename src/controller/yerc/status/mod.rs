@@ -1,6 +1,6 @@
-//! What status and added status codes mean, and what to do about them (DX chapters 4 and 5, FS chapter 5).
+//! Meanings and remedies of status and added status codes (DX chapters 4 and 5, FS chapter 5).
 //!
-//! Names, causes and remedies are our own words. Where the evidence for a meaning is thin, the text says "hint".
+//! Names, causes and remedies are worded independently of the manuals. An uncertain meaning is marked "hint".
 
 use std::borrow::Cow;
 
@@ -17,18 +17,18 @@ mod robot;
 
 pub use added::{AddedRow, Class, added, all_added, is_absent, is_busy};
 
-/// One status code. Only the DX200 manual prints a list (chapter 4); FS100 is expected to use the same codes.
+/// A status code. Only the DX200 manual has a list (chapter 4); FS100 is expected to use the same codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StatusRow {
     /// The code.
     pub code: u8,
-    /// The models whose manual prints it.
+    /// Models whose manual contains it.
     pub models: &'static [Model],
-    /// A few words.
+    /// Short name.
     pub name: &'static str,
     /// What happened.
     pub cause: &'static str,
-    /// What to do now.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -74,40 +74,40 @@ static STATUSES: [StatusRow; 5] = [
     },
 ];
 
-/// The row of a status code, if the code is known.
+/// The row of a status code, if known.
 pub fn status(code: u8) -> Option<&'static StatusRow> {
     STATUSES.iter().find(|row| row.code == code)
 }
 
-/// Every status code, ascending.
+/// All status codes, in ascending order.
 pub fn all_statuses() -> impl Iterator<Item = &'static StatusRow> {
     STATUSES.iter()
 }
 
-/// A code in words.
+/// Description of a code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// The code that says most, as hexadecimal: `0x2060` for an added status, `0x28` for a status without one.
+    /// The more specific code in hexadecimal: `0x2060` for an added status, `0x28` for a status without one.
     pub code_text: String,
-    /// What the code is about; `None` for status codes and unknown ones.
+    /// Class; `None` for status codes and unknown ones.
     pub class: Option<Class>,
-    /// The models whose manual prints the code.
+    /// Models whose manual contains the code.
     pub models: &'static [Model],
-    /// Whether the code is in the tables.
+    /// Whether the tables contain the code.
     pub known: bool,
-    /// A few words.
+    /// Short name.
     pub name: Cow<'static, str>,
     /// What happened.
     pub cause: Cow<'static, str>,
-    /// What to do now.
+    /// Remedy.
     pub remedy: Cow<'static, str>,
 }
 
-/// Puts the result code of an answer in words. Always answers: an unknown code is named as such.
+/// Describes the result code of an answer, also an unknown one.
 ///
-/// An added status says more than the status it stands beside, even beside status 0 (DX 3.1: 0xE29C and 0xE2A7 come
-/// with 0). Printed codes have 16 bits; of a two-word added status the lower word is looked up, as the manual leaves
-/// the upper one open (DX 3.1).
+/// An added status is more specific than its status, even than status 0 (DX 3.1: 0xE29C and 0xE2A7 come with 0).
+/// Codes in the manual have 16 bits. Of a two-word added status the lower word is looked up, because the manual does
+/// not define the upper one (DX 3.1).
 pub fn explain(result: Status) -> Explanation {
     if result.added_size == 0 || result.added == 0 {
         return status(result.code).map_or_else(|| unknown_status(result.code), of_status);
@@ -118,18 +118,18 @@ pub fn explain(result: Status) -> Explanation {
     Explanation { code_text: added_text(result.added), ..of_added(row) }
 }
 
-/// A text that is no code.
+/// An invalid code.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
     "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060"
 )]
 pub struct NoCode {
-    /// What was given.
+    /// The invalid text.
     pub text: String,
 }
 
-/// Looks up a code that somebody typed: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal with or without
-/// the prefix. The result is never empty, and holds two entries only where a short code is in both tables.
+/// Looks up a code in user notation: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal, with or without
+/// prefix. The result is never empty; it has two entries only if a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
     let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;

@@ -1,9 +1,9 @@
-//! Added status codes 0x1010 to 0x5480: what the robot, its state and its jobs object to.
+//! Added status codes 0x1010 to 0x5480: robot, its state, jobs.
 
 use super::added::{AddedRow, BOTH, Class, row};
 
-/// In ascending order; one row is code, class, models, name, cause, remedy.
-#[rustfmt::skip] // Eight lines a row would hide the table.
+/// In ascending order. Columns: code, class, models, name, cause, remedy.
+#[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x1010, Class::Operand, BOTH, "command error",
         "The controller took the request but not the command in it. Often an option that is not installed, or a \

@@ -1,18 +1,18 @@
-//! Words of bits.
+//! Bits of words, with names.
 
-/// A bit and its words.
+/// A named bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bit {
-    /// Counted from the least significant.
+    /// Position from the least significant bit.
     pub bit: u8,
-    /// When 0; empty when nothing is to be said.
+    /// Name of state 0; empty without one.
     pub clear: &'static str,
-    /// When 1.
+    /// Name of state 1.
     pub set: &'static str,
 }
 
 impl Bit {
-    /// The word for its state in `value`.
+    /// Name of its state in `value`.
     pub const fn word(&self, value: u32) -> &'static str {
         if value >> self.bit & 1 == 1 { self.set } else { self.clear }
     }
@@ -22,7 +22,7 @@ const fn bit(bit: u8, clear: &'static str, set: &'static str) -> Bit {
     Bit { bit, clear, set }
 }
 
-/// The form word: the words of the text form for each bit clear and set.
+/// Form word, with the names of the text format.
 pub const FORM_BITS: [Bit; 8] = [
     bit(0, "front", "back"),
     bit(1, "upper", "lower"),
@@ -34,7 +34,7 @@ pub const FORM_BITS: [Bit; 8] = [
     bit(7, "previous-step", "regard-form"),
 ];
 
-/// The extended form word, likewise.
+/// Extended form word, with the names of the text format.
 pub const EXTENDED_FORM_BITS: [Bit; 5] = [
     bit(0, "l-lt180", "l-ge180"),
     bit(1, "u-lt180", "u-ge180"),
@@ -43,7 +43,7 @@ pub const EXTENDED_FORM_BITS: [Bit; 5] = [
     bit(4, "w-lt180", "w-ge180"),
 ];
 
-/// The first word of the status.
+/// First status word.
 pub const DATA_1_BITS: [Bit; 8] = [
     bit(0, "", "step mode"),
     bit(1, "", "one-cycle mode"),
@@ -55,7 +55,7 @@ pub const DATA_1_BITS: [Bit; 8] = [
     bit(7, "", "command remote"),
 ];
 
-/// The second word of the status.
+/// Second status word.
 pub const DATA_2_BITS: [Bit; 6] = [
     bit(1, "", "hold by pendant"),
     bit(2, "", "hold by external signal"),

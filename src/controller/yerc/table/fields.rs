@@ -1,14 +1,14 @@
-//! The data of each command, field by field.
+//! Fields of the data of each command.
 
 use super::bits::{Bit, DATA_1_BITS, DATA_2_BITS, EXTENDED_FORM_BITS, FORM_BITS};
 use crate::units::{self, Unit};
 
-/// What a field holds; fixes its size.
+/// Content and size of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Unsigned byte.
     U8,
-    /// A byte of eight signals, lowest first.
+    /// Eight signals, lowest bit first.
     Signals,
     /// Unsigned 16 bits.
     U16,
@@ -20,39 +20,39 @@ pub enum Kind {
     I32,
     /// IEEE 754 single.
     F32,
-    /// Text of so many bytes in the pendant's language, zero filled.
+    /// Text of this size in the encoding of the pendant, padded with NUL.
     Text(usize),
-    /// 32 bits with meanings.
+    /// 32 bits with names.
     Bits(&'static [Bit]),
-    /// 32 bits, one of these.
+    /// 32 bits with one of these values.
     Choice(&'static [(u32, &'static str)]),
     /// 32 bits in a unit.
     Scaled(Unit),
-    /// An axis of a robot position, counted from 0; its unit follows from the data type.
+    /// An axis of a robot position, counted from 0; the data type decides its unit.
     Axis(usize),
-    /// An axis of a base position; its unit follows from the data type.
+    /// An axis of a base position; the data type decides its unit.
     BaseAxis,
     /// 32 bits in the unit of the speed class.
     Speed,
-    /// 32 bits, 0.
+    /// 32 bits, always 0.
     Reserved,
     /// The name of a file, 1 to 479 bytes.
     FileName,
-    /// A pattern of file names, 0 to 479 bytes.
+    /// A filter of file names, 0 to 479 bytes.
     Filter,
 }
 
-/// A named piece of data.
+/// A named field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// In words.
+    /// Readable name.
     pub name: &'static str,
-    /// What it holds.
+    /// Content.
     pub kind: Kind,
 }
 
 impl Field {
-    /// Bytes; 0 for those whose size is free.
+    /// Size in bytes; 0 for a variable size.
     pub const fn size(&self) -> usize {
         match self.kind {
             Kind::U8 | Kind::Signals => 1,
@@ -68,7 +68,7 @@ const fn f(name: &'static str, kind: Kind) -> Field {
     Field { name, kind }
 }
 
-/// Fields of one name and kind, by their numbers.
+/// Numbered fields of the same kind.
 macro_rules! numbered {
     ($name:literal, $axis:pat => $kind:expr; $($number:literal)+) => {
         [$(f(concat!($name, " ", $number), {
@@ -78,7 +78,7 @@ macro_rules! numbered {
     };
 }
 
-/// Several rows of fields as one, of `N` fields together.
+/// Joins rows of fields to one of `N` fields.
 const fn join<const N: usize>(parts: &[&[Field]]) -> [Field; N] {
     let mut out = [f("", Kind::Reserved); N];
     let (mut part, mut from) = (0, 0);
@@ -99,7 +99,7 @@ const fn join<const N: usize>(parts: &[&[Field]]) -> [Field; N] {
 /// Pulses of eight axes.
 const PULSES: [Field; 8] = numbered!("axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6 7 8);
 
-/// How to read the sub-code of an alarm (FS and DX 3.3.1); 7, 13 to 19 and 26 are not defined.
+/// Formats of alarm sub-codes (FS and DX 3.3.1); 7, 13 to 19 and 26 are not defined.
 pub const ALARM_KINDS: &[(u32, &str)] = &[
     (0, "no sub-code"),
     (1, "unsigned decimal, 16 bits"),
@@ -178,7 +178,7 @@ pub(super) const BASE_POSITION: &[Field] = &join::<9>(&[
 ]);
 pub(super) const EXTERNAL_POSITION: &[Field] = &join::<9>(&[&[f("data type", Kind::Choice(PULSE_KIND))], &PULSES]);
 pub(super) const POSITION_ERROR: &[Field] = &PULSES;
-/// The unit of torque is not printed.
+/// The manuals do not specify the unit of torque.
 pub(super) const TORQUE: &[Field] = &numbered!("axis", _ => Kind::I32; 1 2 3 4 5 6 7 8);
 pub(super) const IO: &[Field] = &[f("signals", Kind::Signals)];
 pub(super) const REGISTER: &[Field] = &[f("register", Kind::U16)];

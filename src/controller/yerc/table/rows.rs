@@ -1,4 +1,4 @@
-//! The rows.
+//! Rows of the command table.
 
 use super::fields::{self as data, Field};
 use super::spans::{self as at, Instances};
@@ -6,7 +6,7 @@ use super::{Action, Attribute, Availability, Plural, RiskRule, Row, Service, ser
 use crate::Risk;
 use crate::yerc::wire::Division;
 
-/// How the row of the batch backup is told from that of save.
+/// Section that identifies the row of the batch backup.
 pub(super) const BATCH_BACKUP_SECTION: &str = "3.4.5";
 
 const READ: RiskRule = RiskRule::Always(Risk::Read);
@@ -40,7 +40,7 @@ const fn file(number: u8, meaning: &'static str, action: Action, risk: RiskRule)
 
 const READ_FIELDS: &[Service] = &[get_single(Attribute::Field), get_all(Attribute::Zero)];
 const IO: &[Service] = &[get_single(Attribute::One), set_single(Attribute::One, WRITE)];
-/// Attribute 0 with 0x02 is the form of the outline (3.2.2); the command's own table has 1 with 0x10.
+/// Attribute 0 with 0x02 is the form of section 3.2.2; the table of the command has 1 with 0x10.
 const REGISTER: &[Service] =
     &[get_single(Attribute::One), set_single(Attribute::One, WRITE), set_all(Attribute::Zero, WRITE)];
 const VARIABLE: &[Service] = &[
@@ -49,7 +49,7 @@ const VARIABLE: &[Service] = &[
     set_single(Attribute::One, WRITE),
     set_all(Attribute::OneOrZero, WRITE),
 ];
-/// Somebody taught what is overwritten.
+/// Overwrites taught data.
 const POSITION: &[Service] = &[
     get_single(Attribute::Field),
     get_all(Attribute::Zero),
@@ -109,12 +109,11 @@ const fn plural(
     Row { plural: Some(Plural { max, even: false }), ..row(number, section, name, PLURAL, instances, fields) }
 }
 
-/// What somebody taught.
+/// For taught data.
 const fn taught(row: Row) -> Row {
     Row { services: POSITIONS, ..row }
 }
 
-/// Only even counts are valid.
 const fn even(row: Row) -> Row {
     match row.plural {
         Some(Plural { max, .. }) => Row { plural: Some(Plural { max, even: true }), ..row },
@@ -139,7 +138,7 @@ const fn files(
     Row { division: Division::File, ..row(0, section, name, services, at::FILES, fields) }
 }
 
-/// Every robot command by number, then the file services.
+/// All robot commands by number, then the file services.
 #[rustfmt::skip]
 pub const ROWS: &[Row] = &[
     row(0x70, "3.3.1", "alarm read", READ_FIELDS, at::ALARMS, data::ALARM),
@@ -188,6 +187,6 @@ pub const ROWS: &[Row] = &[
     files("3.4.2", "file load", &[file(service::LOAD, "PC to controller", Action::Write, DESTROY)], data::FILE_NAME),
     files("3.4.3", "file save", &[file(service::SAVE, "controller to PC", Action::Read, READ)], data::FILE_NAME),
     files("3.4.4", "file list", &[file(service::LIST, "list", Action::Read, READ)], data::FILE_FILTER),
-    // Writes a file on the controller for ten minutes: nothing to repeat at will.
+    // Writes a file on the controller for ten minutes, so it must not be repeated freely.
     since_fs114(files(BATCH_BACKUP_SECTION, "batch data backup", &[file(service::SAVE, "make CMOSBK.BIN", Action::Write, WRITE)], data::FILE_NAME)),
 ];

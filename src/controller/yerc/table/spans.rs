@@ -1,21 +1,21 @@
-//! What each command can address, by model.
+//! Valid instances of each command, by model.
 
 use crate::yerc::Model;
 
-/// A run of instance numbers.
+/// A range of instance numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Span {
     /// First number.
     pub first: u16,
-    /// Last number, included.
+    /// Last number, inclusive.
     pub last: u16,
-    /// What they are.
+    /// Description of the instances.
     pub meaning: &'static str,
-    /// Prefix of the single names and the number of the first, e.g. `R` and 1.
+    /// Prefix of the names and number of the first, e.g. `R` and 1.
     pub numbered: Option<(&'static str, u16)>,
-    /// Whether write services may address them.
+    /// Whether write services are valid.
     pub writable: bool,
-    /// Whether they exist only where the controller's parameters say so.
+    /// Whether they exist only with certain controller parameters.
     pub extended: bool,
 }
 
@@ -25,7 +25,7 @@ impl Span {
         self.first <= instance && instance <= self.last
     }
 
-    /// The name of one instance, e.g. `R1, robot (pulse)`.
+    /// Name of an instance, e.g. `R1, robot (pulse)`.
     pub fn label(&self, instance: u16) -> String {
         match self.numbered {
             Some((prefix, from)) => {
@@ -41,19 +41,19 @@ impl Span {
     }
 }
 
-/// The spans of each model, in rising order.
+/// Ranges of each model, in ascending order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instances {
-    /// On an FS100; empty where the command does not exist.
+    /// FS100; empty if the command does not exist.
     pub fs100: &'static [Span],
     /// On a DX100.
     pub dx100: &'static [Span],
-    /// On a DX200, and a YRC1000.
+    /// DX200 and YRC1000.
     pub dx200: &'static [Span],
 }
 
 impl Instances {
-    /// The spans of a model.
+    /// Ranges of a model.
     pub const fn for_model(&self, model: Model) -> &'static [Span] {
         match model {
             Model::Fs100 => self.fs100,
@@ -62,12 +62,12 @@ impl Instances {
         }
     }
 
-    /// The span that holds an instance.
+    /// The range of an instance.
     pub fn find(&self, model: Model, instance: u16) -> Option<&'static Span> {
         self.for_model(model).iter().find(|span| span.contains(instance))
     }
 
-    /// The last number of the unbroken run of spans that holds an instance.
+    /// Last number of the contiguous ranges around an instance.
     pub fn reach(&self, model: Model, instance: u16, only_writable: bool) -> Option<u16> {
         let mut spans = self.for_model(model).iter().filter(|span| span.writable || !only_writable);
         let mut last = spans.find(|span| span.contains(instance))?.last;
@@ -80,7 +80,7 @@ impl Instances {
         Some(last)
     }
 
-    /// The numbers in words, e.g. `1-2, 11-12`.
+    /// Readable list of ranges, e.g. `1-2, 11-12`.
     pub fn ranges(&self, model: Model, only_writable: bool) -> String {
         let mut ranges: Vec<(u16, u16)> = Vec::new();
         for span in self.for_model(model).iter().filter(|span| span.writable || !only_writable) {
@@ -115,7 +115,7 @@ const fn both(spans: &'static [Span]) -> Instances {
     Instances { fs100: spans, dx100: spans, dx200: spans }
 }
 
-/// Of a DX100 as of a DX200.
+/// The DX100 is like the DX200.
 const fn each(fs100: &'static [Span], dx200: &'static [Span]) -> Instances {
     Instances { fs100, dx100: dx200, dx200 }
 }
@@ -168,7 +168,7 @@ pub(super) const GROUPS: Instances = each(
     &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
     &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
 );
-/// The last signal of each class in which models differ, counted from the first; and where those of the network begin.
+/// The last signal of each class in which models differ, counted from the first, and the first network signals.
 struct Signals {
     user: u16,
     external: u16,
@@ -203,9 +203,9 @@ const DX100_SIGNALS: Signals =
     Signals { user: 512, external: 500, system_output: 300, control_status: 128, ..FS100_SIGNALS };
 const DX200_SIGNALS: Signals = Signals { external: 512, network_from: 2701, network: 256, ..DX100_SIGNALS };
 
-/// The numbers of an FS100 class follow from 128 groups each; the manual prints two of them differently. A DX100 has its
-/// network signals where an FS100 has them (`WriteSingleIO.srv` of `motoman_msgs`: inputs from 25010 on); so many may be
-/// written as an FS100 has, and whatever may be there can be read.
+/// The numbers of an FS100 class follow from 128 groups each; the manual has different numbers for two of them. A
+/// DX100 has its network signals where an FS100 has them (`WriteSingleIO.srv` of `motoman_msgs`: inputs from 25010
+/// on). Its writable range is that of an FS100, its readable range the largest possible one.
 pub(super) const IO: Instances =
     Instances { fs100: &signals(&FS100_SIGNALS), dx100: &signals(&DX100_SIGNALS), dx200: &signals(&DX200_SIGNALS) };
 pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);

@@ -1,7 +1,8 @@
-//! The fewest requests for many variables, registers or I/O groups.
+//! Minimal set of requests for many variables, registers or I/O groups.
 //!
-//! A read may bridge a gap: asking for what lies between costs bytes of a datagram, not a round trip. Positions are not
-//! bridged, since an undefined one refuses the whole answer. A write never touches what was not named.
+//! A read may include unrequested elements in a gap: additional bytes of a datagram are cheaper than another round
+//! trip. Positions have no such gaps, because an undefined position refuses the whole answer. A write never includes
+//! unrequested elements.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
@@ -17,14 +18,14 @@ use crate::yerc::query::{
 use crate::yerc::request::Request;
 use crate::yerc::table::{Plural, Row};
 
-/// Numbers from `first` on.
+/// A range from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Block {
     first: u16,
     count: u16,
 }
 
-/// Either form of a query.
+/// Single or plural query.
 #[derive(Debug, Clone, PartialEq)]
 enum Either<S, P> {
     Single(S),
@@ -32,7 +33,7 @@ enum Either<S, P> {
 }
 
 impl<S: Query<Answer = A>, P: Query<Answer = Vec<A>>, A> Either<S, P> {
-    /// The elements of either answer.
+    /// The elements of the answer.
     fn decode_all(&self, data: &[u8]) -> Result<Vec<A>, PayloadError> {
         match self {
             Self::Single(query) => query.decode(data).map(|element| vec![element]),
@@ -50,14 +51,14 @@ impl<S: Query, P: Query> Either<S, P> {
     }
 }
 
-/// A request of a plan to read several things.
+/// A read request of a plan.
 pub trait PlannedRead: Query<Answer = Vec<(<Self as PlannedRead>::Item, <Self as PlannedRead>::Value)>> {
-    /// What names one of them.
+    /// Identifier of an element.
     type Item: Copy + Eq + Hash;
-    /// What one of them holds.
+    /// Value of an element.
     type Value;
 
-    /// What this request answers, in rising order.
+    /// The requested elements, in ascending order.
     fn wanted(&self) -> &[Self::Item];
 }
 
@@ -100,15 +101,15 @@ macro_rules! read_step {
 }
 
 read_step! {
-    /// One request of a plan to read variables.
+    /// A read request for variables.
     ReadStep, Reference, Value, ReadVariable, ReadVariables, |reference| reference.number
 }
 read_step! {
-    /// One request of a plan to read registers.
+    /// A read request for registers.
     RegisterStep, u16, u16, ReadRegister, ReadRegisters, |number| *number
 }
 read_step! {
-    /// One request of a plan to read I/O groups.
+    /// A read request for I/O groups.
     IoStep, u16, u8, ReadIo, ReadIoGroups, |number| *number
 }
 
@@ -122,7 +123,7 @@ macro_rules! write_step {
         }
 
         impl $name {
-            /// What this request writes, in rising order.
+            /// The written elements, in ascending order.
             pub fn written(&self) -> &[$item] {
                 &self.written
             }
@@ -137,19 +138,19 @@ macro_rules! write_step {
 }
 
 write_step! {
-    /// One request of a plan to write variables.
+    /// A write request for variables.
     WriteStep, Reference, WriteVariable, WriteVariables
 }
 write_step! {
-    /// One request of a plan to write registers.
+    /// A write request for registers.
     WriteRegisterStep, u16, WriteRegister, WriteRegisters
 }
 write_step! {
-    /// One request of a plan to write I/O groups.
+    /// A write request for I/O groups.
     WriteIoStep, u16, WriteIo, WriteIoGroups
 }
 
-/// The requests that read these variables; each once, in whatever order they were named.
+/// Plans the reads of these variables, without duplicates, in any order.
 #[expect(clippy::missing_panics_doc, reason = "the planner keeps to the limits of the table")]
 pub fn plan_reads(references: &[Reference]) -> Vec<ReadStep> {
     let mut steps = Vec::new();
@@ -171,9 +172,9 @@ pub fn plan_reads(references: &[Reference]) -> Vec<ReadStep> {
     steps
 }
 
-/// The requests that read these registers.
+/// Plans the reads of these registers.
 pub fn plan_register_reads(model: Model, numbers: &[u16]) -> Result<Vec<RegisterStep>, QueryError> {
-    // Numbers that do not exist are refused by the constructor, not planned around.
+    // The constructor refuses numbers that do not exist.
     let numbers: BTreeSet<u16> = numbers.iter().copied().collect();
     read_blocks(&numbers, limits(0x301), true, |number| run_of(0x301, model, number))
         .into_iter()
@@ -187,7 +188,7 @@ pub fn plan_register_reads(model: Model, numbers: &[u16]) -> Result<Vec<Register
         .collect()
 }
 
-/// The requests that read these I/O groups.
+/// Plans the reads of these I/O groups.
 pub fn plan_io_reads(model: Model, groups: &[u16]) -> Result<Vec<IoStep>, QueryError> {
     let groups: BTreeSet<u16> = groups.iter().copied().collect();
     read_blocks(&groups, limits(0x300), true, |group| run_of(0x300, model, group))
@@ -202,7 +203,7 @@ pub fn plan_io_reads(model: Model, groups: &[u16]) -> Result<Vec<IoStep>, QueryE
         .collect()
 }
 
-/// The requests that write these values. A variable named twice takes the last value.
+/// Plans the writes of these values. For a duplicate variable the last value counts.
 pub fn plan_writes(values: &[(u16, Value)]) -> Result<Vec<WriteStep>, QueryError> {
     let mut steps = Vec::new();
     for kind in VariableKind::all() {
@@ -223,7 +224,7 @@ pub fn plan_writes(values: &[(u16, Value)]) -> Result<Vec<WriteStep>, QueryError
     Ok(steps)
 }
 
-/// The requests that write these registers.
+/// Plans the writes of these registers.
 pub fn plan_register_writes(model: Model, values: &[(u16, u16)]) -> Result<Vec<WriteRegisterStep>, QueryError> {
     write_signals(values, limits(0x301))
         .into_iter()
@@ -238,7 +239,7 @@ pub fn plan_register_writes(model: Model, values: &[(u16, u16)]) -> Result<Vec<W
         .collect()
 }
 
-/// The requests that write these I/O groups.
+/// Plans the writes of these I/O groups.
 pub fn plan_io_writes(model: Model, values: &[(u16, u8)]) -> Result<Vec<WriteIoStep>, QueryError> {
     write_signals(values, limits(0x300))
         .into_iter()
@@ -253,8 +254,8 @@ pub fn plan_io_writes(model: Model, values: &[(u16, u8)]) -> Result<Vec<WriteIoS
         .collect()
 }
 
-/// Windows over sorted numbers, each with the numbers wanted from it. `range` tells how far elements around a number are
-/// known to exist, for windows and for the neighbour that makes a count even.
+/// Blocks over sorted numbers, each with its requested numbers. `range` returns the existing elements around a
+/// number, for blocks and for an additional neighbour in an even count.
 fn read_blocks(
     numbers: &BTreeSet<u16>,
     Plural { max, even }: Plural,
@@ -279,7 +280,7 @@ fn read_blocks(
             count if !even || count == 1 || count % 2 == 0 => Block { first, count },
             count if last < highest => Block { first, count: count + 1 },
             count if first > lowest => Block { first: first - 1, count: count + 1 },
-            // No neighbour to round up with: the last one goes alone, and the block ends with the one before it.
+            // No neighbour for an even count: the last number gets a single read, and the block ends before it.
             _ => {
                 let alone = wanted.pop().into_iter().collect();
                 blocks.push((Block { first: last, count: 1 }, alone));
@@ -294,7 +295,7 @@ fn read_blocks(
     blocks
 }
 
-/// Unbroken runs; an odd run gives its last element to a single write where counts must be even.
+/// Contiguous blocks. Where counts must be even, the last element of an odd block gets a single write.
 fn write_blocks(numbers: &BTreeSet<u16>, Plural { max, even }: Plural) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     for &number in numbers {
@@ -332,7 +333,7 @@ fn limits(command: u16) -> Plural {
     Row::from_number(command).and_then(|row| row.plural).expect("registers and I/O groups have a plural command")
 }
 
-/// The unbroken run of instances around one; only itself where it does not exist.
+/// The contiguous instances around one; only itself if it does not exist.
 fn run_of(command: u16, model: Model, number: u16) -> (u16, u16) {
     let spans = Row::from_number(command).map_or(&[][..], |row| row.instances.for_model(model));
     let Some(at) = spans.iter().position(|span| span.contains(number)) else { return (number, number) };

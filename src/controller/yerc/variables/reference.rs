@@ -1,4 +1,4 @@
-//! Kinds of variables, and how they are named.
+//! Kinds and names of variables.
 
 use std::fmt;
 use std::str::FromStr;
@@ -9,7 +9,7 @@ use crate::typed::{self, RangeError, unsigned};
 use crate::yerc::Model;
 use crate::yerc::table::{Plural, Row};
 
-/// A kind of variable. S variables hold 16 bytes on FS100 and 32 on DX200, where both forms can be used.
+/// Kind of variable. S variables have 16 bytes on FS100 and 32 on DX200, where both forms can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VariableKind {
     /// Byte.
@@ -46,38 +46,38 @@ const KINDS: [(VariableKind, &str, u16, u16); 9] = [
 ];
 
 impl VariableKind {
-    /// Every kind, in the order the manual lists them.
+    /// All kinds, in the order of the manual.
     pub fn all() -> impl Iterator<Item = Self> {
         KINDS.iter().map(|row| row.0)
     }
 
-    /// The letters, e.g. `BP`; both string forms are `S`.
+    /// Letters, e.g. `BP`; `S` for both string forms.
     pub fn letters(self) -> &'static str {
         KINDS[self as usize].1
     }
 
-    /// The command for one.
+    /// Command for one variable.
     pub fn command(self) -> u16 {
         KINDS[self as usize].2
     }
 
-    /// The command for several.
+    /// Command for several variables.
     pub fn plural_command(self) -> u16 {
         KINDS[self as usize].3
     }
 
-    /// Bytes of one.
+    /// Size in bytes.
     pub fn size(self) -> usize {
         self.row().size()
     }
 
-    /// The limits of the plural command.
+    /// Limits of the plural command.
     #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
     pub fn plural(self) -> Plural {
         Row::from_number(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
     }
 
-    /// The last number of a controller as delivered: 99, or 127 for positions.
+    /// Last number in factory state: 99, or 127 for positions.
     #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
     pub fn last_standard(self) -> u16 {
         let spans = self.row().instances.dx200;
@@ -89,7 +89,7 @@ impl VariableKind {
         matches!(self, Self::P | Self::Bp | Self::Ex)
     }
 
-    /// The string form to use: 32 bytes where the model has them and `short` does not ask for 16.
+    /// The string form for a model: 32 bytes if available, unless `short` requests 16.
     #[must_use]
     pub const fn string_form(self, model: Model, short: bool) -> Self {
         match self {
@@ -104,37 +104,37 @@ impl VariableKind {
     }
 }
 
-/// A variable by kind and number; reads and shows as `B0`, `P12`, `EX3`.
+/// A variable by kind and number; parsed and displayed as `B0`, `P12`, `EX3`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Reference {
-    /// What it holds.
+    /// Content.
     pub kind: VariableKind,
     /// From 0.
     pub number: u16,
 }
 
-/// A text that names no variable.
+/// An invalid variable reference.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReferenceError {
     /// Unknown letters.
     #[error("'{found}' names no variable; there are B, I, D, R, S, P, BP and EX with a number, e.g. B0 or B0..B99")]
     Kind {
-        /// What was given.
+        /// The invalid text.
         found: String,
     },
     /// No number, or one beyond 65535.
     #[error("'{found}' needs a number from 0 to 65535")]
     Number {
-        /// What was given.
+        /// The invalid text.
         found: String,
     },
-    /// A range whose ends do not go together.
+    /// A range with two different kinds.
     #[error("'{found}' is not a valid range; both ends name the same kind, the lower one first")]
     Range {
-        /// What was given.
+        /// The invalid text.
         found: String,
     },
-    /// A range whose last end comes first.
+    /// A range with its ends in the wrong order.
     #[error(transparent)]
     Backwards(#[from] RangeError),
 }
@@ -155,7 +155,7 @@ impl fmt::Display for Reference {
 impl FromStr for Reference {
     type Err = ReferenceError;
 
-    /// `S` reads as the 32-byte form; see [`VariableKind::string_form`].
+    /// `S` is the 32-byte form; see [`VariableKind::string_form`].
     fn from_str(text: &str) -> Result<Self, ReferenceError> {
         let digits = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
         let (letters, number) = text.split_at(digits);
@@ -169,7 +169,7 @@ impl FromStr for Reference {
     }
 }
 
-/// Reads `B0`, `B0..B99` or `B0..99`; both ends belong to the range.
+/// Parses `B0`, `B0..B99` or `B0..99`; ranges include both ends.
 pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     let first: Reference = text.split(['.', '-']).next().unwrap_or_default().parse()?;
     let numbers = typed::range(text, |end| {
@@ -180,7 +180,7 @@ pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     Ok(numbers.map(|number| Reference::new(first.kind, number)).collect())
 }
 
-/// Reads `5` or `5..20` for registers and I/O groups; both ends belong to the range.
+/// Parses `5` or `5..20` for registers and I/O groups; ranges include both ends.
 pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
     typed::range(text, |end| parse_number(end, text)).map(Iterator::collect)
 }

@@ -1,4 +1,4 @@
-//! What a variable holds.
+//! Values of variables.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ use crate::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
 };
 
-/// The value of a variable; its kind follows from it.
+/// A typed value of a variable.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// B.
@@ -31,27 +31,27 @@ pub enum Value {
     External(ExternalPosition),
 }
 
-/// A text that is no value of its kind.
+/// An invalid value.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ValueError {
-    /// Not a number of the range.
+    /// A number out of range.
     #[error("'{found}' is not {expected}")]
     Number {
-        /// What was given.
+        /// The invalid text.
         found: String,
-        /// What is possible.
+        /// Valid values.
         expected: &'static str,
     },
     /// A string that does not fit.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// Not a position.
+    /// An invalid position.
     #[error(transparent)]
     Position(#[from] PositionTextError),
 }
 
 impl Value {
-    /// Reads an element of an answer: its size or more, fewer words only for positions.
+    /// Parses an element of an answer; only positions may be shorter than their full size.
     pub fn parse(kind: VariableKind, data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("variable", data);
         Ok(match kind {
@@ -67,7 +67,7 @@ impl Value {
         })
     }
 
-    /// The bytes of the element in full size.
+    /// Encodes the element in full size.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Self::Byte(value) => vec![*value],
@@ -82,7 +82,7 @@ impl Value {
         }
     }
 
-    /// The kind of variable that holds it.
+    /// Kind of variable.
     pub const fn kind(&self) -> VariableKind {
         match self {
             Self::Byte(_) => VariableKind::B,
@@ -97,7 +97,7 @@ impl Value {
         }
     }
 
-    /// Reads what an operator typed; for strings, in the controller's encoding.
+    /// Parses user input; strings are in the encoding of the controller.
     pub fn from_text(kind: VariableKind, text: &[u8]) -> Result<Self, ValueError> {
         let shown = String::from_utf8_lossy(text);
         let number = |expected| ValueError::Number { found: shown.clone().into_owned(), expected };
@@ -108,7 +108,7 @@ impl Value {
                 Self::Double(whole(&shown).ok_or_else(|| number("a number from -2147483648 to 2147483647"))?)
             }
             VariableKind::R => {
-                // Hexadecimal stands for a whole number, as far as a real holds those.
+                // Hexadecimal input is an integer that a real can represent.
                 let value = shown.parse().ok().or_else(|| whole::<i16>(&shown).map(f32::from));
                 let value = value.filter(|value: &f32| value.is_finite());
                 Self::Real(value.ok_or_else(|| number("a number that fits 32-bit floating point"))?)
@@ -122,7 +122,7 @@ impl Value {
     }
 }
 
-/// A whole number of the type, in decimal or hexadecimal.
+/// An integer of the type, in decimal or hexadecimal.
 fn whole<T: TryFrom<i64>>(text: &str) -> Option<T> {
     integer(text).and_then(|number| T::try_from(number).ok())
 }

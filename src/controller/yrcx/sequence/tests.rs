@@ -1,4 +1,4 @@
-//! Procedures with a small controller that answers as the timing charts show, in virtual time.
+//! Procedures against a small controller that behaves as the timing charts, in virtual time.
 
 use super::*;
 use crate::testing::ms;
@@ -7,14 +7,14 @@ use crate::yrcx::signal::{Side, input, output, resting};
 
 const RPI: u64 = 20;
 
-/// A controller that answers dedicated inputs after 30 ms, as the timing charts show.
+/// A controller that answers dedicated inputs after 30 ms, as in the timing charts.
 struct World {
     output: Output,
     shown: Image,
     now: u64,
-    /// Dedicated words as sent, when they changed.
+    /// Dedicated words at their changes.
     edges: Vec<(u64, u16)>,
-    /// What to do when, and to which output.
+    /// Scheduled changes of outputs.
     pending: Vec<(u64, Signal, bool)>,
     before: Image,
     deaf: bool,
@@ -113,7 +113,7 @@ impl World {
         }
     }
 
-    /// What was switched on or off, in order, beside the resting inputs; checks the distances.
+    /// The switched inputs in order, except the resting ones; checks the intervals.
     fn seen(&self) -> Vec<String> {
         assert!(self.edges.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 100), "{:?}", self.edges);
         let mut before = resting().0[DEDICATED_WORD];

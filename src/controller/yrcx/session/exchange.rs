@@ -1,4 +1,4 @@
-//! One remote command from the ready status back to it (chapter 2, sections 1.2 and 2).
+//! Exchange of one remote command, from ready status to ready status (chapter 2, sections 1.2 and 2).
 
 use std::fmt;
 use std::time::Duration;
@@ -12,69 +12,69 @@ use crate::yrcx::table::{Pace, Row, STATUS_RESET};
 use crate::yrcx::value::Values;
 use crate::{Now, Risk};
 
-/// How an exchange ended.
+/// Outcome of an exchange.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// The row of the command.
     pub row: &'static Row,
-    /// The answer, or why there is none.
+    /// The answer, or the reason of a missing one.
     pub ended: Ended,
-    /// WO0 to WO15 as they came with the end status.
+    /// WO0 to WO15 with the end status.
     pub words: Option<Words>,
-    /// From the first time that the command was sent to the end status.
+    /// Time from the first sending to the end status.
     pub elapsed: Duration,
-    /// A status that was found before the command: another master's command, or one of ours from before.
+    /// Status before the command, of another master or of an earlier command.
     pub leftover: Option<Status>,
-    /// Whether the run status was seen; a short command may never show it.
+    /// Whether the running status was observed; a short command may skip it.
     pub ran: bool,
     /// Whether the controller is ready again.
     pub released: bool,
-    /// Whether the stop input was left off, because the end of the motion was not seen.
+    /// Whether the stop input was left off, because the end of the motion was not observed.
     pub stop_held: bool,
 }
 
-/// How an exchange ended.
+/// Result of an exchange.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
-    /// The controller answered, be it with an alarm.
+    /// An answer, also an alarm.
     Answered(Answer),
     /// The command was not sent. Nothing was done.
     NotSent(NotSentReason),
-    /// Continuous output was ended as asked.
+    /// Continuous output was ended on request.
     Stopped,
-    /// No answer to a command that may be repeated without harm.
+    /// No answer to a command that can be repeated without harm.
     NoAnswer(Silence),
-    /// No answer to a command that changes something: it may or may not have been carried out, or still be under way.
+    /// No answer to a command that changes something: it may or may not have been carried out, or may still run.
     OutcomeUnknown(Silence),
 }
 
 /// Why a command was not sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotSentReason {
-    /// No image came.
+    /// No image received.
     NoImage,
-    /// The link went down, or sends nothing.
+    /// The link was lost, or sends nothing.
     LinkLost,
-    /// The controller was not ready: it runs another command, or holds another status in spite of the status reset.
+    /// The controller was not ready: it runs another command, or keeps another status despite the status reset.
     NotReady(Status),
-    /// The operator did not want it any more.
+    /// The operator interrupted it.
     Interrupted,
 }
 
-/// Why there is no answer.
+/// Reason of a missing answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Silence {
-    /// The link went down after the command was sent.
+    /// The link was lost after the command was sent.
     LinkLost,
-    /// The controller stayed ready, as if there were no command.
+    /// The controller stayed ready and ignored the command.
     NotTaken,
-    /// The command still ran when patience was over.
+    /// The command still ran at the deadline.
     TooLong,
-    /// The run status went away without an end status.
+    /// The running status ended without an end status.
     Vanished,
-    /// The status is none that the manual has.
+    /// The status is not in the manual.
     Undocumented(u16),
-    /// The operator did not want to wait any longer; for a motion, the stop input went off before.
+    /// The operator interrupted the wait. For a motion, the stop input went off before.
     Interrupted,
 }
 
@@ -104,11 +104,11 @@ impl fmt::Display for Silence {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Data words are shown without a command word, until the controller is ready for it.
+    /// Data words are sent without a command word, until the controller is ready.
     Prepare,
-    /// The command word is shown.
+    /// The command word is sent.
     Command,
-    /// The status reset is shown, since then.
+    /// The status reset is sent, since this time.
     Release(Now),
     Over,
 }
@@ -120,22 +120,21 @@ pub struct Exchange {
     policy: Policy,
     phase: Phase,
     started: Option<Now>,
-    /// The last image that came.
     input: Option<Image>,
     linked: bool,
-    /// When the command word left for the first time.
+    /// Time of the first sending of the command word.
     sent: Option<Now>,
-    /// When the status last made sense.
+    /// Time of the last valid status.
     sane: Now,
     interrupted: Option<Now>,
-    /// Whether the stop input is off because of the interrupt.
+    /// Whether the stop input is off because of an interrupt.
     stopping: bool,
     running: Option<Answer>,
     outcome: Outcome,
 }
 
 impl Exchange {
-    /// Will carry out `order`.
+    /// A session for `order`.
     pub fn new(order: Order, policy: Policy) -> Self {
         let outcome = Outcome {
             row: order.row(),
@@ -168,7 +167,7 @@ impl Exchange {
         &self.order
     }
 
-    /// The answer as soon as it is there, which is before the controller is ready again.
+    /// The answer, available before the controller is ready again.
     pub fn answer(&self) -> Option<&Answer> {
         match (self.phase, &self.outcome.ended) {
             (Phase::Release(_) | Phase::Over, Ended::Answered(answer)) => Some(answer),
@@ -176,28 +175,28 @@ impl Exchange {
         }
     }
 
-    /// When the command left for the first time.
+    /// Time of the first sending.
     pub fn sent(&self) -> Option<Now> {
         self.sent
     }
 
-    /// Whether the controller is seen to carry it out.
+    /// Whether the running status is observed.
     pub fn is_running(&self) -> bool {
         self.phase == Phase::Command && self.sent.is_some() && self.status() == Some(Status::Running)
     }
 
-    /// What continuous output shows, if it changed since the last call (4.7.4).
+    /// New values of continuous output since the last call (4.7.4).
     pub fn running(&mut self) -> Option<Answer> {
         self.running.take()
     }
 
-    /// How long ago the command left; nothing unless it has.
+    /// Time since the first sending; zero before it.
     pub fn elapsed(&self, now: Now) -> Duration {
         self.sent.map_or(Duration::ZERO, |sent| now.saturating_sub(sent))
     }
 
-    /// The operator wants it to end. What was not sent is not sent any more. A motion is stopped with SI(06), and its end
-    /// awaited; continuous output is ended; any other command is over in a moment anyway.
+    /// Interrupts the exchange. An unsent command is dropped. A motion is stopped with SI(06), and its end awaited.
+    /// Continuous output is ended. Any other command ends soon by itself.
     pub fn interrupt(&mut self, now: Now) {
         self.interrupted.get_or_insert(now);
     }
@@ -206,7 +205,7 @@ impl Exchange {
         self.input.map(|image| Status::from_word(image.0[0]))
     }
 
-    /// Shows the data words beside the status reset, and the command word once the controller is ready and has them.
+    /// Sends data words with the status reset, and the command word once the controller is ready and has the data.
     fn prepare(&mut self, now: Now, output: &mut Output) {
         let mut words = *self.order.words();
         words[0] = Status::Ready.word();
@@ -219,7 +218,7 @@ impl Exchange {
         }
         let data_sent = output.last_sent().is_some_and(|sent| sent.command() == words);
         match self.status() {
-            // The status reset is what is shown already.
+            // The output already contains the status reset.
             Some(Status::Ready) if data_sent && self.order.row().code == STATUS_RESET => {
                 return self.finish(now, output, Ended::Answered(Answer::Done(Values::default())));
             }
@@ -241,7 +240,7 @@ impl Exchange {
         }
     }
 
-    /// Holds the command word until the end status.
+    /// Keeps the command word until the end status.
     fn command(&mut self, now: Now, output: &mut Output) {
         let shown = output.last_sent().is_some_and(|sent| sent.command() == *self.order.words());
         if self.sent.is_none() && shown {
@@ -249,13 +248,13 @@ impl Exchange {
             self.sane = now;
         }
         if !self.linked {
-            // Without `sent` the driver may have sent it and not yet have told: count it as sent.
+            // The driver may have sent the command without a call of `sent`: it counts as sent.
             return self.finish(now, output, self.unanswered(Silence::LinkLost));
         }
         let status = self.status().unwrap_or(Status::Ready);
         if self.sent.is_none() {
             if status != Status::Ready || self.interrupted.is_some() {
-                // Somebody else's, since ours has not left: back to where no command word is shown.
+                // The status belongs to another command, because this one was not sent. Remove the command word.
                 self.phase = Phase::Prepare;
                 self.prepare(now, output);
             } else if now >= self.deadline() {
@@ -301,11 +300,11 @@ impl Exchange {
         }
     }
 
-    /// Ends it, good or bad: from here on only the status reset is shown.
+    /// Ends the exchange: from now on only the status reset is sent.
     fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
         let is_jog_at_large = self.order.row().pace == Pace::Jog && matches!(ended, Ended::OutcomeUnknown(_));
         if (self.stopping && !matches!(ended, Ended::Answered(_))) || is_jog_at_large {
-            // It may still move, and a jog for ever: the stop input stays off.
+            // The robot may still move, in a jog without end: the stop input stays off.
             input::STOP.set(&mut output.next, false);
             self.outcome.stop_held = true;
             self.stopping = false;
@@ -317,7 +316,7 @@ impl Exchange {
         self.release(now, output);
     }
 
-    /// Waits for the ready status, and gives the stop input back.
+    /// Waits for the ready status, then switches the stop input on again.
     fn release(&mut self, now: Now, output: &mut Output) {
         let Phase::Release(since) = self.phase else { return };
         let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
@@ -365,7 +364,7 @@ impl Exchange {
         self.started.unwrap_or(now)
     }
 
-    /// When patience with the ready status is over: after a stop no later than the stop's own, but for the edge of the
+    /// Deadline of the ready status. After a stop it is the deadline of the stop, but late enough for the edge of the
     /// stop input.
     fn release_until(&self, since: Now) -> Now {
         let over = since.saturating_add(self.policy.release);
@@ -373,7 +372,7 @@ impl Exchange {
         self.interrupted.map_or(over, |stop| over.min(stop.saturating_add(self.policy.stop).max(edge)))
     }
 
-    /// When patience with a command that was sent is over.
+    /// Deadline of a command that was sent.
     fn deadline(&self) -> Now {
         let sane = self.sane.saturating_add(self.policy.accept);
         if self.status() != Some(Status::Running) {
@@ -385,7 +384,7 @@ impl Exchange {
         }
     }
 
-    /// The next moment at which something is due without an image.
+    /// Next deadline without an image.
     fn due(&self, now: Now, output: &Output) -> Now {
         match self.phase {
             Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
@@ -426,7 +425,7 @@ impl ImageSession for Exchange {
         if !self.linked || self.phase == Phase::Over {
             return;
         }
-        // The signals beside it change by themselves.
+        // The signals also change without a command.
         let changed = || self.input.map(|known| known.command()) != Some(input.command());
         if self.phase == Phase::Command && self.order.is_continuous() && changed() {
             let running = Answer::parse(&self.order, &input.command());

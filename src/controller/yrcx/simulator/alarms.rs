@@ -1,7 +1,7 @@
-//! Alarms: where they come up, which are active, and what came before.
+//! Alarms: sources, active alarms, history.
 //!
-//! The remote I/O manual gives the numbers of a few alarms and sends the reader to the controller's manual for the rest.
-//! Where it gives none, the group is right and the category is of this simulator: 900 and above.
+//! The remote I/O manual has the numbers of a few alarms and refers to the controller manual for the rest. For an
+//! alarm without a known number, the group is right and the category is specific to this simulator: 900 and above.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -10,15 +10,15 @@ use crate::yrcx::alarm::Alarm;
 
 pub(super) use crate::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
 
-/// Given by the manual, or known for this maker's controllers.
+/// From the manual, or known from these controllers.
 pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);
 pub(super) const UNKNOWN_COMMAND: Alarm = Alarm::new(12, 75);
 pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
-/// That of EtherNet/IP.
+/// The alarm of EtherNet/IP.
 pub(super) const LINK: Alarm = Alarm::new(12, 551);
 pub(super) const EMERGENCY_STOP: Alarm = Alarm::new(12, 600);
 
-/// Numbers of this simulator.
+/// Specific to this simulator.
 pub(super) const NO_POWER: Alarm = Alarm::new(2, 901);
 pub(super) const NO_ORIGIN: Alarm = Alarm::new(2, 902);
 pub(super) const MOVING: Alarm = Alarm::new(2, 903);
@@ -43,10 +43,10 @@ pub(super) const CALLS: Alarm = Alarm::new(6, 905);
 /// Entries of the history (4.7.7).
 pub(super) const HISTORY: usize = 500;
 
-/// Where an alarm came up (4.7.7).
+/// Source of an alarm (4.7.7).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum AlarmSource {
-    /// The controller as a whole.
+    /// The whole controller.
     Controller,
     /// The option slot of the fieldbus.
     Slot,
@@ -59,7 +59,7 @@ pub(super) enum AlarmSource {
 }
 
 impl AlarmSource {
-    /// The two words of additional information.
+    /// Additional information in two words.
     pub(super) fn words(self) -> [u16; 2] {
         let small = |number: usize| u16::try_from(number).unwrap_or_default() & 0xFF;
         match self {
@@ -84,12 +84,12 @@ impl fmt::Display for AlarmSource {
     }
 }
 
-/// Why something is not done, or not to its end.
+/// Reason of a refusal or an abort.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) alarm: Alarm,
     pub(super) place: AlarmSource,
-    /// For whoever wants to know more than the number says.
+    /// Details for the console.
     pub(super) why: String,
 }
 
@@ -117,22 +117,20 @@ impl fmt::Display for Fault {
     }
 }
 
-/// An alarm and where it came up.
 pub(super) type Entry = (Alarm, AlarmSource);
 
-/// What is active, and what was.
+/// Active alarms and history.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AlarmLog {
-    /// Active ones; `true` for those that only switching off and on ends.
+    /// Active alarms; `true` for those that only a power cycle clears.
     active: Vec<(Alarm, bool)>,
-    /// Newest first.
     history: VecDeque<Entry>,
-    /// The last one of a remote command (4.7.17).
+    /// Latest alarm of a remote command (4.7.17).
     latest_remote: Option<Entry>,
 }
 
 impl AlarmLog {
-    /// A serious alarm.
+    /// Activates a serious alarm.
     pub(super) fn raise(&mut self, alarm: Alarm, place: AlarmSource, fatal: bool) {
         if self.active.iter().any(|(known, _)| *known == alarm) {
             return;
@@ -141,64 +139,60 @@ impl AlarmLog {
         self.record(alarm, place);
     }
 
-    /// Something that went wrong and is over.
+    /// Records an event without an active alarm.
     pub(super) fn record(&mut self, alarm: Alarm, place: AlarmSource) {
         self.history.push_front((alarm, place));
         self.history.truncate(HISTORY);
     }
 
-    /// A remote command was refused or broken off.
+    /// Records the refusal or abort of a remote command.
     pub(super) fn refuse(&mut self, fault: &Fault) {
         self.latest_remote = Some((fault.alarm, fault.place));
-        // An active alarm that keeps others from being carried out is in the history already.
+        // An active alarm that causes a refusal is in the history already.
         if !self.active.iter().any(|(known, _)| *known == fault.alarm) {
             self.record(fault.alarm, fault.place);
         }
     }
 
-    /// Takes back what may be taken back, but for alarms whose cause is still there.
+    /// Resets all alarms, except those whose cause persists.
     pub(super) fn reset(&mut self, still: impl Fn(Alarm) -> bool) {
         self.active.retain(|(alarm, fatal)| *fatal || still(*alarm));
     }
 
-    /// Ends every alarm, as switching off and on does.
+    /// Clears all alarms, as a power cycle does.
     pub(super) fn clear(&mut self) {
         self.active.clear();
     }
 
-    /// The one that is active for the longest time.
     pub(super) fn active(&self) -> Option<Alarm> {
         self.active.first().map(|(alarm, _)| *alarm)
     }
 
-    /// Every active one.
     pub(super) fn all_active(&self) -> impl Iterator<Item = Alarm> {
         self.active.iter().map(|(alarm, _)| *alarm)
     }
 
-    /// Whether only switching off and on helps.
+    /// Whether an alarm requires a power cycle.
     pub(super) fn is_fatal(&self) -> bool {
         self.active.iter().any(|(_, fatal)| *fatal)
     }
 
-    /// An entry of the history, 1 for the newest.
+    /// Entry of the history; 1 is the newest.
     pub(super) fn entry(&self, number: usize) -> Option<Entry> {
         self.history.get(number.checked_sub(1)?).copied()
     }
 
-    /// The last one of a remote command.
     pub(super) fn latest_remote(&self) -> Option<Entry> {
         self.latest_remote
     }
 
-    /// Puts an entry at the old end.
+    /// Appends an entry as the oldest.
     pub(super) fn fill(&mut self, entry: Entry) {
         if self.history.len() < HISTORY {
             self.history.push_back(entry);
         }
     }
 
-    /// Sets the last one of a remote command.
     pub(super) fn set_latest_remote(&mut self, entry: Entry) {
         self.latest_remote = Some(entry);
     }

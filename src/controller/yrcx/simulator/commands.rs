@@ -1,4 +1,4 @@
-//! What a remote command does, by its row of the table.
+//! Dispatch of remote commands by their table row.
 
 use super::alarms::{AlarmSource, Fault, NOT_ENABLED, UNKNOWN_COMMAND};
 use super::request::Request;
@@ -8,26 +8,26 @@ use crate::Now;
 use crate::yrcx::table::Pace;
 use crate::yrcx::value::{Key, Values};
 
-/// What a command comes to.
+/// Progress of a command.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Work {
-    /// Done, with what there is to answer.
+    /// Completed, with its answer.
     Done(Values),
-    /// These robots move.
+    /// Waits for the motion of these robots.
     Motion(Vec<usize>),
-    /// Power switches at that time.
+    /// Waits for a switch of power at this time.
     Power(Now, Action),
-    /// It goes on until the master takes it back.
+    /// Runs until the master removes it.
     Continuous,
 }
 
-/// What the programming box leaves (chapter 2, 3).
+/// Commands that are accepted under the programming box (chapter 2, 3).
 const UNDER_THE_BOX: [u16; 27] = [
     0x101, 0x105, 0x109, 0x10D, 0x111, 0x214, 0x224, 0x304, 0x501, 0x502, 0x503, 0x505, 0x506, 0x507, 0x508, 0x509,
     0x50A, 0x50B, 0x50C, 0x50F, 0x510, 0x511, 0x512, 0x513, 0x514, 0x515, 0x516,
 ];
 
-/// Begins a command, or refuses it.
+/// Starts or refuses a command.
 pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault> {
     enabled(world, request)?;
     match (request.row.pace, request.row.category()) {
@@ -44,7 +44,7 @@ pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault>
     }
 }
 
-/// A command that came to the wrong part of the simulator.
+/// A command in the wrong module of the simulator.
 pub(super) fn not_here(request: &Request) -> Fault {
     Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not know {}", request.row.id))
 }
@@ -53,7 +53,7 @@ fn done((): ()) -> Work {
     Work::Done(Values::default())
 }
 
-/// Whether commands are taken at all (chapter 2, 3).
+/// Whether commands are accepted at all (chapter 2, 3).
 fn enabled(world: &World, request: &Request) -> Result<(), Fault> {
     if !world.switches.inputs {
         let why = "a safety setting disables the dedicated inputs";

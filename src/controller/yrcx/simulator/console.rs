@@ -1,4 +1,4 @@
-//! What somebody at the machine can do: one line, one action.
+//! Console commands of an operator at the machine.
 
 use super::alarms::{AlarmSource, Fault, NOT_AUTO};
 use super::geometry::whole;
@@ -9,7 +9,7 @@ use super::world::{Mode, World};
 use crate::simulator::console::{self, on_off, unknown};
 use crate::yrcx::alarm::Alarm;
 
-/// The lines there are, as `help` shows them.
+/// Lines of `help`.
 const HELP: &[(&str, &str)] = &[
     ("estop on|off", "press or release the emergency stop"),
     ("mode auto|manual", "turn the mode key"),
@@ -25,7 +25,6 @@ const HELP: &[(&str, &str)] = &[
     ("journal", "list the images that masters showed since the last `journal`"),
 ];
 
-/// Carries out a line; the answer says what is now.
 pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     let words: Vec<&str> = line.split_whitespace().collect();
     match words.as_slice() {
@@ -85,7 +84,7 @@ fn set_port(world: &mut World, text: &str) -> Result<String, String> {
     Ok(format!("{}{}() is {byte}", PORT_NAMES[port.kind], port.port))
 }
 
-/// `R1A3`.
+/// Parses `R1A3`.
 fn find_axis<'a>(world: &'a mut World, text: &str) -> Result<&'a mut Axis, String> {
     let numbers = text.strip_prefix('R').and_then(|rest| rest.split_once('A'));
     let index = |digits: &str| digits.parse::<usize>().ok()?.checked_sub(1);
@@ -109,7 +108,7 @@ fn summary(world: &World) -> String {
     console::summary(&[mode, power], optional) + &alarms.collect::<String>()
 }
 
-/// The summary, then robots and tasks.
+/// Summary, robots and tasks.
 fn state(world: &World) -> Vec<(String, String)> {
     let mut rows = vec![("now".to_owned(), summary(world))];
     for (number, robot) in world.robots.iter().enumerate() {

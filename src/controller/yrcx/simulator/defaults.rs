@@ -1,6 +1,6 @@
-//! What a fresh controller has in it: four robots, and enough to carry out every worked example of the manual.
+//! Content of a new controller: four robots, and the data for every worked example of the manual.
 
-/// In the form of a start state.
+/// As a start state.
 pub(super) const STOCK: &str = r#"
 [[robot]]                       # X, Y, Z, R
 [[robot]]                       # two arms, height, rotation
@@ -80,14 +80,14 @@ number = 2
 program = 2
 "#;
 
-/// An axis where the start state says nothing, by its place in a robot.
+/// Default of an axis, by its index in a robot.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AxisDefault {
-    /// Pulses in a mm or a degree.
+    /// Pulses per mm or degree.
     pub(super) per_unit: f64,
-    /// Soft limits in pulses, both ways from 0.
+    /// Soft limits in pulses, symmetric about 0.
     pub(super) limit: i32,
-    /// mm or degrees a second.
+    /// mm or degrees per second.
     pub(super) speed: f64,
 }
 
@@ -105,10 +105,10 @@ pub(super) const CARTESIAN: [AxisDefault; 4] = [
 /// Axes of a SCARA.
 pub(super) const SCARA: [AxisDefault; 4] =
     [axis(200.0, 26_000, 360.0), axis(200.0, 29_000, 360.0), axis(1000.0, 200_000, 500.0), axis(100.0, 36_000, 720.0)];
-/// Lengths of the arms of a SCARA in mm.
+/// Arm lengths of a SCARA in mm.
 pub(super) const ARMS: [f64; 2] = [225.0, 175.0];
 
-/// Parameters of an axis (4.4.2).
+/// Axis parameters (4.4.2).
 pub(super) const PARAMETERS: [(u16, i32); 12] = [
     (257, 100),
     (258, 100),
@@ -126,5 +126,5 @@ pub(super) const PARAMETERS: [(u16, i32); 12] = [
 
 /// Words of 4.7.1: V1.08 R0048, V1.001, V1.01 four times.
 pub(super) const VERSIONS: [u16; 7] = [0x0108, 48, 0x1001, 0x0101, 0x0101, 0x0101, 0x0101];
-/// The slots of controller 1: EtherNet/IP, and digital inputs and outputs (4.7.15).
+/// Slots of controller 1: EtherNet/IP, digital inputs and outputs (4.7.15).
 pub(super) const SLOTS: [u16; 4] = [0x0401, 0x0101, 0x0000, 0x0000];

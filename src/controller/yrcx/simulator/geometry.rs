@@ -1,17 +1,17 @@
-//! Where axes put the tool, and back. Exact both ways, so that a target in mm is read back as it was commanded.
+//! Forward and inverse kinematics. Both are exact, so that a target in mm is reported as it was commanded.
 
 /// Pulses, axis positions, or X, Y, Z in mm with R in degrees.
 pub(super) type Four = [f64; 4];
 
-/// Steps of the protocol in a mm or a degree.
+/// Protocol steps per mm or degree.
 pub(super) const STEPS: f64 = 1000.0;
 
-/// How the axes stand to each other.
+/// Kinematics of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     /// Axes 1 to 4 are X, Y, Z, R.
     Cartesian,
-    /// Two arms that turn about the vertical, a height, a rotation.
+    /// Two arms with vertical axes, a height, a rotation.
     Scara {
         /// Length of the first arm in mm.
         first: f64,
@@ -20,7 +20,7 @@ pub(super) enum Kind {
     },
 }
 
-/// To which side a SCARA bends its arms.
+/// Arm side of a SCARA.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arm {
     Right,
@@ -28,7 +28,7 @@ pub(super) enum Arm {
 }
 
 impl Arm {
-    /// 0 right, 1 left (4.2.19).
+    /// From the code of 4.2.19: 0 right, 1 left.
     pub(super) fn from_code(code: i32) -> Self {
         if code == 1 { Self::Left } else { Self::Right }
     }
@@ -37,7 +37,7 @@ impl Arm {
         i32::from(self == Self::Left)
     }
 
-    /// 1 right, 2 left, else none: the other coding (4.2.1, 4.3.1).
+    /// From a hand system: 1 right, 2 left, otherwise none. A different code (4.2.1, 4.3.1).
     pub(super) fn of_hand_system(code: i32) -> Option<Self> {
         match code {
             1 => Some(Self::Right),
@@ -51,28 +51,28 @@ impl Arm {
     }
 }
 
-/// A robot's geometry with the hand it has.
+/// Kinematics of a robot with its hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Geometry {
     pub(super) kind: Kind,
-    /// Pulses in a mm or a degree, by axis.
+    /// Pulses per mm or degree, by axis.
     pub(super) per_unit: Four,
-    /// Data of the hand (4.3.5).
+    /// Hand data (4.3.5).
     pub(super) hand: Option<[i32; 4]>,
 }
 
 impl Geometry {
-    /// Axis positions in mm or degrees.
+    /// Converts pulses to mm or degrees.
     pub(super) fn units(&self, pulses: &Four) -> Four {
         std::array::from_fn(|axis| pulses[axis] / self.per_unit[axis])
     }
 
-    /// Pulses of axis positions.
+    /// Converts mm or degrees to pulses.
     pub(super) fn of_units(&self, units: &Four) -> Four {
         std::array::from_fn(|axis| units[axis] * self.per_unit[axis])
     }
 
-    /// Where the tool is.
+    /// Tool position.
     pub(super) fn pose(&self, pulses: &Four) -> Four {
         let [one, two, height, last] = self.units(pulses);
         match self.kind {
@@ -90,7 +90,7 @@ impl Geometry {
         }
     }
 
-    /// Pulses that put the tool there; `None` if nothing does.
+    /// Pulses for a tool position; `None` if it cannot be reached.
     pub(super) fn pulses(&self, pose: &Four, arm: Arm) -> Option<Four> {
         let turn = pose[3];
         let tool = self.tool(turn);
@@ -107,7 +107,7 @@ impl Geometry {
         Some(self.of_units(&[one, two, height, turn - one - two]))
     }
 
-    /// The hand system of a position; a Cartesian robot has none.
+    /// Arm side at a position; `None` for a Cartesian robot.
     pub(super) fn arm(&self, pulses: &Four) -> Option<Arm> {
         match self.kind {
             Kind::Cartesian => None,
@@ -118,8 +118,8 @@ impl Geometry {
         }
     }
 
-    /// Angle and length of the second arm with a hand that is not on the R axis: data 1 is an offset in pulses, data 2 a
-    /// difference of length.
+    /// Angle and length of the second arm with a hand that is not on the R axis: data 1 is an offset in pulses, data 2
+    /// a difference in length.
     fn second_arm(&self, angle: f64) -> (f64, f64) {
         match (self.kind, self.hand) {
             (Kind::Scara { second, .. }, Some([offset, longer, _, 0])) => {
@@ -130,7 +130,7 @@ impl Geometry {
         }
     }
 
-    /// Where the hand's end is from its mount, with the R axis at `r`. Data 4 says whether it turns with that axis.
+    /// Offset of the tool from its mount, with the R axis at `r`. Data 4: whether it rotates with that axis.
     fn tool(&self, r: f64) -> [f64; 3] {
         let Some([one, two, three, on_r]) = self.hand else { return [0.0; 3] };
         let height = f64::from(three) / STEPS;
@@ -144,7 +144,7 @@ impl Geometry {
     }
 }
 
-/// An angle as -180 to 180 degrees.
+/// Normalizes an angle to -180 to 180 degrees.
 fn half_turns(angle: f64) -> f64 {
     if angle > 180.0 {
         angle - 360.0
@@ -160,27 +160,27 @@ fn turned(x: f64, y: f64, degrees: f64) -> (f64, f64) {
     (x * cos - y * sin, x * sin + y * cos)
 }
 
-/// Coordinates of a shift, seen from the robot.
+/// Converts coordinates of a shift to the robot.
 pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = turned(pose[0], pose[1], r);
     [turned_x + x, turned_y + y, pose[2] + z, pose[3] + r]
 }
 
-/// Coordinates of the robot, seen from a shift.
+/// Converts coordinates of the robot to a shift.
 pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = turned(pose[0] - x, pose[1] - y, -r);
     [turned_x, turned_y, pose[2] - z, pose[3] - r]
 }
 
-/// A pose that goes `by` along the axes of the tool, which turn with R.
+/// Moves a pose by `by` in tool coordinates, which rotate with R.
 pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
     let (x, y) = turned(by[0], by[1], pose[3]);
     [pose[0] + x, pose[1] + y, pose[2] + by[2], pose[3] + by[3]]
 }
 
-/// The nearest whole number that fits.
+/// Rounds to the nearest integer in range.
 #[expect(clippy::cast_possible_truncation, reason = "a number out of range becomes the nearest one within")]
 pub(super) fn whole(number: f64) -> i32 {
     number.round() as i32

@@ -1,11 +1,11 @@
-//! The record of what masters showed, for tests and for whoever asks who commands the controller.
+//! Journal of the images of masters, for tests and diagnosis.
 
 use crate::yrcx::image::{COMMAND_WORDS, Image};
 
-/// Entries that are kept.
+/// Limit of entries.
 const MOST: usize = 10_000;
 
-/// What masters showed since the record was read last.
+/// Entries since the last read.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Journal {
     entries: Vec<String>,
@@ -13,7 +13,7 @@ pub(super) struct Journal {
 }
 
 impl Journal {
-    /// Notes that a master shows a new image, or that the link is gone.
+    /// Records a changed image, or the loss of the link.
     pub(super) fn note(&mut self, image: Option<&Image>) {
         if self.entries.len() >= MOST {
             self.omitted += 1;
@@ -28,7 +28,7 @@ impl Journal {
         ));
     }
 
-    /// The entries, a line each, below their number; they are forgotten.
+    /// Removes and returns all entries: their number, then one per line.
     pub(super) fn take(&mut self) -> String {
         let Self { entries, omitted } = std::mem::take(self);
         let more = if omitted == 0 { String::new() } else { format!(", {omitted} more omitted") };
@@ -41,7 +41,7 @@ impl Journal {
     }
 }
 
-/// Words up to the last one that is not 0, at least one.
+/// Words up to the last nonzero one, at least one.
 fn words(words: &[u16]) -> String {
     let used = words.iter().rposition(|word| *word != 0).unwrap_or_default();
     words.iter().take(used + 1).map(|word| format!("{word:04X}")).collect::<Vec<_>>().join(",")

@@ -1,4 +1,4 @@
-//! What the controller stores: points, comments, pallets, shifts, hands, static variables, ports.
+//! Memory of the controller: points, comments, pallets, shifts, hands, static variables, ports.
 
 use std::collections::BTreeMap;
 
@@ -6,26 +6,22 @@ use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT
 use super::geometry::{Four, STEPS, whole};
 use super::robot::AXES;
 
-/// Points there are.
 pub(super) const POINTS: u16 = 30_000;
-/// Pallets and shifts there are.
+/// Number of pallets and of shifts.
 pub(super) const SHIFTS: usize = 40;
-/// Hands there are.
 pub(super) const HANDS: usize = 32;
 /// Variables of each kind.
 const VARIABLES: usize = 32;
-/// The number of SGR0 (4.4.1).
+/// Number of SGR0 (4.4.1).
 const FIRST_REAL: usize = 256;
-/// Ports of a type at most, and types (4.5.1).
+/// Maximum ports per type, and number of types (4.5.1).
 const PORTS: usize = 24;
 const PORT_TYPES: usize = 7;
-/// Port types of the image.
+/// Port types in the image.
 pub(super) const SI: usize = 5;
 pub(super) const SO: usize = 6;
-/// Names of the port types, by code.
 pub(super) const PORT_NAMES: [&str; PORT_TYPES] = ["DI", "DO", "MO", "LO", "TO", "SI", "SO"];
 
-/// What a point is measured in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PointUnit {
     Pulse,
@@ -42,7 +38,7 @@ impl PointUnit {
     }
 }
 
-/// A point as defined.
+/// A defined point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Point {
     pub(super) unit: PointUnit,
@@ -53,7 +49,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// In pulses, or in mm and degrees.
+    /// Converts to pulses, or to mm and degrees.
     pub(super) fn numbers(&self) -> Four {
         match self.unit {
             PointUnit::Pulse => self.values.map(f64::from),
@@ -62,21 +58,21 @@ impl Point {
     }
 }
 
-/// A pallet; its five points are those from `first` on.
+/// A pallet; its five points begin at `first`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pallet {
     pub(super) counts: [i32; 3],
     pub(super) first: u16,
 }
 
-/// A hand and the robot that has it, counted from 0.
+/// A hand and its robot, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Hand {
     pub(super) owner: usize,
     pub(super) data: [i32; 4],
 }
 
-/// A number of a variable.
+/// Value of a variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
     Whole(i32),
@@ -92,7 +88,7 @@ impl Number {
     }
 }
 
-/// The four operations, and plain assignment.
+/// Arithmetic operations and assignment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Operation {
     Assign,
@@ -102,7 +98,7 @@ pub(super) enum Operation {
     Divide,
 }
 
-/// A port, or a signal of it.
+/// A port, or a bit of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PortRef {
     pub(super) kind: usize,
@@ -110,7 +106,6 @@ pub(super) struct PortRef {
     pub(super) bit: Option<u8>,
 }
 
-/// All of it.
 #[derive(Debug, Clone)]
 pub(super) struct Memory {
     points: BTreeMap<u16, Point>,
@@ -139,20 +134,19 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// A point that is defined.
+    /// A defined point.
     pub(super) fn point(&self, number: usize) -> Result<Point, Fault> {
         let key = u16::try_from(number).ok();
         key.and_then(|key| self.points.get(&key)).copied().ok_or_else(|| no_point(number))
     }
 
-    /// Defines a point.
     pub(super) fn set_point(&mut self, number: usize, point: Point) {
         if let Ok(number) = u16::try_from(number) {
             self.points.insert(number, point);
         }
     }
 
-    /// Adds a point to another one, or subtracts it (4.4.3).
+    /// Adds a point to another, or subtracts it (4.4.3).
     pub(super) fn combine_points(&mut self, number: usize, other: usize, sign: i64) -> Result<(), Fault> {
         let (mut point, other) = (self.point(number)?, self.point(other)?);
         if point.unit != other.unit {
@@ -165,7 +159,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Sets one element of a point, 0 for the first (4.4.4).
+    /// Sets an element of a point, counted from 0 (4.4.4).
     pub(super) fn set_element(&mut self, number: usize, unit: PointUnit, at: usize, value: i32) -> Result<(), Fault> {
         let mut point = self.point(number)?;
         if point.unit != unit {
@@ -177,13 +171,13 @@ impl Memory {
         Ok(())
     }
 
-    /// A pallet that is defined.
+    /// A defined pallet.
     pub(super) fn pallet(&self, number: usize) -> Result<Pallet, Fault> {
         let pallet = self.pallets.get(number).copied().flatten();
         pallet.ok_or_else(|| Fault::new(NO_PALLET, AlarmSource::Controller, format!("pallet {number} is not defined")))
     }
 
-    /// A place on a pallet, 1 the first: X counts fastest, then Y, then Z.
+    /// A position on a pallet, from 1: X counts fastest, then Y, then Z.
     pub(super) fn pallet_point(&self, number: usize, place: i32) -> Result<Point, Fault> {
         let pallet = self.pallet(number)?;
         let [nx, ny, nz] = pallet.counts;
@@ -209,7 +203,7 @@ impl Memory {
         Ok(Point { values, ..origin })
     }
 
-    /// A variable by its number: SGI0 is 0, SGR0 is 256.
+    /// Value of a variable: SGI0 is 0, SGR0 is 256.
     pub(super) fn variable(&self, number: usize) -> Number {
         match number.checked_sub(FIRST_REAL) {
             Some(real) => Number::Real(self.real.get(real).copied().unwrap_or_default()),
@@ -217,13 +211,13 @@ impl Memory {
         }
     }
 
-    /// Changes a variable by a number.
+    /// Applies an operation to a variable.
     pub(super) fn compute(&mut self, number: usize, operation: Operation, operand: Number) -> Result<(), Fault> {
         let result = calculate(operation, self.variable(number), operand)?;
         self.assign(number, result)
     }
 
-    /// Puts a number into a variable; whole ones lose what comes after the point.
+    /// Assigns a value; an integer variable loses the decimals.
     pub(super) fn assign(&mut self, number: usize, value: f64) -> Result<(), Fault> {
         if let Some(real) = number.checked_sub(FIRST_REAL) {
             let value = single(value);
@@ -237,26 +231,24 @@ impl Memory {
         Ok(())
     }
 
-    /// Eight signals of a port; its number has two octal digits.
+    /// Eight bits of a port, by its octal number.
     pub(super) fn port(&self, kind: usize, number: usize) -> u8 {
         self.ports.get(kind).and_then(|ports| ports.get(index(number))).copied().unwrap_or_default()
     }
 
-    /// Sets eight signals of a port.
     pub(super) fn set_port(&mut self, kind: usize, number: usize, value: u8) {
         if let Some(port) = self.ports.get_mut(kind).and_then(|ports| ports.get_mut(index(number))) {
             *port = value;
         }
     }
 
-    /// Sets one signal of a port.
     pub(super) fn set_bit(&mut self, kind: usize, number: usize, bit: u8, on: bool) {
         let mask = 1_u8.checked_shl(bit.into()).unwrap_or_default();
         let old = self.port(kind, number);
         self.set_port(kind, number, if on { old | mask } else { old & !mask });
     }
 
-    /// Sets what a program or a line names: a port or one of its signals.
+    /// Sets a port, or a bit of it.
     pub(super) fn set_output(&mut self, port: PortRef, value: u8) {
         match port.bit {
             Some(bit) => self.set_bit(port.kind, port.port, bit, value == 1),
@@ -265,7 +257,6 @@ impl Memory {
     }
 }
 
-/// Two numbers and what to do with them.
 pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> Result<f64, Fault> {
     let (a, b) = (first.wide(), second.wide());
     match operation {
@@ -278,17 +269,16 @@ pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> 
     }
 }
 
-/// Ports 7 and 10 follow each other.
+/// Port 10 follows port 7.
 fn index(number: usize) -> usize {
     number / 10 * 8 + number % 10
 }
 
-/// The number of a port type by its name.
 pub(super) fn port_kind(name: &str) -> Option<usize> {
     PORT_NAMES.iter().position(|known| *known == name)
 }
 
-/// Whether there is such a port (4.5.1).
+/// Whether the port exists (4.5.1).
 pub(super) fn is_port(kind: usize, number: usize) -> bool {
     match kind {
         3 => number <= 1,

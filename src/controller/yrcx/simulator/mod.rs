@@ -1,48 +1,51 @@
-//! A simulated YRCX behind its fieldbus: images in, images out, in scans of 5 ms, without link and without clock.
+//! Simulated YRCX with its fieldbus image: images in and out, scans of 5 ms, without link and without clock.
 //!
-//! An adapter of any bus hands it what the master shows and the time, and sends what it shows. It shares the table of
-//! commands with the client, but reads and checks words by itself, and refuses all that must not be sent. `why` on the
-//! console tells what was wrong with the last thing that was refused.
+//! A fieldbus adapter passes the images of the master and the time, and sends the images of the controller. The
+//! simulator shares the command table with the client, but decodes and checks words independently, and refuses
+//! everything that must not be sent. `why` on the console shows the reason of the last refusal.
 //!
-//! | module | holds |
+//! | module | content |
 //! |---|---|
-//! | `start`, `defaults` | the start state, from TOML; what a fresh controller has in it |
-//! | `world` | switches, power, what may be done when, the passing of time |
-//! | `alarms` | active alarms, the history, the numbers |
-//! | `signals`, `remote`, `request` | dedicated signals, the handshake, the words of a command |
-//! | `commands`, `motions`, `operate`, `records`, `reads` | what commands do |
+//! | `start`, `defaults` | start state from TOML; content of a new controller |
+//! | `world` | switches, power, permissions, time |
+//! | `alarms` | active alarms, history, numbers |
+//! | `signals`, `remote`, `request` | dedicated signals, command handshake, command words |
+//! | `commands`, `motions`, `operate`, `records`, `reads` | effects of commands |
 //! | `memory` | points, pallets, shifts, hands, variables, ports |
-//! | `robot`, `geometry`, `moves`, `motion` | axes, where they put the tool, targets and ways, ramps |
-//! | `program`, `task` | programs in a small part of the language, and the tasks that run them |
-//! | `console` | what somebody at the machine does |
-//! | `journal` | what masters showed |
+//! | `robot`, `geometry`, `moves`, `motion` | axes, kinematics, targets and paths, ramps |
+//! | `program`, `task` | programs in a subset of the language, and their tasks |
+//! | `console` | operator actions |
+//! | `journal` | images of masters |
 //!
-//! The manual tells what is sent, and less of what is done. Where it is silent, this was chosen:
+//! The manual specifies the protocol, and less of the behaviour. These are the assumptions:
 //!
-//! - Words that the manual does not allow are 4.202, whatever is wrong with them. Where no source names an alarm, the
-//!   group is right and the category is 900 or above.
-//! - A quick command shows its end in the scan that takes it; with `run_scans`, the run status for some scans before. A
-//!   command that the master takes back is carried out to its end, with the run status; then the controller is ready, once
-//!   WI0 is 0. A command without a status reset before it is not taken.
-//! - While the link is gone all inputs are off, the alarm is that of the fieldbus (12.551 on EtherNet/IP), and everything
-//!   has stopped without power. What ran has ended abnormally, and that is still shown to whoever comes next. Before the
-//!   first image the inputs rest.
-//! - An edge of a dedicated input less than 100 ms after another one is ignored, but for SI(00) and SI(06) going off.
-//! - SI(06) off brings commands and programs to rest and ends them with 12.400; so does it keep any from moving.
-//! - Emergency stop and serious alarms take the power away at once. SI(01) and motor power come on after the alarm reset.
-//! - Under the programming box only references are taken; without dedicated inputs (a safety setting) no command at all.
-//!   SI(00) and SI(06) act nonetheless.
-//! - Speeds: with a percentage the automatic speed counts as well, 0.01 % and mm/s stand alone, jogs have the manual speed;
-//!   in manual mode that takes the place of the automatic one. The tool's greatest speed is 1000 mm/s.
-//! - An arch goes up, across and down, one after the other; its start and end positions do not round it. A way that
-//!   leaves soft limits is refused before it begins; a jog ends at them with 2.334. Only pushes meet obstacles.
-//! - A push without force or time takes the parameters PSHFRC and PSHTIME; PSHSPD reduces its speed, the others are stored.
-//! - MOVEI and DRIVEI that were stopped go on to their target when the same words come next (`movei_start`).
-//! - A Cartesian robot has no hand system. A shift turns about its R. A hand is as in 4.3.5; before one is selected, none.
-//! - A program is registered in one task. It runs a line a scan, stops by SI(06) at its line and goes on there. An error
-//!   stops all of them. Programs that ended are at their first line.
-//! - A point that was never defined is an alarm; a comment or an alarm that is not there is empty, a robot that is not
-//!   there has no axes. Variables that would overflow stay as they were.
+//! - Words that the manual does not allow cause 4.202, whatever the error. If no source names an alarm, the group is
+//!   right and the category is 900 or above.
+//! - A quick command shows its end in the scan that takes it; with `run_scans`, it shows the running status for some
+//!   scans before. A command that the master removes is carried out to its end, with the running status. Then the
+//!   controller is ready once WI0 is 0. A command without a status reset before it is ignored.
+//! - While the link is lost all inputs are off, the alarm is that of the fieldbus (12.551 on EtherNet/IP), and
+//!   everything has stopped without power. A running command has ended abnormally, and the next master sees that.
+//!   Before the first image the inputs have their resting state.
+//! - An edge of a dedicated input less than 100 ms after another one is ignored, except SI(00) and SI(06) going off.
+//! - SI(06) off decelerates commands and programs and ends them with 12.400. It also prevents new motion.
+//! - Emergency stop and serious alarms switch power off at once. SI(01) and motor power work again after the alarm
+//!   reset.
+//! - Under the programming box only references are accepted; without dedicated inputs (a safety setting) no command
+//!   at all. SI(00) and SI(06) still work.
+//! - Speeds: a percentage is multiplied by the automatic speed; 0.01 % and mm/s are not. Jogs have the manual speed,
+//!   which also replaces the automatic one in manual mode. The maximum tool speed is 1000 mm/s.
+//! - An arch moves up, across and down in sequence; its start and end positions do not round it. A path that leaves
+//!   the soft limits is refused before it begins; a jog ends at them with 2.334. Only pushes meet obstacles.
+//! - A push without force or time uses the parameters PSHFRC and PSHTIME; PSHSPD reduces its speed. The others are
+//!   only stored.
+//! - After a stop, MOVEI and DRIVEI continue to their target if the same words follow (`movei_start`).
+//! - A Cartesian robot has no hand system. A shift rotates by its R. A hand is as in 4.3.5; initially none is
+//!   selected.
+//! - A program is registered in one task. It runs one line per scan, stops with SI(06) at its line and continues
+//!   there. An error stops all programs. A program that has ended is at its first line.
+//! - An undefined point causes an alarm. A missing comment or alarm is empty, and a missing robot has no axes. A
+//!   variable that would overflow keeps its value.
 
 mod alarms;
 mod commands;
@@ -79,35 +82,35 @@ use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
 
-/// Scans of one call; a longer gap passes at rest.
+/// Limit of scans per call; the remaining time is one scan.
 const MAX_SCANS: u32 = 1_000_000;
 
-/// What the master does.
+/// Event of the master.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Master {
     Shows(Image),
     Gone,
 }
 
-/// A controller.
+/// A simulated controller.
 #[derive(Debug, Clone)]
 pub struct Simulator {
     world: World,
     remote: Remote,
     dedicated: Dedicated,
     journal: Journal,
-    /// What the controller shows.
+    /// Output image.
     shown: Image,
-    /// What is new about the master, for the next scan.
+    /// Master event for the next scan.
     incoming: Option<Master>,
-    /// Since when the next scan has something new to look at.
+    /// Time of the first unhandled change.
     touched: Option<Now>,
-    /// The last scan.
+    /// Time of the last scan.
     scanned: Option<Now>,
 }
 
 impl Simulator {
-    /// A controller in its start state. No master has been there yet.
+    /// A controller in its start state, without a master so far.
     pub fn new(start: Start) -> Self {
         let mut simulator = Self {
             world: start.world,
@@ -123,14 +126,14 @@ impl Simulator {
         simulator
     }
 
-    /// With the alarm that a lost link is on its fieldbus; else it is that of EtherNet/IP.
+    /// Sets the alarm of a lost link for another fieldbus; the default is that of EtherNet/IP.
     #[must_use]
     pub fn with_link_alarm(mut self, alarm: Alarm) -> Self {
         self.world.link_alarm = alarm;
         self
     }
 
-    /// Takes what the master shows from `now` on; `None`: the link is gone, which is an alarm.
+    /// Takes the image of the master from `now` on. `None`: the link is lost, which is an alarm.
     pub fn input(&mut self, now: Now, image: Option<&Image>) {
         self.advance(now);
         let known = match self.world.link {
@@ -146,12 +149,12 @@ impl Simulator {
         }
     }
 
-    /// What the controller shows since its last scan.
+    /// Output image of the last scan.
     pub fn output(&self) -> &Image {
         &self.shown
     }
 
-    /// The next scan in which something may change, if nothing comes from outside.
+    /// Time of the next scan with a possible change, without external input.
     pub fn wake(&self) -> Option<Now> {
         let due = [self.touched, self.world.due(), self.remote.due(&self.world)].into_iter().flatten().min()?;
         let next = next_scan(due);
@@ -159,7 +162,7 @@ impl Simulator {
         Some(next.max(earliest))
     }
 
-    /// Carries out every scan up to `now`, which never runs back.
+    /// Runs all scans up to `now`, which never runs backwards.
     pub fn advance(&mut self, now: Now) {
         for _ in 0..MAX_SCANS {
             let Some(at) = self.wake().filter(|at| *at <= now) else { return };
@@ -168,14 +171,14 @@ impl Simulator {
         self.scan(now.max(self.world.now));
     }
 
-    /// Carries out one line of the console: `estop on`, `box on`, `state`. What to print, or what is wrong.
+    /// Executes a console line: `estop on`, `box on`, `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         if line.trim() == "journal" {
             return Ok(self.journal.take());
         }
         self.touched.get_or_insert(now);
-        // Between scans as well, robots are where they are.
+        // Robot positions are also exact between scans.
         self.world.move_on(now.max(self.world.now));
         console::execute(&mut self.world, line)
     }
@@ -198,7 +201,7 @@ impl Simulator {
     }
 }
 
-/// The scan that sees what happens at this moment.
+/// The first scan at or after a time.
 fn next_scan(at: Now) -> Now {
     let (at, scan) = (at.as_nanos(), SCAN.as_nanos());
     let nanos = at.div_ceil(scan).saturating_mul(scan);

@@ -1,4 +1,4 @@
-//! Motion over time: ramps of speed along paths, one leg after the other.
+//! Motion over time: speed ramps along consecutive path segments.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -7,27 +7,27 @@ use super::alarms::Fault;
 use super::geometry::{Arm, Four, Geometry};
 use crate::Now;
 
-/// Seconds in which an axis comes to full speed with a coefficient of 100 %.
+/// Seconds to full speed with a coefficient of 100 %.
 const ACCELERATION_TIME: f64 = 0.2;
-/// Seconds in which it comes to rest from there when it is stopped.
+/// Seconds from full speed to rest in a stop.
 const STOP_TIME: f64 = 0.1;
 
-/// Speed over time. Ways and speeds are in seconds at full speed and in shares of it.
+/// Speed over time. Distances are in seconds at full speed, speeds are shares of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Profile {
-    /// Up, along, down.
+    /// Acceleration, constant speed, deceleration.
     Ramp { way: f64, speed: f64, up: f64, down: f64 },
-    /// From a place and a speed to rest.
+    /// Deceleration to rest from a position and a speed.
     Brake { from: f64, speed: f64 },
-    /// No way at all.
+    /// A pause.
     Rest { seconds: f64 },
 }
 
 impl Profile {
-    /// `share` of full speed, accelerations in shares of what is possible.
+    /// `share` of full speed; accelerations as shares of the maximum.
     fn ramp(way: f64, share: f64, accel: f64, decel: f64) -> Self {
         let (up, down) = (accel / ACCELERATION_TIME, decel / ACCELERATION_TIME);
-        // Short ways do not reach the speed.
+        // A short distance does not reach the speed.
         let speed = share.min((2.0 * way * up * down / (up + down)).sqrt());
         if way > 0.0 && speed > 0.0 { Self::Ramp { way, speed, up, down } } else { Self::Rest { seconds: 0.0 } }
     }
@@ -40,7 +40,7 @@ impl Profile {
         }
     }
 
-    /// Way and speed after `seconds`.
+    /// Distance and speed after `seconds`.
     fn at(&self, seconds: f64) -> (f64, f64) {
         match *self {
             Self::Ramp { way, speed, up, down } => {
@@ -61,19 +61,19 @@ impl Profile {
     }
 }
 
-/// A way from one place to another.
+/// A path between two positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
-    /// All axes at the same time, each by its own way.
+    /// Joint interpolation: all axes at the same time.
     Joint { from: Four, to: Four },
-    /// A line of the tool.
+    /// A straight line of the tool.
     Line { from: Four, to: Four, arm: Arm },
-    /// An arc of the tool about `centre`, from there along `first` towards `second`.
+    /// An arc of the tool about `centre`, from `first` towards `second`.
     Arc { from: Four, to: Four, centre: [f64; 3], first: [f64; 3], second: [f64; 3], angle: f64, arm: Arm },
 }
 
 impl Path {
-    /// Pulses at a share of the way; `None` where the robot cannot be.
+    /// Pulses at a share of the path; `None` if it cannot be reached.
     pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<Four> {
         let between = |from: &Four, to: &Four| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
         match self {
@@ -88,7 +88,7 @@ impl Path {
         }
     }
 
-    /// The arc over `via`; `None` if the three places are on a line.
+    /// An arc through `via`; `None` if the three points are on a line.
     pub(super) fn arc(from: &Four, via: &Four, to: &Four, arm: Arm) -> Option<(Self, f64)> {
         let minus = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|at| a[at] - b[at]) };
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -117,7 +117,7 @@ impl Path {
     }
 }
 
-/// Who moves a robot.
+/// Originator of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
     /// The remote command.
@@ -128,18 +128,17 @@ pub(super) enum Owner {
     Task(u8),
 }
 
-/// How a motion ended.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum End {
-    /// At its target.
+    /// Target reached.
     Arrived,
-    /// Pushing for as long as asked.
+    /// Push for the requested time.
     Pushed,
-    /// Before its end, or at a limit.
+    /// Early end, or end at a limit.
     Stopped(Fault),
 }
 
-/// One way with its speed.
+/// A path segment with its speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Leg {
     path: Path,
@@ -147,12 +146,12 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// A way of `way` seconds at full speed, at a share of it.
+    /// A path of `way` seconds at full speed, with a share of that speed.
     pub(super) fn new(path: Path, way: f64, share: f64, accel: f64, decel: f64) -> Self {
         Self { path, profile: Profile::ramp(way, share, accel, decel) }
     }
 
-    /// Staying at a place.
+    /// A pause at a position.
     pub(super) fn rest(at: Four, time: Duration) -> Self {
         Self { path: Path::Joint { from: at, to: at }, profile: Profile::Rest { seconds: time.as_secs_f64() } }
     }
@@ -161,7 +160,7 @@ impl Leg {
         Duration::try_from_secs_f64(self.profile.seconds()).unwrap_or(Duration::MAX)
     }
 
-    /// The share of the way after a time.
+    /// Completed share of the path.
     fn share(&self, way: f64) -> f64 {
         match self.profile {
             Profile::Ramp { way: all, .. } => (way / all).clamp(0.0, 1.0),
@@ -170,25 +169,25 @@ impl Leg {
     }
 }
 
-/// A motion under way.
+/// A running motion.
 #[derive(Debug, Clone)]
 pub(super) struct Motion {
     pub(super) owner: Owner,
     geometry: Geometry,
     legs: VecDeque<Leg>,
     began: Now,
-    /// Why it is being stopped, and the way to where it began to brake.
+    /// Reason of the stop, and deceleration from the position of its start.
     stop: Option<(Fault, Profile)>,
     end: End,
 }
 
 impl Motion {
-    /// Begins now and ends as `end` says.
+    /// Starts now; ends with `end`.
     pub(super) fn new(owner: Owner, geometry: Geometry, legs: Vec<Leg>, end: End, now: Now) -> Self {
         Self { owner, geometry, legs: legs.into(), began: now, stop: None, end }
     }
 
-    /// When a leg ends.
+    /// End of the current segment.
     pub(super) fn due(&self) -> Now {
         let time = match (&self.stop, self.legs.front()) {
             (Some((_, brake)), _) => Duration::from_secs_f64(brake.seconds()),
@@ -198,7 +197,7 @@ impl Motion {
         self.began.saturating_add(time)
     }
 
-    /// Begins to brake. The first reason counts.
+    /// Starts to decelerate. Only the first reason counts.
     pub(super) fn stop(&mut self, now: Now, fault: Fault) {
         let Some(leg) = self.legs.front() else { return };
         if self.stop.is_none() {
@@ -209,7 +208,7 @@ impl Motion {
         }
     }
 
-    /// Where it is now; and how it ended, if it did.
+    /// Advances to a time; returns the position and the end, if reached.
     pub(super) fn advance(&mut self, now: Now) -> (Option<Four>, Option<End>) {
         let mut place = None;
         loop {
@@ -234,7 +233,7 @@ impl Motion {
         }
     }
 
-    /// By how much each axis moves in this leg; for the sign of its torque.
+    /// Distance of each axis in this segment; gives the sign of its torque.
     pub(super) fn direction(&self) -> Four {
         let ends = self
             .legs
@@ -269,9 +268,9 @@ mod tests {
             last = x;
         }
         assert_eq!(motion.advance(Duration::from_millis(1200)), (Some([1000.0, 0.0, 0.0, 0.0]), Some(End::Arrived)));
-        // A tenth of the speed, ten times the way.
+        // A tenth of the speed, ten times the distance.
         assert_eq!(to(1.0, 1.0, 0.1).due(), Duration::from_millis(10_020));
-        // Too short for the speed: up and down.
+        // Too short for full speed.
         assert!(to(1.0, 0.05, 1.0).due() < Duration::from_millis(250));
         assert_eq!(to(0.0, 0.0, 1.0).due(), Now::ZERO);
     }

@@ -1,4 +1,4 @@
-//! Remote commands that move (4.2).
+//! Motion commands (4.2).
 
 use super::alarms::Fault;
 use super::commands::{Work, not_here};
@@ -17,7 +17,6 @@ const PUSH_FORCE: u16 = 266;
 const PUSH_TIME: u16 = 267;
 const PUSH_SPEED: u16 = 270;
 
-/// Begins a motion.
 pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault> {
     let robot = request.robot();
     match request.row.command {
@@ -44,7 +43,7 @@ pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault>
     Ok(Work::Motion(vec![robot]))
 }
 
-/// Where the robot is, in the unit that the command asks for.
+/// Final position in the unit of the command.
 pub(super) fn positions(world: &World, request: &Request) -> Result<Values, Fault> {
     let robot = request.robot();
     let places = match request.int(Key::Report) {
@@ -55,7 +54,7 @@ pub(super) fn positions(world: &World, request: &Request) -> Result<Values, Faul
     Ok(Key::AXES.into_iter().zip(places.map(super::geometry::whole)).collect())
 }
 
-/// Whether the robot may begin to move, by what this command needs.
+/// Whether the robot can start this motion.
 fn ready(world: &World, request: &Request) -> Result<(), Fault> {
     let robot = request.robot();
     let axes = match request.row.command {
@@ -71,7 +70,7 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
         | Command::PushPoint
         | Command::PushMm
         | Command::PushPulse => mask(request),
-        // Axes that stay are held, too; a jog along a coordinate may take all of them.
+        // The axes that do not move must hold their position, and a jog along a coordinate may move all of them.
         _ => {
             let named = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or_default();
             world.has_axes(robot, named)?;
@@ -82,7 +81,7 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
     world.at_home(robot)
 }
 
-/// Motions from here to a target.
+/// Motion to a target.
 fn travel(world: &mut World, request: &Request) -> Result<(), Fault> {
     ready(world, request)?;
     let robot = request.robot();
@@ -99,7 +98,7 @@ fn travel(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Pulses at the end.
+/// Target in pulses.
 fn target(world: &World, request: &Request) -> Result<Four, Fault> {
     let (robot, axes) = (request.robot(), mask(request));
     let point = || world.memory.point(request.index(Key::Point));
@@ -110,7 +109,7 @@ fn target(world: &World, request: &Request) -> Result<Four, Fault> {
         Command::MoveCircular => world.point_target(robot, axes, &world.memory.point(request.index(Key::Point2))?),
         Command::MoveMm => {
             let arm = Arm::of_hand_system(request.int(Key::HandSystem));
-            // Even if only others are named, axes 1 and 2 of a SCARA go to the target position, too (4.2.1).
+            // On a SCARA, axes 1 and 2 always move to the target, even if only others are named (4.2.1).
             let along = if matches!(world.robot(robot)?.kind, Kind::Scara { .. }) { 0b0011 } else { 0 };
             world.pose_target(robot, axes | along, &mm(), arm)
         }
@@ -147,7 +146,7 @@ fn target(world: &World, request: &Request) -> Result<Four, Fault> {
     }
 }
 
-/// One axis by a way of its own.
+/// Relative motion of one axis.
 fn drive_by(world: &World, request: &Request, way: f64, unit: PointUnit) -> Result<Four, Fault> {
     let (robot, axis) = (request.robot(), axis(request));
     let per_unit = match unit {
@@ -157,7 +156,7 @@ fn drive_by(world: &World, request: &Request, way: f64, unit: PointUnit) -> Resu
     world.relative_pulses(robot, 1 << axis, &[way * per_unit; 4])
 }
 
-/// The ways to the target.
+/// Path segments to the target.
 fn legs(world: &World, request: &Request, target: &Four) -> Result<Vec<Leg>, Fault> {
     let (robot, speed) = (request.robot(), speed(request));
     match request.row.command {
@@ -185,7 +184,7 @@ fn legs(world: &World, request: &Request, target: &Four) -> Result<Vec<Leg>, Fau
     }
 }
 
-/// Towards a place; what stands in the way is pushed for the time given (4.2.23).
+/// Moves towards a position, and pushes an obstacle for the given time (4.2.23).
 fn push(world: &mut World, request: &Request) -> Result<(), Fault> {
     ready(world, request)?;
     let (number, at) = (request.robot(), axis(request));
@@ -214,7 +213,7 @@ fn push(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A share of full speed, reduced by percent.
+/// A share of full speed, reduced by a percentage.
 fn slower(share: f64, percent: i32) -> Rate {
     Rate::OfMax(super::geometry::whole(share * f64::from(percent) * 100.0).max(1))
 }
@@ -227,7 +226,7 @@ fn to_reset_position(world: &World, request: &Request) -> Result<Leg, Fault> {
     }
     let from = robot.pulses();
     let mut to = from;
-    // The next one in that direction; none away from one.
+    // The next position in that direction, also from an exact one.
     let turns = from[at] / RESET_PITCH;
     to[at] = RESET_PITCH * if sign(request) < 0.0 { (turns - 1e-9).floor() } else { (turns + 1e-9).ceil() };
     world.joint_leg(number, &from, &to, Speed { rate: Rate::Manual, ..Speed::default() })
@@ -245,7 +244,7 @@ fn origin(world: &mut World, request: &Request) -> Result<Work, Fault> {
         world.has_axes(request.robot(), 1 << at)?;
     }
     let robots = match (request.row.command, request.int(Key::Robot)) {
-        // No robot is every robot here (4.2.12).
+        // Robot 0 means all robots (4.2.12).
         (Command::OriginRobot, 0) => (0..world.robots.len()).collect(),
         _ => vec![request.robot()],
     };
@@ -281,13 +280,13 @@ fn speed(request: &Request) -> Speed {
     Speed { rate, accel: request.maybe(Key::Accel), decel: request.maybe(Key::Decel) }
 }
 
-/// The axes that a command names; all where it names none.
+/// The axes of a command; all if it names none.
 fn mask(request: &Request) -> u8 {
     let axes = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or(ALL);
     if axes == 0 { ALL } else { axes }
 }
 
-/// The one axis that a command names, counted from 0.
+/// The single axis of a command, counted from 0.
 pub(super) fn axis(request: &Request) -> usize {
     usize::try_from(mask(request).trailing_zeros()).unwrap_or_default()
 }

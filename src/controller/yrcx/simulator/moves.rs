@@ -1,4 +1,4 @@
-//! Where motions go and how fast: the targets and ways of commands and programs.
+//! Targets, paths and speeds of commands and programs.
 
 use super::alarms::{AlarmSource, Fault, NO_ABSOLUTE_RESET, NO_PATH, OUT_OF_REACH, POINT_UNIT};
 use super::geometry::{Arm, Four, Geometry, STEPS, along_tool, from_shift, to_shift};
@@ -7,43 +7,43 @@ use super::motion::{End, Leg, Motion, Owner, Path};
 use super::robot::{Axis, Method, Motor, Robot, over_limit};
 use super::world::{Mode, World};
 
-/// mm a second and degrees a second of the tool at full speed.
+/// Full tool speed in mm/s and degrees/s.
 const LINEAR_SPEED: f64 = 1000.0;
 const ROTATION_SPEED: f64 = 360.0;
-/// The share of full speed at which axes look for their origin.
+/// Share of full speed in the search for the origin.
 const ORIGIN_SHARE: f64 = 0.2;
-/// Places at which a way is looked at before it is gone.
+/// Number of points at which a path is checked.
 const SAMPLES: u32 = 64;
 /// Parameters (4.4.2).
 const ACCEL: u16 = 257;
 const DECEL: u16 = 258;
 
-/// How fast.
+/// Speed of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Speed {
     pub(super) rate: Rate,
-    /// % of what is possible; by the parameters otherwise.
+    /// Percent of the maximum; by default from the parameters.
     pub(super) accel: Option<i32>,
     pub(super) decel: Option<i32>,
 }
 
-/// By what the speed goes.
+/// Kind of speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Rate {
-    /// The program speed, reduced by the automatic one.
+    /// Program speed, multiplied by the automatic speed.
     #[default]
     Program,
-    /// 0.01 % of the greatest, reduced by nothing.
+    /// 0.01 % of the maximum.
     OfMax(i32),
-    /// %, reduced by the automatic speed.
+    /// Percent, multiplied by the automatic speed.
     Percent(i32),
-    /// mm a second.
+    /// mm/s.
     MmS(i32),
-    /// The manual speed.
+    /// Manual speed.
     Manual,
 }
 
-/// Along which axes a jog or an inch goes.
+/// Coordinate system of a jog or an inching motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Frame {
     Axes,
@@ -51,14 +51,14 @@ pub(super) enum Frame {
     Tool,
 }
 
-/// Which axes return to origin.
+/// Axes of an origin return.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Homing {
     All,
     Incremental,
     Absolute,
     Incomplete,
-    /// One, counted from 0.
+    /// One axis, counted from 0.
     Axis(usize),
 }
 
@@ -75,14 +75,14 @@ impl Homing {
 }
 
 impl World {
-    /// A robot's geometry with the hand it has selected.
+    /// Kinematics of a robot with the selected hand.
     pub(super) fn geometry(&self, number: usize) -> Result<Geometry, Fault> {
         let robot = self.robot(number)?;
         let hand = robot.hand.and_then(|hand| self.memory.hands.get(hand).copied().flatten());
         Ok(robot.geometry(hand.map(|hand| hand.data)))
     }
 
-    /// Where a robot's tool is, in its shift.
+    /// Tool position of a robot in its shift.
     pub(super) fn pose(&self, number: usize) -> Result<Four, Fault> {
         let robot = self.robot(number)?;
         Ok(to_shift(&self.shift(robot), &self.geometry(number)?.pose(&robot.pulses())))
@@ -92,7 +92,7 @@ impl World {
         self.memory.shifts.get(robot.shift).copied().unwrap_or_default()
     }
 
-    /// Pulses of a point, for these axes; the others stay.
+    /// Target of a point in pulses for these axes; the others stay.
     pub(super) fn point_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Pulse => self.pulse_target(number, axes, &point.numbers()),
@@ -100,19 +100,19 @@ impl World {
         }
     }
 
-    /// Pulses, for these axes.
+    /// Target in pulses for these axes.
     pub(super) fn pulse_target(&self, number: usize, axes: u8, pulses: &Four) -> Result<Four, Fault> {
         Ok(chosen(self.robot(number)?, axes, pulses))
     }
 
-    /// Pulses of coordinates in the shift, for these axes of it.
+    /// Target of shift coordinates in pulses; other coordinates stay.
     pub(super) fn pose_target(&self, number: usize, axes: u8, pose: &Four, arm: Option<Arm>) -> Result<Four, Fault> {
         let now = self.pose(number)?;
         let wanted = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { pose[axis] } else { now[axis] });
         self.reach(number, &wanted, arm.unwrap_or(self.robot(number)?.arm))
     }
 
-    /// Pulses of a way from here, for these axes.
+    /// Target of a relative point in pulses for these axes.
     pub(super) fn relative_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Pulse => self.relative_pulses(number, axes, &point.numbers()),
@@ -120,32 +120,32 @@ impl World {
         }
     }
 
-    /// Pulses of a way from here in pulses.
+    /// Target of a relative motion in pulses.
     pub(super) fn relative_pulses(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let now = self.robot(number)?.pulses();
         self.pulse_target(number, axes, &sum(&now, way))
     }
 
-    /// Pulses of a way from here in mm.
+    /// Target of a relative motion in mm.
     pub(super) fn relative_pose(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let arm = self.current_arm(number)?;
         self.pose_target(number, axes, &sum(&self.pose(number)?, way), Some(arm))
     }
 
-    /// Pulses of a way along the tool.
+    /// Target of a motion in tool coordinates.
     pub(super) fn tool_target(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let way = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { way[axis] } else { 0.0 });
         self.reach(number, &along_tool(&self.pose(number)?, &way), self.current_arm(number)?)
     }
 
-    /// Pulses of one axis' own position in mm or degrees.
+    /// Target of one axis in mm or degrees.
     pub(super) fn axis_target(&self, number: usize, axis: usize, units: f64) -> Result<Four, Fault> {
         self.has_axes(number, 1 << axis)?;
         let per_unit = self.geometry(number)?.per_unit[axis];
         self.pulse_target(number, 1 << axis, &[units * per_unit; 4])
     }
 
-    /// The way of a point in the coordinates of the tool; only mm make sense there.
+    /// Distances of a point in tool coordinates; only mm are valid.
     pub(super) fn tool_way(point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Mm => Ok(point.numbers()),
@@ -167,7 +167,7 @@ impl World {
         Ok(chosen(robot, robot.mask(), &pulses))
     }
 
-    /// The motion of a line of a program.
+    /// Starts the motion of a program line.
     pub(super) fn begin_program_move(
         &mut self,
         number: usize,
@@ -187,7 +187,7 @@ impl World {
         self.begin(number, owner, vec![leg], End::Arrived)
     }
 
-    /// All axes at once.
+    /// Joint-interpolated segment.
     pub(super) fn joint_leg(&self, number: usize, from: &Four, to: &Four, speed: Speed) -> Result<Leg, Fault> {
         let robot = self.robot(number)?;
         if robot.is_at_home() {
@@ -195,11 +195,11 @@ impl World {
         }
         let path = Path::Joint { from: *from, to: *to };
         let (accel, decel) = ramps(robot, from, to, speed);
-        // What is in mm a second is a share of the tool's greatest speed here as well.
+        // A speed in mm/s is a share of the maximum tool speed here as well.
         Ok(Leg::new(path, robot.seconds(from, to), self.share(robot, speed.rate), accel, decel))
     }
 
-    /// The tool in a line.
+    /// Straight segment of the tool.
     pub(super) fn line_leg(&self, number: usize, to: &Four, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let from = robot.pulses();
@@ -214,7 +214,7 @@ impl World {
         self.tool_leg(number, path, way, end[3] - start[3], speed)
     }
 
-    /// The tool in an arc over a place to another one.
+    /// Arc segment of the tool through a position to another.
     pub(super) fn arc_leg(&self, number: usize, via: &Point, to: &Point, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let all = robot.mask();
@@ -244,7 +244,7 @@ impl World {
         Ok(Leg::new(path, seconds, self.share(robot, speed.rate), accel, decel))
     }
 
-    /// Over an axis: up, across, down. `height` is that axis' place on the way, in pulses.
+    /// Arch: up, across, down. `height` is the position of the arch axis in pulses.
     pub(super) fn arch_legs(
         &self,
         number: usize,
@@ -264,7 +264,7 @@ impl World {
             .collect()
     }
 
-    /// To the limit, along an axis of a frame. The end is the alarm of the axis that gets there.
+    /// Segment along an axis to its limit. Ends with the alarm of that axis.
     pub(super) fn jog(&self, number: usize, frame: Frame, axis: usize, sign: f64) -> Result<(Leg, End), Fault> {
         let speed = Speed { rate: Rate::Manual, ..Speed::default() };
         let robot = self.robot(number)?;
@@ -274,7 +274,7 @@ impl World {
             let limits = robot.axes[axis].limits;
             let mut to = from;
             to[axis] = match (robot.is_at_home(), sign < 0.0) {
-                // Without origin there are no limits that mean anything.
+                // Without a known origin the limits are not valid.
                 (false, _) => from[axis] + sign * (limits.1 - limits.0),
                 (true, true) => limits.0,
                 (true, false) => limits.1,
@@ -315,7 +315,7 @@ impl World {
         Ok((target(near)?, End::Stopped(fault)))
     }
 
-    /// A way along an axis of a frame: pulses, or steps of 0.001 mm.
+    /// Segment along an axis, in pulses or steps of 0.001 mm.
     pub(super) fn inch(&self, number: usize, frame: Frame, axis: usize, amount: f64) -> Result<Leg, Fault> {
         let speed = Speed { rate: Rate::Manual, ..Speed::default() };
         let mask = 1 << axis;
@@ -337,7 +337,7 @@ impl World {
         }
     }
 
-    /// Returns axes to their origin, one pass after the other. Says whether anything moves.
+    /// Starts an origin return in several passes. Returns whether anything moves.
     pub(super) fn begin_origin(&mut self, number: usize, passes: &[Homing], owner: Owner) -> Result<bool, Fault> {
         let robot = self.robot(number)?;
         let mut from = robot.pulses();
@@ -345,7 +345,7 @@ impl World {
         for pass in passes {
             let mut to = from;
             for (at, axis) in robot.axes.iter().enumerate().filter(|(at, axis)| pass.includes(*at, axis)) {
-                // By a signal, axes of the mark type stay where they are (chapter 1, SI(17)).
+                // A signal does not move axes of the mark type (chapter 1, SI(17)).
                 if owner == Owner::Input && axis.method == Method::Mark && axis.origin {
                     continue;
                 }
@@ -368,7 +368,6 @@ impl World {
         Ok(true)
     }
 
-    /// Begins a motion.
     pub(super) fn begin(&mut self, number: usize, owner: Owner, legs: Vec<Leg>, end: End) -> Result<(), Fault> {
         let (geometry, now) = (self.geometry(number)?, self.now);
         let robot = self.robot_mut(number)?;
@@ -378,7 +377,7 @@ impl World {
         Ok(())
     }
 
-    /// The share of full speed.
+    /// Share of full speed.
     pub(super) fn share(&self, robot: &Robot, rate: Rate) -> f64 {
         let percent = |number: i32| f64::from(number) / 100.0;
         let base = percent(if self.switches.mode == Mode::Auto { robot.auto_speed } else { robot.manual_speed });
@@ -392,7 +391,7 @@ impl World {
     }
 }
 
-/// Acceleration and deceleration in shares of what is possible: the least of the axes that move.
+/// Acceleration and deceleration as shares of the maximum: the minimum of the moving axes.
 fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     let least = |parameter| {
         let moving = robot.axes.iter().enumerate().filter(|(at, _)| (from[*at] - to[*at]).abs() > 0.0);
@@ -403,7 +402,7 @@ fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     (share(speed.accel, ACCEL), share(speed.decel, DECEL))
 }
 
-/// Numbers for these axes; the others stay, and those that are not there are 0.
+/// Replaces the values of these axes; missing axes are 0.
 fn chosen(robot: &Robot, axes: u8, numbers: &Four) -> Four {
     let now = robot.pulses();
     std::array::from_fn(|axis| {

@@ -1,4 +1,4 @@
-//! Remote commands that switch and select (4.2, 4.6, 4.8).
+//! Commands that switch and select (4.2, 4.6, 4.8).
 
 use std::time::Duration;
 
@@ -16,13 +16,13 @@ use super::world::{Action, World};
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Time in which servos switch, and motor power comes on.
+/// Switching time of servos and of motor power.
 const SERVO_TIME: Duration = Duration::from_millis(50);
 pub(super) const MOTOR_TIME: Duration = Duration::from_millis(200);
-/// The century of two digits.
+/// Century of two-digit years.
 const CENTURY: i16 = 2000;
 
-/// Begins to switch power (4.2.13, 4.2.20).
+/// Starts a switch of power (4.2.13, 4.2.20).
 pub(super) fn power(world: &mut World, request: &Request) -> Result<Work, Fault> {
     let robot = request.robot();
     let axes = u8::try_from(request.int(Key::Axes)).unwrap_or_default();
@@ -44,12 +44,12 @@ pub(super) fn power(world: &mut World, request: &Request) -> Result<Work, Fault>
     Ok(Work::Power(world.now.saturating_add(time), action))
 }
 
-/// Selects and stores (4.2.8 to 4.2.22).
+/// Selects or stores (4.2.8 to 4.2.22).
 pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> {
     let number = request.robot();
     let percent = request.int(Key::SpeedPercent);
     match request.row.command {
-        // Nothing to do: the status is reset by WI0 itself.
+        // WI0 itself resets the status.
         Command::StatusReset => {}
         Command::Teach => return teach(world, request),
         Command::AbsoluteReset => return absolute_reset(world, request),
@@ -77,7 +77,7 @@ pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Stores where the robot is (4.2.9).
+/// Teach: stores the current position (4.2.9).
 fn teach(world: &mut World, request: &Request) -> Result<(), Fault> {
     let number = request.robot();
     let (robot, unit) = (world.robot(number)?, PointUnit::from_code(request.int(Key::Unit)));
@@ -94,7 +94,7 @@ fn teach(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Takes the place for the origin of an axis of the mark type (4.2.11).
+/// Absolute reset: the current position becomes the origin of an axis of the mark type (4.2.11).
 fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     let (number, at) = (request.robot(), axis(request));
     world.has_axes(number, 1 << at)?;
@@ -111,13 +111,13 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// An axis without marks.
+/// Fault for an axis of another type.
 pub(super) fn no_mark(number: usize, at: usize) -> Fault {
     let why = format!("axis {} is not of the mark type", at + 1);
     Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why)
 }
 
-/// Programs (4.6).
+/// Program commands (4.6).
 pub(super) fn program(world: &mut World, request: &Request) -> Result<Values, Fault> {
     match (request.row.command, chosen(world, request)?) {
         (Command::ProgramSelect, Chosen::Program(program)) => register(world, request, program)?,
@@ -139,7 +139,7 @@ pub(super) fn program(world: &mut World, request: &Request) -> Result<Values, Fa
     Ok(Values::default())
 }
 
-/// What a command of category 5 is about.
+/// Selected object of a command of category 5.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Chosen {
     All,
@@ -148,7 +148,7 @@ enum Chosen {
 }
 
 impl Chosen {
-    /// The place of the task among those that are registered.
+    /// Index of the registered task.
     fn task(self, world: &World) -> Result<usize, Fault> {
         let at = world.tasks.iter().position(|task| match self {
             Self::All => false,
@@ -165,14 +165,14 @@ fn chosen(world: &World, request: &Request) -> Result<Chosen, Fault> {
         0 => return Ok(Chosen::All),
         2 => return Ok(Chosen::Task(u8::try_from(request.int(Key::Task)).unwrap_or_default())),
         1 => u8::try_from(request.int(Key::Program)).ok().filter(|number| world.programs.contains_key(number)),
-        // The whole name, or the lowest number among those that begin so where all 16 characters are given.
+        // The whole name. If all 16 characters are given: the lowest program number whose name begins with them.
         _ => world.programs.iter().find(|(_, program)| program.short_name() == name).map(|(number, _)| *number),
     };
     let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "there is no such program");
     found.map(Chosen::Program).ok_or_else(none)
 }
 
-/// Registers a program in a task; 0 is the lowest vacant one (4.6.1).
+/// Registers a program in a task; 0 means the lowest vacant one (4.6.1).
 fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fault> {
     let priority = u8::try_from(request.int(Key::Priority)).unwrap_or_default();
     let taken = |number: u8| world.tasks.iter().find(|task| task.number == number);
@@ -186,13 +186,13 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
     {
         return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(number), "the task or the program runs"));
     }
-    // A program is in one task at a time, so that its number tells which.
+    // A program can be in only one task, so that its number identifies the task.
     world.tasks.retain(|task| task.number != number && task.program != program);
     world.tasks.push(Task::new(number, program, priority));
     Ok(())
 }
 
-/// What a program does; only while it does not run (4.6.4).
+/// State of a stopped program (4.6.4).
 fn show(world: &World, at: usize) -> Result<Values, Fault> {
     let none = || Fault::new(NO_TASK, AlarmSource::Controller, "it is not registered in a task");
     let task = world.tasks.get(at).ok_or_else(none)?;

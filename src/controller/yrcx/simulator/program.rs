@@ -1,4 +1,4 @@
-//! Programs in a small part of the robot language: moves, waits, outputs, variables, jumps.
+//! Programs in a subset of the robot language: moves, waits, outputs, variables, jumps.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -6,10 +6,9 @@ use std::time::Duration;
 use super::memory::{Number, Operation, POINTS, PortRef, is_port, port_kind};
 use super::request::ROBOTS;
 
-/// Lines of a program at most; the line of COMMON is told from 10000 on (4.6.4).
+/// Maximum number of lines; lines of COMMON are reported from 10000 on (4.6.4).
 const MAX_LINES: usize = 9999;
 
-/// A number in a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operand {
     Number(Number),
@@ -17,10 +16,9 @@ pub(super) enum Operand {
     Variable(usize),
 }
 
-/// One line.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Statement {
-    /// Empty, a comment, a label.
+    /// Empty line, comment or label.
     Nothing,
     Move {
         /// Counted from 0.
@@ -43,7 +41,6 @@ pub(super) enum Statement {
     Halt,
 }
 
-/// A program.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     pub(super) name: String,
@@ -52,7 +49,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Reads a program. The error says what is wrong and in which of its lines.
+    /// Parses a program. An error gives the problem and the line.
     pub(super) fn parse(name: &str, text: &str) -> Result<Self, String> {
         let named = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_';
         if name.is_empty() || name.len() > 32 || !name.bytes().all(named) {
@@ -75,7 +72,7 @@ impl Program {
         Ok(program)
     }
 
-    /// Its name in 16 characters, as commands carry it.
+    /// The first 16 characters of the name, as in commands.
     pub(super) fn short_name(&self) -> &str {
         self.name.get(..16).unwrap_or(&self.name)
     }
@@ -100,7 +97,7 @@ fn statement(line: &str) -> Option<Statement> {
     }
 }
 
-/// `MOVE P,P19`, `MOVE[2] L,P20`, `MOVEI P,P3`.
+/// Parses `MOVE P,P19`, `MOVE[2] L,P20`, `MOVEI P,P3`.
 fn motion(word: &str, rest: &str) -> Option<Statement> {
     let (word, robot) = match word.split_once('[') {
         Some((word, robot)) => (word, robot.strip_suffix(']')?.parse::<usize>().ok()?),
@@ -122,7 +119,7 @@ fn motion(word: &str, rest: &str) -> Option<Statement> {
     Some(Statement::Move { robot, linear, relative, point: point.into() })
 }
 
-/// `DO(20)=1` for a signal, `DO2()=255` for a port.
+/// Parses `DO(20)=1` (bit) or `DO2()=255` (port).
 pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
     let (port, value) = text.split_once('=')?;
     let value = value.trim().parse::<u8>().ok()?;
@@ -140,7 +137,7 @@ pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
     fits.then_some((found, value))
 }
 
-/// `SGI1=5`, `SGI1=SGI1+1`, `SGR0=SGI2/2.5`.
+/// Parses `SGI1=5`, `SGI1=SGI1+1`, `SGR0=SGI2/2.5`.
 fn assignment(line: &str) -> Option<Statement> {
     let (variable, value) = line.split_once('=')?;
     let Operand::Variable(variable) = operand(variable.trim())? else { return None };

@@ -1,4 +1,4 @@
-//! Remote commands that look at the controller (4.7). A robot that is not there has no axes, which is an answer.
+//! Read commands (4.7). A robot that does not exist is answered without axes.
 
 use super::alarms::{AlarmSource, Entry, Fault, NO_CONTROLLER};
 use super::commands::not_here;
@@ -11,14 +11,13 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// No axis, no task.
+/// Value for a missing axis or task.
 const NONE: i32 = 9;
-/// Keys of a state for each axis, with those that are reserved.
+/// Keys of axis states, including reserved axes.
 const SIX: [Key; 6] = [Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4, Key::Axis5, Key::Axis6];
 const EIGHT: [Key; 8] =
     [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
 
-/// What there is to answer.
 pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> {
     let number = request.robot();
     let robot = world.robots.get(number);
@@ -98,13 +97,13 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
     })
 }
 
-/// The hand system that the arm has; none for a Cartesian robot, which shows as right (4.7.10).
+/// Current arm side; `None` for a Cartesian robot, which reports right (4.7.10).
 fn current_arm(world: &World, number: usize) -> Option<Arm> {
     let robot = world.robots.get(number)?;
     world.geometry(number).ok()?.arm(&robot.pulses())
 }
 
-/// A state of each axis; two more that are reserved have none.
+/// State of each axis; two reserved axes have none.
 fn per_axis(robot: Option<&Robot>, none: i32, state: impl Fn(usize, &Axis) -> i32) -> Values {
     let axis = |at: usize| robot.and_then(|robot| robot.axes.get(at)).map_or(none, |axis| state(at, axis));
     SIX.into_iter().enumerate().map(|(at, key)| (key, axis(at))).collect()
@@ -131,7 +130,7 @@ fn per_task(world: &World, request: &Request, none: i32, state: impl Fn(&super::
         .collect()
 }
 
-/// An alarm with its place; 0 where there is none.
+/// An alarm with its source; zeros without one.
 fn alarm(entry: Option<Entry>) -> Values {
     let (group, category, [first, second]) =
         entry.map_or((0, 0, [0, 0]), |(alarm, place)| (alarm.group, alarm.category, place.words()));

@@ -1,4 +1,4 @@
-//! Remote commands that store and compute (4.3, 4.4, 4.5), and those that read it back.
+//! Commands that store, compute and read back (4.3, 4.4, 4.5).
 
 use super::alarms::{AlarmSource, Fault, NO_HAND, PAYLOAD};
 use super::commands::not_here;
@@ -9,13 +9,13 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value, Values};
 
-/// Parameters that belong to the robot, and the payload of an axis (4.4.2).
+/// Robot parameters, and the payload of an axis (4.4.2).
 const WEIGHT: i32 = 1;
 const WEIGHT_G: i32 = 2;
 const AXIS_WEIGHT: i32 = 262;
 const GRAMS: i32 = 1000;
 
-/// Carries out a command, and says what there is to answer.
+/// Executes a command and returns its answer.
 pub(super) fn carry_out(world: &mut World, request: &Request) -> Result<Values, Fault> {
     let command = request.row.command;
     match request.row.section {
@@ -188,7 +188,7 @@ fn port(world: &mut World, request: &Request) -> Values {
         }
         _ => return [(Key::Value, i32::from(world.memory.port(kind, port)))].into_iter().collect(),
     }
-    // A program may wait for it.
+    // A program may wait for the port.
     world.restless = true;
     Values::default()
 }

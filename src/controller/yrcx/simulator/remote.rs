@@ -1,4 +1,4 @@
-//! The handshake of remote commands (chapter 2, sections 1 and 2), one scan after the other.
+//! Handshake of remote commands by scan (chapter 2, sections 1 and 2).
 
 use super::alarms::{Fault, STOP_INPUT};
 use super::commands::{self, Work};
@@ -20,34 +20,34 @@ const RUN_STATUS: Words = {
     words
 };
 
-/// A command under way.
+/// A running command.
 #[derive(Debug, Clone)]
 struct Running {
     request: Request,
     work: Work,
-    /// The run status is shown at least until then.
+    /// Minimum end of the running status.
     not_before: Now,
-    /// Whether the master still shows it; what it does not is carried out and not told.
+    /// Whether the master still sends the command; otherwise its end is not reported.
     held: bool,
-    /// How its motions ended, as far as they did.
+    /// Ends of its motions so far.
     ends: Vec<End>,
 }
 
 #[derive(Debug, Clone)]
 enum State {
-    /// A command may come.
+    /// Ready for a command.
     Ready,
     Running(Box<Running>),
-    /// Over; waits for the status reset.
+    /// Ended; waits for the status reset.
     Ended,
 }
 
-/// What is shown in WO0 to WO15, and why.
+/// Handshake state and output words.
 #[derive(Debug, Clone)]
 pub(super) struct Remote {
     state: State,
     shown: Words,
-    /// Scans that a quick command shows the run status at most.
+    /// Maximum scans with running status for a quick command.
     run_scans: u32,
     random: fastrand::Rng,
 }
@@ -57,28 +57,27 @@ impl Remote {
         Self { state: State::Ready, shown: NO_WORDS, run_scans, random: fastrand::Rng::with_seed(seed) }
     }
 
-    /// WO0 to WO15.
     pub(super) fn words(&self) -> Words {
         self.shown
     }
 
-    /// When it has something to do without the master.
+    /// Time of the next action without an event of the master.
     pub(super) fn due(&self, world: &World) -> Option<Now> {
         let State::Running(running) = &self.state else { return None };
         match &running.work {
             Work::Power(at, _) => Some(*at),
             Work::Done(_) => Some(running.not_before),
-            // While nothing moves, nothing changes.
+            // Without motion nothing changes.
             Work::Continuous => {
                 let robot = world.robots.get(running.request.robot())?;
                 robot.motion.is_some().then(|| world.now.saturating_add(SCAN))
             }
-            // Their own ends wake them.
+            // The end of a motion causes a scan.
             Work::Motion(_) => None,
         }
     }
 
-    /// One scan, after everything else has had its own.
+    /// Runs a scan, after all other parts.
     pub(super) fn scan(&mut self, world: &mut World) {
         let words = (world.link != Link::Down).then(|| world.inputs.command());
         match (&mut self.state, words) {
@@ -130,7 +129,7 @@ impl Remote {
                 self.state = State::Ready;
                 self.shown = NO_WORDS;
             }
-            // Another command came before this one was over: its end is not told, and the other not taken.
+            // Another command replaced this one: the end is not reported, and the new one is ignored.
             (false, false) => self.end(RUN_STATUS),
         }
     }
@@ -141,7 +140,7 @@ impl Remote {
     }
 }
 
-/// How a command ended, if it did.
+/// Result of the command, if it has ended.
 fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, Fault>> {
     match &running.work {
         Work::Done(values) => (world.now >= running.not_before).then(|| Ok(values.clone())),
@@ -174,7 +173,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
     }
 }
 
-/// The run status with what continuous output shows.
+/// Running status with the data of continuous output.
 fn output(world: &World, request: &Request) -> Words {
     match reads::answer(world, request) {
         Ok(values) => request.reply(Status::Running, &values),
@@ -182,7 +181,7 @@ fn output(world: &World, request: &Request) -> Words {
     }
 }
 
-/// The words of an abnormal end. A jog that the stop input ends tells where it is (4.2.6).
+/// Words of an abnormal end. A jog that was stopped reports its position (4.2.6).
 fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
     let told = request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT;
     let alarm = refusal(world, fault);
@@ -196,7 +195,7 @@ fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
     }
 }
 
-/// The words of a refusal, which is remembered.
+/// Words of a refusal; the alarm is recorded.
 fn refusal(world: &mut World, fault: Fault) -> Words {
     let mut words = NO_WORDS;
     words[0] = Status::AbnormalEnd.word();

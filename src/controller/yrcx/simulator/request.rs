@@ -1,5 +1,5 @@
-//! The words of a command, read by the table but checked here: more strictly than a real controller is known to, and not
-//! by the checks of the client.
+//! Command words, parsed with the table but checked independently of the client, and more strictly than a real
+//! controller is known to.
 
 use super::alarms::{AlarmSource, Fault, UNKNOWN_COMMAND};
 use crate::yrcx::answer::Status;
@@ -8,10 +8,10 @@ use crate::yrcx::table::parameter::Parameter;
 use crate::yrcx::table::{Charset, Command, Field, Form, Row, Show};
 use crate::yrcx::value::{Key, Value, Values};
 
-/// Robots there can be.
+/// Maximum number of robots.
 pub(super) const ROBOTS: usize = 4;
 
-/// A command whose words are right.
+/// A valid command.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Request {
     pub(super) row: &'static Row,
@@ -20,7 +20,7 @@ pub(super) struct Request {
 }
 
 impl Request {
-    /// Reads WI0 to WI15.
+    /// Decodes WI0 to WI15.
     pub(super) fn read(words: &Words) -> Result<Self, Fault> {
         let row = Row::from_word(words[0]).ok_or_else(|| {
             Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("WI0: {:#06X} is not a valid command", words[0]))
@@ -43,47 +43,45 @@ impl Request {
         Ok(request)
     }
 
-    /// A number; 0 where the field does not count.
+    /// Integer of a field; 0 if the field is not in use.
     pub(super) fn int(&self, key: Key) -> i32 {
         self.values.int(key).unwrap_or_default()
     }
 
-    /// A number that the layout keeps to what an index can be.
+    /// Integer that the layout limits to valid indexes.
     pub(super) fn index(&self, key: Key) -> usize {
         usize::try_from(self.int(key)).unwrap_or_default()
     }
 
-    /// A number if its field counts.
+    /// Integer of a field in use.
     pub(super) fn maybe(&self, key: Key) -> Option<i32> {
         self.values.int(key)
     }
 
-    /// A text.
     pub(super) fn text(&self, key: Key) -> &str {
         self.values.text(key).unwrap_or_default()
     }
 
-    /// The number for a variable: whole or real.
+    /// Value for a variable: integer or real.
     pub(super) fn value(&self) -> Option<&Value> {
         self.values.value(Key::Value)
     }
 
-    /// Four axes.
     pub(super) fn axes(&self) -> [i32; 4] {
         Key::AXES.map(|key| self.int(key))
     }
 
-    /// Which robot, counted from 0; none named is the first.
+    /// Robot index from 0; no robot means the first.
     pub(super) fn robot(&self) -> usize {
         self.index(Key::Robot).saturating_sub(1)
     }
 
-    /// The words of an end or of continuous output, with `values` in the places that the table gives them.
+    /// Words of an end or of continuous output, with `values` in their table positions.
     pub(super) fn reply(&self, status: Status, values: &Values) -> Words {
         let mut words = [0; COMMAND_WORDS];
         let look = |key| values.int(key).or_else(|| self.values.int(key)).unwrap_or_default();
         for field in self.row.answer().filter(|field| counts(field, look)) {
-            // What the command named is in the answer again.
+            // Fields of the command are repeated in the answer.
             if let Some(value) = values.value(field.key).or_else(|| self.values.value(field.key)) {
                 field.write(&mut words, value).expect("what the simulator answers fits its field");
             }
@@ -92,7 +90,7 @@ impl Request {
         words
     }
 
-    /// What no single field tells.
+    /// Checks constraints on several fields.
     fn check(&self) -> Result<(), Fault> {
         match self.row.command {
             Command::PalletSet => {
@@ -120,7 +118,7 @@ impl Request {
     }
 }
 
-/// What another field of the same command holds, for conditions.
+/// Value of another field of the command, for conditions.
 fn raw(row: &Row, key: Key, words: &Words) -> i32 {
     let field = row.request().find(|field| field.key == key);
     match field.map(|field| field.read(words)) {
@@ -129,7 +127,7 @@ fn raw(row: &Row, key: Key, words: &Words) -> i32 {
     }
 }
 
-/// Whether a field counts, by another one.
+/// Whether a field is in use, by its condition.
 fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     field.when.is_none_or(|when| (when.least..=when.most).contains(&look(when.key)))
 }
@@ -138,7 +136,7 @@ fn wrong(field: &Field, why: &str) -> Fault {
     Fault::of_words(format!("WI{} {}: {why}", field.word, field.key))
 }
 
-/// Reads a field, and takes nothing that the manual does not allow.
+/// Decodes a field, and accepts only values that the manual allows.
 fn read(field: &Field, words: &Words) -> Result<Value, String> {
     if let Form::Text(charset) = field.form {
         return text(charset, &words[field.word..field.word + field.size()]).map(Value::Text);
@@ -161,14 +159,14 @@ fn number_is_allowed(field: &Field, number: i32) -> Result<(), String> {
         Show::Choice(choices) => choices.iter().any(|&(code, _)| i32::from(code) == number),
         Show::Set { least, most } => (least..=most).contains(&number.count_ones()),
         Show::Fixed(fixed) => i32::from(fixed) == number,
-        // What is no decimal digit is read as a number of more than two.
+        // Invalid decimal digits are decoded as a number above 99.
         Show::Digits => number < 100,
         Show::Number(_) | Show::Version | Show::Revision | Show::FpgaVersion | Show::Variable | Show::Line => true,
     };
     if fine { Ok(()) } else { Err(format!("{number} is not defined here")) }
 }
 
-/// Characters, then only what fills the place.
+/// Decodes a text, which only padding may follow.
 fn text(charset: Charset, words: &[u16]) -> Result<String, String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

@@ -1,4 +1,4 @@
-//! One robot: its axes, what is selected for it, where it is.
+//! A robot: axes, selections, position.
 
 use std::collections::BTreeMap;
 
@@ -8,20 +8,20 @@ use super::motion::{End, Motion, Owner};
 use crate::Now;
 use crate::yrcx::image::Words;
 
-/// Axes a robot can have.
+/// Maximum number of axes.
 pub(super) const AXES: usize = 4;
-/// Every axis as bits.
+/// All axes as bits.
 pub(super) const ALL: u8 = 0b1111;
-/// Pulses between places where absolute reset is possible: a quarter of a turn of a motor with 16384 (4.2.10).
+/// Distance in pulses of absolute reset positions: a quarter turn of a motor with 16384 pulses (4.2.10).
 pub(super) const RESET_PITCH: f64 = 4096.0;
-/// Rated torque in shares of the greatest.
+/// Maximum torque as a multiple of the rated torque.
 pub(super) const MAX_OF_RATED: i32 = 5;
-/// % of the greatest torque, without a limit.
+/// Percent of the maximum torque, without a limit.
 pub(super) const FULL_TORQUE: i32 = 100;
-/// Torque in % of the greatest that a moving axis adds to what it holds.
+/// Torque of motion in percent of the maximum, in addition to the load.
 const MOVING_TORQUE: i32 = 10;
 
-/// How an axis knows where it is.
+/// Position detector of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Motor {
@@ -30,7 +30,7 @@ pub(super) enum Motor {
     SemiAbsolute,
 }
 
-/// How an axis finds its origin.
+/// Origin detection of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Method {
@@ -39,7 +39,7 @@ pub(super) enum Method {
     Stroke,
 }
 
-/// What holds an axis (4.7.3).
+/// Servo state of an axis (4.7.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Servo {
     Brake,
@@ -57,34 +57,33 @@ impl Servo {
     }
 }
 
-/// One axis.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
-    /// Its number in 4.7.2.
+    /// Model number in 4.7.2.
     pub(super) model: u16,
     pub(super) motor: Motor,
     pub(super) method: Method,
-    /// Pulses in a mm or a degree.
+    /// Pulses per mm or degree.
     pub(super) per_unit: f64,
     /// Soft limits in pulses.
     pub(super) limits: (f64, f64),
-    /// mm or degrees a second at full speed.
+    /// Full speed in mm/s or degrees/s.
     pub(super) speed: f64,
     pub(super) pulses: f64,
     pub(super) servo: Servo,
     pub(super) origin: bool,
-    /// % of the greatest torque, until the power goes off.
+    /// Percent of the maximum torque, until power off.
     pub(super) torque_limit: i32,
-    /// % of the greatest torque that it takes to hold it.
+    /// Holding torque in percent of the maximum.
     pub(super) load: i32,
-    /// Where something stands in its way, in pulses.
+    /// Position of an obstacle in pulses.
     pub(super) obstacle: Option<f64>,
     pub(super) parameters: BTreeMap<u16, i32>,
 }
 
 impl Axis {
     pub(super) fn is_within(&self, pulses: f64) -> bool {
-        // A micro-pulse of rounding is no violation.
+        // Tolerance for rounding errors.
         (self.limits.0 - 1e-6..=self.limits.1 + 1e-6).contains(&pulses)
     }
 
@@ -93,18 +92,17 @@ impl Axis {
     }
 }
 
-/// A motion that was broken off, to be carried on by the same command (4.2.2, 4.2.4).
+/// An interrupted motion that the same command continues (4.2.2, 4.2.4).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ResumableMotion {
     pub(super) words: Words,
     pub(super) target: Four,
 }
 
-/// One robot.
 #[derive(Debug, Clone)]
 pub(super) struct Robot {
     pub(super) kind: Kind,
-    /// Its number in 4.7.2.
+    /// Model number in 4.7.2.
     pub(super) model: u16,
     pub(super) axes: Vec<Axis>,
     pub(super) max_payload_g: i32,
@@ -117,38 +115,38 @@ pub(super) struct Robot {
     pub(super) hand: Option<usize>,
     pub(super) arm: Arm,
     pub(super) motion: Option<Motion>,
-    /// Motions that ended, for whoever began them.
+    /// Ended motions, for their originators.
     pub(super) ended: Vec<(Owner, End)>,
-    /// Axis and torque, in % of the rated one, of the push that was the last motion.
+    /// Axis and torque of the last push, in percent of the rated torque.
     pub(super) pushing: Option<(usize, i32)>,
-    /// Axes that know their origin when the motion arrives, as bits.
+    /// Axes whose origin is known after the motion, as bits.
     pub(super) homing: u8,
     pub(super) kept: Option<ResumableMotion>,
 }
 
 impl Robot {
-    /// Where the axes are; 0 for those that are not there.
+    /// Axis positions; 0 for missing axes.
     pub(super) fn pulses(&self) -> Four {
         std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, |axis| axis.pulses))
     }
 
-    /// Its axes as bits.
+    /// Existing axes as bits.
     pub(super) fn mask(&self) -> u8 {
         (0..self.axes.len()).fold(0, |mask, axis| mask | 1 << axis)
     }
 
-    /// Its geometry with this hand.
+    /// Kinematics with this hand.
     pub(super) fn geometry(&self, hand: Option<[i32; 4]>) -> Geometry {
         let per_unit = std::array::from_fn(|axis| self.axes.get(axis).map_or(1.0, |axis| axis.per_unit));
         Geometry { kind: self.kind, per_unit, hand }
     }
 
-    /// The first axis that would be outside its soft limits.
+    /// The first axis outside its soft limits.
     pub(super) fn beyond(&self, pulses: &Four) -> Option<usize> {
         self.axes.iter().zip(pulses).position(|(axis, pulses)| !axis.is_within(*pulses))
     }
 
-    /// Refuses a place outside the soft limits. `robot` is this one's index.
+    /// Refuses a position outside the soft limits. `robot` is the index of this robot.
     pub(super) fn check_limits(&self, robot: usize, pulses: &Four) -> Result<(), Fault> {
         match self.beyond(pulses) {
             Some(axis) => Err(over_limit(robot, axis)),
@@ -156,13 +154,13 @@ impl Robot {
         }
     }
 
-    /// Seconds at full speed for the axis that takes longest.
+    /// Seconds at full speed for the slowest axis.
     pub(super) fn seconds(&self, from: &Four, to: &Four) -> f64 {
         let ways = self.axes.iter().zip(from.iter().zip(to));
         ways.map(|(axis, (from, to))| (to - from).abs() / (axis.per_unit * axis.speed)).fold(0.0, f64::max)
     }
 
-    /// Lets the motion reach `now`.
+    /// Advances the motion to `now`.
     pub(super) fn advance(&mut self, now: Now) {
         let Some(motion) = &mut self.motion else { return };
         let (place, end) = motion.advance(now);
@@ -186,7 +184,7 @@ impl Robot {
         }
     }
 
-    /// Ends the motion on the spot: power is off.
+    /// Ends the motion at once, because power is off.
     pub(super) fn halt(&mut self, fault: &Fault) {
         if let Some(motion) = self.motion.take() {
             self.ended.push((motion.owner, End::Stopped(fault.clone())));
@@ -195,13 +193,13 @@ impl Robot {
         self.homing = 0;
     }
 
-    /// How a motion of `owner` ended, once.
+    /// Takes the end of a motion of `owner`.
     pub(super) fn take_end(&mut self, owner: Owner) -> Option<End> {
         let at = self.ended.iter().position(|(other, _)| *other == owner)?;
         Some(self.ended.remove(at).1)
     }
 
-    /// The torque of an axis in % of the greatest, the sign its direction.
+    /// Signed torque of an axis in percent of the maximum.
     pub(super) fn torque(&self, number: usize) -> i32 {
         let Some(axis) = self.axes.get(number).filter(|axis| axis.servo == Servo::On) else { return 0 };
         let moving = self.motion.as_ref().map_or(0.0, |motion| motion.direction()[number]);
@@ -214,13 +212,12 @@ impl Robot {
         torque.clamp(-axis.torque_limit, axis.torque_limit)
     }
 
-    /// Whether every axis knows its origin.
+    /// Whether the origin of all axes is known.
     pub(super) fn is_at_home(&self) -> bool {
         self.axes.iter().all(|axis| axis.origin)
     }
 }
 
-/// The alarm of an axis at its limit.
 pub(super) fn over_limit(robot: usize, axis: usize) -> Fault {
     let why = format!("axis {} would be outside its soft limits", axis + 1);
     Fault::new(SOFT_LIMIT, AlarmSource::Axis(robot, axis), why)

@@ -1,4 +1,4 @@
-//! The dedicated signals (chapter 1), and the general ones as ports.
+//! Dedicated signals (chapter 1), and general-purpose signals as ports.
 
 use std::time::Duration;
 
@@ -13,14 +13,14 @@ use crate::Now;
 use crate::yrcx::image::{DEDICATED_WORD, Image};
 use crate::yrcx::signal::{Signal, input, output, resting};
 
-/// Edges closer than this are not seen (chapter 1, section 3).
+/// Minimum interval of edges; closer ones are ignored (chapter 1, section 3).
 const EDGE_INTERVAL: Duration = Duration::from_millis(100);
-/// Time until an output shows what an input brought about.
+/// Delay from an input to its output.
 const REACTION: Duration = Duration::from_millis(20);
 /// Ports of eight signals in the image: SI(00) to SI(157).
 const IMAGE_PORTS: usize = 14;
 
-/// The dedicated inputs as they were.
+/// Previous dedicated inputs.
 #[derive(Debug, Clone)]
 pub(super) struct Dedicated {
     last: u16,
@@ -33,7 +33,7 @@ impl Dedicated {
         Self { last: resting().0[DEDICATED_WORD], edge: None, linked: true }
     }
 
-    /// Looks at the inputs, and does what they ask for.
+    /// Handles changes of the inputs.
     pub(super) fn scan(&mut self, world: &mut World) {
         for port in 0..IMAGE_PORTS {
             let byte = world.inputs.0[DEDICATED_WORD + port / 2].to_le_bytes()[port % 2];
@@ -52,7 +52,7 @@ impl Dedicated {
         }
         let too_soon = self.edge.is_some_and(|edge| world.now.saturating_sub(edge) < EDGE_INTERVAL);
         self.edge = Some(world.now);
-        // What stops is never too soon.
+        // A stop is never too early.
         if has(fell, input::EMERGENCY_STOP) || (back && world.emergency()) {
             world.check_emergency();
         }
@@ -61,7 +61,7 @@ impl Dedicated {
         }
         let pulses = PULSES.iter().filter(|(signal, _)| has(rose, *signal));
         for (signal, react) in pulses {
-            // Several edges at once have no distance either, and the first image of a master has no edges.
+            // Simultaneous edges have no interval either, and the first image of a master has no edges.
             let alone = (rose | fell).is_power_of_two();
             let result = match (world.switches.inputs && !world.switches.boxed, too_soon || !alone || back) {
                 (false, _) => Err(ignored(*signal, "dedicated inputs have no effect now")),
@@ -77,7 +77,7 @@ impl Dedicated {
     }
 }
 
-/// What happens when an input goes on.
+/// Effect of an input going on.
 type Reaction = fn(&mut World) -> Result<(), Fault>;
 
 const PULSES: [(Signal, Reaction); 6] = [
@@ -108,7 +108,7 @@ const PULSES: [(Signal, Reaction); 6] = [
     }),
 ];
 
-/// Every robot returns to origin, as far as its axes do so by a signal.
+/// Starts the origin return of all robots, for axes that support it by signal.
 fn origin(world: &mut World, passes: &[Homing]) -> Result<(), Fault> {
     for robot in 0..world.robots.len() {
         world.may_move(robot, 0)?;
@@ -119,7 +119,7 @@ fn origin(world: &mut World, passes: &[Homing]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// SO(00) to SO(157).
+/// Sets SO(00) to SO(157).
 pub(super) fn show(world: &mut World, image: &mut Image) {
     let alarm = world.alarms.active().is_some();
     let sequence = world.switches.sequence && input::SEQUENCE_CONTROL.is_on(&world.inputs);

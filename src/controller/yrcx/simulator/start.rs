@@ -1,8 +1,7 @@
-//! The start state: what a TOML file can say about the controller to be simulated.
+//! Start state from TOML.
 //!
-//! Everything has a default, so an empty file is a controller with four robots and servo power. What the file names comes
-//! on top of what a fresh controller has in it, but for robots: if it names any, there are those and no others. Each
-//! mistake is told with its line.
+//! All keys have defaults: an empty file is a controller with four robots and servo power. The file adds to the
+//! content of a new controller, except that its robots replace the default ones. An error gives its line.
 
 mod fill;
 
@@ -26,8 +25,8 @@ use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
 
-/// What a simulated controller is like when it starts; [`Start::parse`] reads it (see [`EXAMPLE`]), [`Start::default`]
-/// has four robots.
+/// Start state of a simulated controller; [`Start::parse`] reads it (see [`EXAMPLE`]). [`Start::default`] has four
+/// robots.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) world: World,
@@ -35,7 +34,7 @@ pub struct Start {
     pub(super) seed: u64,
 }
 
-/// A start state that names the keys there are; each can be left out.
+/// A start state with all keys; each is optional.
 pub const EXAMPLE: &str = r#"mode = "auto"                   # or "manual"
 servo = true                    # motor power and servos; a real controller starts without
 box = false                     # true: the programming box has control
@@ -132,19 +131,18 @@ impl Default for Start {
 }
 
 impl Start {
-    /// Reads a start state. The error says what is wrong, and in which line.
+    /// Parses a start state. An error gives the problem and the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         build(&start::parse(text)?, text)
     }
 
-    /// Another seed for everything random.
+    /// Sets the random seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 }
 
-/// The keys of the file.
 #[derive(Debug, Deserialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
 #[serde(default, deny_unknown_fields)]
@@ -411,13 +409,13 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     }
     fill::memory(&mut world, entries, source)?;
     fill::check(&world, entries, source)?;
-    // On a copy: the world is as it begins.
+    // A copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })
 }
 
-/// The controller with nothing in it.
+/// A controller without content.
 fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
     let clock = match &entries.clock {
         Some(entry) => source.time(entry, "%Y/%m/%d %H:%M:%S", "2026/03/14 08:00:00")?,
@@ -487,7 +485,7 @@ fn versions(entry: &Versions, source: Source<'_>) -> Result<[u16; 7], String> {
     Ok(words)
 }
 
-/// A word of an answer from its text, as the table has it.
+/// An answer word from its text, by the table.
 fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
     let field = command.row().answer().find(|field| field.key == key);
     match field.map(|field| field.parse(text)) {

@@ -1,4 +1,4 @@
-//! Tasks that run programs, a line a scan.
+//! Tasks that run programs, one line per scan.
 
 use super::alarms::{AlarmSource, CALLS, Fault, NO_TASK, RUNNING};
 use super::geometry::Four;
@@ -10,14 +10,11 @@ use super::program::{Operand, Statement};
 use super::world::World;
 use crate::Now;
 
-/// Calls within each other.
 const MAX_CALLS: usize = 16;
-/// Tasks there are.
 pub(super) const TASKS: u8 = 16;
-/// The program whose subroutines every program can call (4.6.4).
+/// The program whose subroutines all programs can call (4.6.4).
 const COMMON: &str = "COMMON";
 
-/// What a task does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
     Stopped,
@@ -25,17 +22,17 @@ pub(super) enum State {
     Suspended,
 }
 
-/// How far it shall run.
+/// End of the execution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Until {
     End,
     /// One line.
     Line,
-    /// One line with what it calls, which were so many calls deep.
+    /// One line with its subroutine; holds the call depth at its start.
     Call(usize),
 }
 
-/// What its line waits for.
+/// Wait of the current line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Doing {
     Nothing,
@@ -44,14 +41,13 @@ enum Doing {
     Waiting,
 }
 
-/// A line of a program, counted from 0.
+/// A program line, counted from 0.
 type Spot = (u8, usize);
 
-/// A task with its program.
 #[derive(Debug, Clone)]
 pub(super) struct Task {
     pub(super) number: u8,
-    /// The program that is registered.
+    /// Registered program.
     pub(super) program: u8,
     pub(super) priority: u8,
     pub(super) state: State,
@@ -59,12 +55,12 @@ pub(super) struct Task {
     calls: Vec<Spot>,
     doing: Doing,
     until: Until,
-    /// Where a relative motion goes that was broken off.
+    /// Target of an interrupted relative motion.
     kept: Option<(Spot, Four)>,
 }
 
 impl Task {
-    /// A task at the first line, stopped.
+    /// A stopped task at the first line.
     pub(super) fn new(number: u8, program: u8, priority: u8) -> Self {
         Self {
             number,
@@ -79,17 +75,17 @@ impl Task {
         }
     }
 
-    /// Puts it at a line, counted from 0.
+    /// Sets the current line, counted from 0.
     pub(super) fn set_line(&mut self, line: usize) {
         self.at.1 = line;
     }
 
-    /// When it has something to do.
+    /// Time of the next action.
     pub(super) fn due(&self, now: Now) -> Option<Now> {
         match (self.state, self.doing) {
             (State::Running, Doing::Nothing) => Some(now),
             (State::Running, Doing::Delay(until)) => Some(until),
-            // Motions and signals wake it.
+            // Motions and signals cause a scan.
             _ => None,
         }
     }
@@ -116,7 +112,7 @@ impl Task {
     }
 }
 
-/// What a line asks for next.
+/// Continuation after a line.
 enum Flow {
     Next,
     Stay,
@@ -125,12 +121,12 @@ enum Flow {
 }
 
 impl World {
-    /// Whether a program runs: SO(13).
+    /// Whether any program runs: SO(13).
     pub(super) fn is_running(&self) -> bool {
         self.tasks.iter().any(|task| task.state == State::Running)
     }
 
-    /// The line that a task is at, from 1; more than 10000 in COMMON (4.6.4).
+    /// Current line of a task, from 1; above 10000 in COMMON (4.6.4).
     pub(super) fn line_of(&self, task: &Task) -> i32 {
         let (program, line) = task.at;
         let common = self.programs.get(&program).is_some_and(|program| program.name == COMMON);
@@ -138,12 +134,12 @@ impl World {
         if common { line.saturating_add(10_000) } else { line }
     }
 
-    /// Stops every task at its line.
+    /// Stops all tasks at their lines.
     pub(super) fn stop_tasks(&mut self) {
         self.tasks.iter_mut().for_each(Task::stop);
     }
 
-    /// Puts every task back to its first line.
+    /// Resets all tasks to the first line.
     pub(super) fn reset_programs(&mut self) -> Result<(), Fault> {
         self.none_runs()?;
         self.tasks.iter_mut().for_each(Task::reset);
@@ -151,7 +147,7 @@ impl World {
         Ok(())
     }
 
-    /// Puts one task back to its first line.
+    /// Resets one task to the first line.
     pub(super) fn reset_task(&mut self, at: usize) -> Result<(), Fault> {
         let task = self.tasks.get_mut(at).ok_or_else(no_task)?;
         if task.state == State::Running {
@@ -162,7 +158,6 @@ impl World {
         Ok(())
     }
 
-    /// Runs every task.
     pub(super) fn start_all(&mut self) -> Result<(), Fault> {
         self.may_run()?;
         if self.tasks.is_empty() {
@@ -172,7 +167,6 @@ impl World {
         Ok(())
     }
 
-    /// Runs one task.
     pub(super) fn start_task(&mut self, at: usize) -> Result<(), Fault> {
         self.may_run()?;
         self.tasks.get(at).ok_or_else(no_task)?;
@@ -180,7 +174,7 @@ impl World {
         Ok(())
     }
 
-    /// Runs one line of a task; `over` carries out a subroutine whole.
+    /// Runs one line of a task; `over` includes a called subroutine.
     pub(super) fn step_task(&mut self, at: usize, over: bool) -> Result<(), Fault> {
         self.may_run()?;
         self.none_runs()?;
@@ -190,7 +184,6 @@ impl World {
         Ok(())
     }
 
-    /// Passes over one line of a task.
     pub(super) fn skip_line(&mut self, at: usize) -> Result<(), Fault> {
         self.may_run()?;
         self.none_runs()?;
@@ -208,7 +201,7 @@ impl World {
         if self.is_running() { Err(running()) } else { Ok(()) }
     }
 
-    /// Lets every task that runs do what it can in this scan, by priority.
+    /// Runs all tasks by priority for this scan.
     pub(super) fn run_tasks(&mut self) {
         let mut order: Vec<usize> = (0..self.tasks.len()).collect();
         order.sort_by_key(|at| self.tasks.get(*at).map(|task| (task.priority, task.number)));
@@ -247,7 +240,7 @@ impl World {
         match flow {
             Ok(flow) => self.follow(at, &flow),
             Err(fault) => {
-                // An error of one program stops all of them.
+                // An error in one program stops all programs.
                 self.stop_tasks();
                 self.note(Fault { place: AlarmSource::Task(number), ..fault });
             }
@@ -277,10 +270,10 @@ impl World {
                     task.state = State::Stopped;
                 }
             }
-            // After the last line, a program is at its beginning.
+            // After the last line a program is at its first line.
             None => task.reset(),
         }
-        // Other tasks may wait for what this one did.
+        // Other tasks may wait for this one.
         self.restless = true;
     }
 
@@ -344,7 +337,7 @@ impl World {
         point: usize,
     ) -> Result<Flow, Fault> {
         if self.robot(robot)?.motion.is_some() {
-            // Still braking after a stop, or moved by somebody else.
+            // Still decelerating after a stop, or moved by another originator.
             self.restless = true;
             return Ok(Flow::Stay);
         }

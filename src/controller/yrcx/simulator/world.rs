@@ -1,4 +1,4 @@
-//! The controller as a machine: switches, power, alarms, what may be done when, and the passing of time.
+//! Machine state: switches, power, alarms, permissions, time.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -21,10 +21,10 @@ use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
 use crate::yrcx::signal::input;
 
-/// The scan of the controller (chapter 2, 1.2).
+/// Scan time of the controller (chapter 2, 1.2).
 pub(super) const SCAN: Duration = Duration::from_millis(5);
 
-/// The mode that is selected.
+/// Selected mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Mode {
@@ -32,62 +32,59 @@ pub(super) enum Mode {
     Manual,
 }
 
-/// What people at the machine switch, and parameters that matter here.
+/// Operator switches and relevant parameters.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
     /// The programming box has control.
     pub(super) boxed: bool,
-    /// A safety setting leaves the dedicated inputs, and so remote commands, in force.
+    /// A safety setting keeps dedicated inputs, and so remote commands, enabled.
     pub(super) inputs: bool,
-    /// An emergency stop that is wired to the controller is pressed.
+    /// The wired emergency stop is pressed.
     pub(super) estop: bool,
     pub(super) warning: bool,
-    /// A sequence program exists.
     pub(super) sequence: bool,
-    /// SI(17) returns incremental axes as well ("ABS/ORG").
+    /// SI(17) also returns incremental axes ("ABS/ORG").
     pub(super) origin_both: bool,
-    /// A relative motion that was broken off keeps its target when it is given again (4.2.2).
+    /// An interrupted relative motion keeps its target for a repetition (4.2.2).
     pub(super) keep: bool,
 }
 
-/// The fieldbus.
+/// State of the fieldbus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Link {
-    /// No master has been there yet; the inputs rest.
+    /// No master so far; the inputs have their resting state.
     Waiting,
     Up,
     /// Lost; all inputs are off.
     Down,
 }
 
-/// What takes a moment.
+/// Delayed action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Action {
     MotorOn,
     MotorPower,
     MotorOff,
-    /// A state for some axes of a robot.
+    /// Servo state for some axes of a robot.
     Servo(usize, u8, Servo),
     AlarmReset,
     ProgramReset,
     AutoStart,
-    /// Power goes off after an emergency stop.
+    /// Power off after an emergency stop.
     PowerLoss,
 }
 
-/// The controller.
 #[derive(Debug, Clone)]
 pub(super) struct World {
     pub(super) now: Now,
     pub(super) switches: Switches,
     pub(super) link: Link,
-    /// The alarm of a lost link, which each fieldbus has its own of.
+    /// Alarm of a lost link, specific to the fieldbus.
     pub(super) link_alarm: Alarm,
-    /// After this time without a master the link is missed.
+    /// Time without a first master after which the link counts as lost.
     pub(super) link_within: Option<Duration>,
-    /// What the master shows.
     pub(super) inputs: Image,
     pub(super) motor: bool,
     pub(super) robots: Vec<Robot>,
@@ -95,9 +92,8 @@ pub(super) struct World {
     pub(super) alarms: AlarmLog,
     pub(super) programs: BTreeMap<u8, Program>,
     pub(super) tasks: Vec<Task>,
-    /// SO(14).
     pub(super) reset_done: bool,
-    /// Date and time at a moment.
+    /// Date and time at a reference time.
     pub(super) clock: (DateTime, Now),
     /// Words of 4.7.1.
     pub(super) versions: [u16; 7],
@@ -105,14 +101,14 @@ pub(super) struct World {
     pub(super) slots: BTreeMap<u8, [u16; 4]>,
     pub(super) delayed: Vec<(Now, Action)>,
     pub(super) events: Timeline,
-    /// What was wrong with the last thing that was refused or broken off.
+    /// Last refusal or abort.
     pub(super) why: Option<Fault>,
-    /// Something changed that others may wait for: there is another scan.
+    /// A change that others may wait for: requests another scan.
     pub(super) restless: bool,
 }
 
 impl World {
-    /// When something happens by itself.
+    /// Time of the next internal event.
     pub(super) fn due(&self) -> Option<Now> {
         let link = self.link_within.filter(|_| self.link == Link::Waiting);
         let motions = self.robots.iter().filter_map(|robot| robot.motion.as_ref()).map(Motion::due);
@@ -122,7 +118,7 @@ impl World {
         motions.chain(tasks).chain(delayed).chain(self.events.due()).chain(link).chain(restless).min()
     }
 
-    /// Lets what moves reach `now`.
+    /// Advances the motions to `now`.
     pub(super) fn move_on(&mut self, now: Now) {
         self.now = now;
         self.restless = false;
@@ -137,7 +133,7 @@ impl World {
         }
     }
 
-    /// Does what is due in this scan.
+    /// Handles the events that are due in this scan.
     pub(super) fn scan(&mut self) {
         let now = self.now;
         if self.link == Link::Waiting && self.link_within.is_some_and(|within| within <= now) {
@@ -146,7 +142,7 @@ impl World {
             self.raise(&Fault::new(self.link_alarm.too_long(), AlarmSource::Slot, "no master came in time"), false);
         }
         while let Some(line) = self.events.take(now) {
-            // Lines were tried when the start state was read; one that is refused by now has no effect.
+            // The lines were checked when the start state was parsed; an impossible line has no effect now.
             let _refused = console::execute(self, &line);
         }
         for at in (0..self.delayed.len()).rev() {
@@ -160,7 +156,7 @@ impl World {
         self.run_tasks();
     }
 
-    /// Does something that took its moment.
+    /// Executes a delayed action.
     pub(super) fn act(&mut self, action: Action) -> Result<(), Fault> {
         match action {
             Action::MotorOn | Action::MotorPower => {
@@ -183,28 +179,27 @@ impl World {
         Ok(())
     }
 
-    /// Lets something happen later.
+    /// Schedules an action.
     pub(super) fn later(&mut self, after: Duration, action: Action) {
         self.delayed.push((self.now.saturating_add(after), action));
     }
 
-    /// Whether the controller is in emergency stop.
     pub(super) fn emergency(&self) -> bool {
         self.switches.estop || (self.link == Link::Up && !input::EMERGENCY_STOP.is_on(&self.inputs))
     }
 
-    /// Whether the stop input keeps everything from moving.
+    /// Whether the stop input prevents motion.
     pub(super) fn held(&self) -> bool {
         !input::STOP.is_on(&self.inputs)
     }
 
-    /// Records what went wrong where nobody is told.
+    /// Records a fault without a remote command to report it.
     pub(super) fn note(&mut self, fault: Fault) {
         self.alarms.record(fault.alarm, fault.place);
         self.why = Some(fault);
     }
 
-    /// A serious alarm: everything stops, and power goes off.
+    /// Handles a serious alarm: stops everything and switches power off.
     pub(super) fn raise(&mut self, fault: &Fault, fatal: bool) {
         self.alarms.raise(fault.alarm, fault.place, fatal);
         self.why = Some(fault.clone());
@@ -216,7 +211,7 @@ impl World {
         self.later(SCAN, Action::PowerLoss);
     }
 
-    /// Programs stop, and what moves comes to rest.
+    /// Stops programs and decelerates motions.
     pub(super) fn stop(&mut self, fault: &Fault) {
         let now = self.now;
         self.stop_tasks();
@@ -226,20 +221,19 @@ impl World {
         }
     }
 
-    /// The emergency stop, whichever it is, began or ended.
+    /// Handles a change of an emergency stop.
     pub(super) fn check_emergency(&mut self) {
         if self.emergency() {
             self.raise(&Fault::emergency(), false);
         }
     }
 
-    /// The master shows something.
     pub(super) fn master_shows(&mut self, image: Image) {
         self.link = Link::Up;
         self.inputs = image;
     }
 
-    /// The link is gone.
+    /// Handles the loss of the link.
     pub(super) fn master_gone(&mut self) {
         if self.link != Link::Down {
             self.link = Link::Down;
@@ -248,12 +242,12 @@ impl World {
         }
     }
 
-    /// What the loss of the link is to what runs.
+    /// Fault of the link loss, for running commands.
     pub(super) fn link_fault(&self) -> Fault {
         Fault::new(self.link_alarm, AlarmSource::Slot, "the master is gone")
     }
 
-    /// Whether motor power may go on.
+    /// Whether motor power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Fault> {
         if self.emergency() {
             return Err(Fault::emergency());
@@ -261,7 +255,7 @@ impl World {
         self.no_alarm()
     }
 
-    /// Whether nothing is wrong.
+    /// Refuses while an alarm is active.
     pub(super) fn no_alarm(&self) -> Result<(), Fault> {
         match self.alarms.active() {
             Some(alarm) => Err(active(alarm)),
@@ -269,7 +263,7 @@ impl World {
         }
     }
 
-    /// Whether programs may run.
+    /// Whether programs can run.
     pub(super) fn may_run(&self) -> Result<(), Fault> {
         self.may_power()?;
         if self.held() {
@@ -285,7 +279,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether these axes of a robot may move.
+    /// Whether these axes can move.
     pub(super) fn may_move(&self, number: usize, axes: u8) -> Result<(), Fault> {
         self.may_power()?;
         if self.held() {
@@ -307,7 +301,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether a robot knows where it is.
+    /// Whether the origin of all axes of a robot is known.
     pub(super) fn at_home(&self, number: usize) -> Result<(), Fault> {
         let unknown = self.robot(number)?.axes.iter().position(|axis| !axis.origin);
         match unknown {
@@ -319,17 +313,17 @@ impl World {
         }
     }
 
-    /// A robot, counted from 0.
+    /// The robot with this index.
     pub(super) fn robot(&self, number: usize) -> Result<&Robot, Fault> {
         self.robots.get(number).ok_or_else(|| no_robot(number))
     }
 
-    /// A robot, counted from 0.
+    /// The robot with this index.
     pub(super) fn robot_mut(&mut self, number: usize) -> Result<&mut Robot, Fault> {
         self.robots.get_mut(number).ok_or_else(|| no_robot(number))
     }
 
-    /// Whether a robot has all of these axes.
+    /// Whether the robot has these axes.
     pub(super) fn has_axes(&self, number: usize, axes: u8) -> Result<(), Fault> {
         let missing = axes & ALL & !self.robot(number)?.mask();
         if missing == 0 {
@@ -339,13 +333,12 @@ impl World {
         Err(Fault::new(NO_AXIS, AlarmSource::Robot(number), why))
     }
 
-    /// Date and time.
     pub(super) fn time(&self) -> DateTime {
         let (then, at) = self.clock;
         then.saturating_add(SignedDuration::try_from(self.now.saturating_sub(at)).unwrap_or(SignedDuration::MAX))
     }
 
-    /// Switches the controller off and on: only what is stored remains.
+    /// Power cycle: only stored data remains.
     pub(super) fn power_cycle(&mut self) {
         self.stop_tasks();
         self.delayed.clear();
@@ -393,7 +386,6 @@ impl World {
     }
 }
 
-/// The refusal while an alarm is active.
 fn active(alarm: Alarm) -> Fault {
     Fault::new(alarm, AlarmSource::Controller, "an alarm is active; reset it")
 }

@@ -1,4 +1,4 @@
-//! Fields of words: where they stand, what they hold, when they count.
+//! Fields of command and answer words: position, format, condition.
 
 use crate::typed;
 use crate::units::{self, Unit, UnitError};
@@ -7,126 +7,126 @@ use crate::yrcx::value::{Key, Value};
 /// A field of a command or an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// Its name for programs.
+    /// Name for programs.
     pub key: Key,
-    /// Its name for people.
+    /// Readable name.
     pub name: &'static str,
-    /// The first word, 0 to 15.
+    /// First word, 0 to 15.
     pub word: usize,
-    /// How it is written.
+    /// Format.
     pub form: Form,
-    /// The values allowed, as spans of what travels; empty: all that fit.
+    /// Allowed raw values, as ranges; empty for all.
     pub spans: &'static [(i32, i32)],
-    /// What another field must be for this one to count; its words are 0 otherwise.
+    /// Condition on another field for this field to be in use; otherwise its words are 0.
     pub when: Option<When>,
-    /// Whether it may be left out; 0 is sent then.
+    /// Whether it is optional; a missing field is sent as 0.
     pub need: Presence,
 }
 
-/// Whether a field may be left out.
+/// Whether a field is optional.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Presence {
-    /// It must be given.
+    /// Mandatory.
     Required,
-    /// It may be left out.
+    /// Missing values are sent as 0.
     Optional,
-    /// It must be given if this axis moves, by the axes that the command names: a missing one would be a move to 0.
+    /// Required if this axis is among those of the command: a missing target would be a move to 0.
     OfAxis(u8),
 }
 
-/// How a field is written.
+/// Format of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// Bits of one word, without sign.
+    /// Unsigned bits of one word.
     Bits {
-        /// The lowest.
+        /// Lowest bit.
         low: u8,
-        /// How many.
+        /// Number of bits.
         width: u8,
-        /// What they mean.
+        /// Their meaning.
         show: Show,
     },
-    /// 16 bits with sign.
+    /// Signed 16 bits.
     Short(Unit),
-    /// 32 bits with sign in two words, the low word first (chapter 2, 1.1).
+    /// Signed 32 bits in two words, low word first (chapter 2, 1.1).
     Long(Unit),
-    /// IEEE 754 single in two words, the low word first.
+    /// IEEE 754 single precision in two words, low word first.
     Real,
-    /// 16 characters in eight words, the first in the low byte.
+    /// 16 characters in eight words, first character in the low byte.
     Text(Charset),
 }
 
-/// What bits mean.
+/// Meaning of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Show {
     /// A number.
     Number(Unit),
-    /// A number that is always this one.
+    /// A constant number.
     Fixed(u16),
-    /// One of these.
+    /// One of these choices.
     Choice(&'static [(u16, &'static str)]),
-    /// A set of axes or elements, bit 0 the first.
+    /// A set of axes or elements, from bit 0.
     Set {
-        /// Fewest to be named.
+        /// Minimum size.
         least: u32,
-        /// Most to be named.
+        /// Maximum size.
         most: u32,
     },
-    /// Two decimal digits, four bits each.
+    /// Two decimal digits of four bits each.
     Digits,
-    /// High byte and low byte of a version.
+    /// Version: high byte and low byte.
     Version,
     /// A revision.
     Revision,
-    /// One digit before and three digits after the point of a version.
+    /// Version with one digit before and three digits after the point.
     FpgaVersion,
     /// A static variable: SGI0 to SGI31 are 0 to 31, SGR0 to SGR31 are 256 to 287 (4.4.1).
     Variable,
-    /// A program line; of the COMMON program from 10000 (4.6.4).
+    /// A program line; lines of the COMMON program begin at 10000 (4.6.4).
     Line,
 }
 
-/// Which characters a text takes, and what fills it.
+/// Character set and padding of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Charset {
-    /// 0x20 to 0x7E; filled with NUL as in the manual's examples (4.3.2).
+    /// 0x20 to 0x7E; padded with NUL as in the examples of the manual (4.3.2).
     Comment,
-    /// A to Z, 0 to 9, underscore; filled with spaces as the text of 4.6.1 asks.
+    /// A to Z, 0 to 9, underscore; padded with spaces as in the text of 4.6.1.
     Program,
 }
 
-/// A condition on another field, of the same words or of the command that is answered.
+/// Condition on another field, of the same words or of the command of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct When {
     /// The other field.
     pub key: Key,
-    /// Its least value.
+    /// Minimum value.
     pub least: i32,
-    /// Its greatest value.
+    /// Maximum value.
     pub most: i32,
-    /// Whether giving this field sets the other one by itself.
+    /// Whether this field sets the other field automatically.
     pub sets: bool,
 }
 
-/// A whole number without unit.
+/// An integer without unit.
 pub const PLAIN: Unit = Unit { symbol: "", decimals: 0 };
-/// Whole percent.
+/// Percent, integer.
 pub const PERCENT: Unit = Unit { symbol: "%", decimals: 0 };
-/// Percent in steps of 0.01.
+/// Percent, resolution 0.01.
 pub const FINE_PERCENT: Unit = Unit { symbol: "%", decimals: 2 };
-/// Millimetres in steps of 0.001.
+/// Millimetres, resolution 0.001.
 pub const MM: Unit = units::MILLIMETRE;
 /// Encoder pulses.
 pub const PULSE: Unit = units::PULSE;
-/// Whole millimetres a second.
+/// Millimetres per second, integer.
 pub const MM_S: Unit = Unit { symbol: "mm/s", decimals: 0 };
 /// Milliseconds.
 pub const MS: Unit = Unit { symbol: "ms", decimals: 0 };
 
-/// Characters of a text.
+/// Length of a text in characters.
 const TEXT_CHARS: usize = 16;
 
-/// Names of static variables, with the number of the first of each kind.
+/// Prefixes of static variables, with the first number of each kind.
 const VARIABLES: [(&str, i32); 2] = [("SGI", 0), ("SGR", 0x100)];
 
 impl Field {
@@ -134,7 +134,7 @@ impl Field {
         Self { key, name, word, form, spans: &[], when: None, need: Presence::Required }
     }
 
-    /// Bits of a word with a meaning.
+    /// Bits of a word.
     pub const fn bits(key: Key, name: &'static str, word: usize, low: u8, width: u8, show: Show) -> Self {
         Self::new(key, name, word, Form::Bits { low, width, show })
     }
@@ -144,17 +144,17 @@ impl Field {
         Self::bits(key, name, word, 0, 16, show)
     }
 
-    /// A whole word with a number without sign.
+    /// A whole word with an unsigned number.
     pub const fn number(key: Key, name: &'static str, word: usize) -> Self {
         Self::word(key, name, word, Show::Number(PLAIN))
     }
 
-    /// 16 bits with sign.
+    /// Signed 16 bits.
     pub const fn short(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
         Self::new(key, name, word, Form::Short(unit))
     }
 
-    /// 32 bits with sign.
+    /// Signed 32 bits.
     pub const fn long(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
         Self::new(key, name, word, Form::Long(unit))
     }
@@ -169,42 +169,42 @@ impl Field {
         Self::new(key, name, word, Form::Text(charset))
     }
 
-    /// Allows these values only.
+    /// Restricts the values.
     #[must_use]
     pub const fn within(mut self, spans: &'static [(i32, i32)]) -> Self {
         self.spans = spans;
         self
     }
 
-    /// Counts only if `key` has this value, and sets it so when given.
+    /// In use only if `key` has this value; setting this field also sets `key`.
     #[must_use]
     pub const fn sets(mut self, key: Key, value: i32) -> Self {
         self.when = Some(When { key, least: value, most: value, sets: true });
         self
     }
 
-    /// Counts only if `key` has one of these values.
+    /// In use only if `key` is in this range.
     #[must_use]
     pub const fn when(mut self, key: Key, least: i32, most: i32) -> Self {
         self.when = Some(When { key, least, most, sets: false });
         self
     }
 
-    /// May be left out.
+    /// Makes it optional.
     #[must_use]
     pub const fn optional(mut self) -> Self {
         self.need = Presence::Optional;
         self
     }
 
-    /// May be left out if the axis does not move.
+    /// Makes it optional if the axis does not move.
     #[must_use]
     pub const fn of_axis(mut self, axis: u8) -> Self {
         self.need = Presence::OfAxis(axis);
         self
     }
 
-    /// Words it takes.
+    /// Number of words.
     pub const fn size(&self) -> usize {
         match self.form {
             Form::Bits { .. } | Form::Short(_) => 1,
@@ -213,7 +213,7 @@ impl Field {
         }
     }
 
-    /// The bits it takes of each of its words.
+    /// Bit mask in each of its words.
     pub const fn mask(&self) -> u16 {
         match self.form {
             Form::Bits { low, width, .. } => (u16::MAX >> (16 - width)) << low,
@@ -221,7 +221,7 @@ impl Field {
         }
     }
 
-    /// What it is measured in; empty for what is no measure.
+    /// Unit; empty without one.
     pub const fn symbol(&self) -> &'static str {
         match self.form {
             Form::Bits { show: Show::Number(unit), .. } | Form::Short(unit) | Form::Long(unit) => unit.symbol,
@@ -229,7 +229,7 @@ impl Field {
         }
     }
 
-    /// Reads it from words; any words.
+    /// Reads the value from any words.
     pub fn read(&self, words: &[u16; 16]) -> Value {
         let word = |at: usize| words.get(self.word + at).copied().unwrap_or_default();
         let long = || u32::from(word(1)) << 16 | u32::from(word(0));
@@ -239,7 +239,7 @@ impl Field {
                 Value::Int(match (raw >> 4, raw & 0xF) {
                     _ if show != Show::Digits => raw,
                     (tens @ 0..=9, units @ 0..=9) => tens * 10 + units,
-                    // No decimal digits: a number that is never allowed.
+                    // Not decimal digits: returns a number that is never valid.
                     _ => 100 + raw,
                 })
             }
@@ -257,7 +257,7 @@ impl Field {
         }
     }
 
-    /// Writes a value into words. Says what is wrong with one that does not fit; [`Self::accept`] says what else may be.
+    /// Writes a value. An error tells why it does not fit; [`Self::accept`] checks the rest.
     pub fn write(&self, words: &mut [u16; 16], value: &Value) -> Result<(), String> {
         let mut put = |at: usize, bits: u16| {
             if let Some(word) = words.get_mut(self.word + at) {
@@ -302,7 +302,7 @@ impl Field {
         Ok(())
     }
 
-    /// Says why a value may not be sent, if so.
+    /// Checks whether a value can be sent.
     pub fn accept(&self, value: &Value) -> Result<(), String> {
         match (value, self.form) {
             (Value::Int(number), form) => {
@@ -332,7 +332,7 @@ impl Field {
         }
     }
 
-    /// What may be sent, in words.
+    /// Description of the valid values.
     pub fn allowed(&self) -> String {
         let spans = match self.form {
             Form::Bits { show: Show::Choice(choices), .. } => {
@@ -359,7 +359,7 @@ impl Field {
         format!("allowed: {spans} {}", self.symbol()).trim_end().to_owned()
     }
 
-    /// A value in words, without its unit.
+    /// Formats a value without its unit.
     pub fn show(&self, value: &Value) -> String {
         let number = match value {
             Value::Int(number) => *number,
@@ -373,8 +373,8 @@ impl Field {
         }
     }
 
-    /// Reads what people type: a number in the field's unit, the name of a choice, a list of axes such as `1,3`, SGI5
-    /// for a variable. Whether it may be sent is checked later, with the rest of the command.
+    /// Parses user input: a number in the unit of the field, the name of a choice, a list of axes such as `1,3`, or
+    /// SGI5 for a variable. The complete command is validated later.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
         let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| plain(&error));
         let number = |unit: Unit| match unit.symbol {
@@ -427,8 +427,8 @@ impl Show {
                 bits if number == 0 => bits.chain([NOTHING.to_owned()]).collect(),
                 bits => bits.collect::<Vec<_>>().join(","),
             },
-            // The digits printed in 4.7.1 do not tell binary from decimal digits; hexadecimal shows the latter right,
-            // and the former below 10.
+            // The digits in 4.7.1 do not show whether they are binary or decimal. Hexadecimal output is right for
+            // decimal digits, and for binary ones below 10.
             Self::Version => format!("V{:x}.{:02x}", number >> 8, number & 0xFF),
             Self::Revision => format!("R{number:04}"),
             Self::FpgaVersion => format!("V{:x}.{:03x}", number >> 12, number & 0xFFF),
@@ -446,10 +446,10 @@ impl Show {
     }
 }
 
-/// An empty set.
+/// Text of an empty set.
 const NOTHING: &str = "none";
 
-/// Added to the line while the COMMON program runs (4.6.4).
+/// Line offset of the COMMON program (4.6.4).
 pub const COMMON_LINES: i32 = 10_000;
 
 impl Charset {
@@ -482,7 +482,7 @@ impl Charset {
     }
 }
 
-/// Why a text is no whole number without unit.
+/// Message for an invalid integer.
 fn plain(error: &UnitError) -> String {
     match error {
         UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => {
@@ -492,7 +492,7 @@ fn plain(error: &UnitError) -> String {
     }
 }
 
-/// A version such as `V1.08`.
+/// Parses a version such as `V1.08`.
 fn version(text: &str) -> Result<Value, String> {
     let digits = text.strip_prefix('V').unwrap_or(text).replacen('.', "", 1);
     let number =
@@ -500,7 +500,7 @@ fn version(text: &str) -> Result<Value, String> {
     Ok(Value::from(number))
 }
 
-/// A set such as `1,3` or `1-3`.
+/// Parses a set such as `1,3` or `1-3`.
 fn set_of(text: &str) -> Result<Value, String> {
     let mut set = 0;
     if text == NOTHING {

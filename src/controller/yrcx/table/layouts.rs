@@ -1,4 +1,4 @@
-//! The layouts that commands and answers are made of. Words of commands are WI, of answers WO.
+//! Layouts of commands (words WI) and answers (words WO).
 
 use super::field::{Charset, Show};
 use super::field::{FINE_PERCENT, Field, MM, MM_S, MS, PERCENT, PLAIN, PULSE};
@@ -8,7 +8,7 @@ use crate::yrcx::value::Key;
 
 type Layout = &'static [Field];
 
-// Values that are one of a few.
+// Choices.
 
 const ROBOTS: Show = Show::Choice(&[(0, "none (robot 1)"), (1, "1"), (2, "2"), (3, "3"), (4, "4")]);
 const ROBOTS_OR_ALL: Show = Show::Choice(&[(0, "all"), (1, "1"), (2, "2"), (3, "3"), (4, "4")]);
@@ -61,26 +61,26 @@ const VARIABLES: &[(i32, i32)] = &[(0, 31), (256, 287)];
 
 // The robot.
 
-/// 0 is robot 1 (4.2.1).
+/// 0 means robot 1 (4.2.1).
 pub const ROBOT: Layout = &[Field::bits(Key::Robot, "robot", 0, 12, 4, ROBOTS).optional()];
-/// 0 is every robot (4.2.12, 4.7.11).
+/// 0 means all robots (4.2.12, 4.7.11).
 pub const ROBOT_OR_ALL: Layout = &[Field::bits(Key::Robot, "robot", 0, 12, 4, ROBOTS_OR_ALL).optional()];
 
 // Motion (4.2).
 
-/// All axes, or the named ones.
+/// All axes, or a selection.
 pub const AXES: Layout = &[
     Field::bits(Key::AxisFlag, "axes flag", 1, 0, 1, ALL_OR_SOME).optional(),
     Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 1, most: 4 }).sets(Key::AxisFlag, 1),
 ];
-/// Exactly one axis, with the flag that is fixed to 1 (DRIVE, DRIVEI, PUSH).
+/// Exactly one axis, with the flag fixed to 1 (DRIVE, DRIVEI, PUSH).
 pub const ONE_AXIS: Layout = &[
     Field::bits(Key::AxisFlag, "axes flag", 1, 0, 1, Show::Fixed(1)).optional(),
     Field::bits(Key::Axes, "axis", 2, 0, 4, ONE),
 ];
 /// Exactly one axis.
 pub const AXIS: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, ONE)];
-/// One axis or, if none is named, all.
+/// One axis, or all axes.
 pub const AXIS_OR_ALL: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, Show::Set { least: 0, most: 1 }).optional()];
 /// Plus or minus.
 pub const DIRECTION: Layout = &[Field::bits(Key::Direction, "direction", 2, 7, 1, DIRECTIONS)];
@@ -95,7 +95,7 @@ const SPEED_MM_S: Field =
 /// Speed of a point-to-point motion.
 pub const SPEED: Layout =
     &[Field::bits(Key::SpeedMode, "speed flag", 1, 1, 2, SPEED_MODES).optional(), SPEED_OF_MAX, SPEED_PERCENT];
-/// Speed of an interpolated motion, which also goes by mm/s.
+/// Speed of an interpolated motion, also in mm/s.
 pub const LINEAR_SPEED: Layout = &[
     Field::bits(Key::SpeedMode, "speed flag", 1, 1, 2, LINEAR_SPEED_MODES).optional(),
     SPEED_OF_MAX,
@@ -109,16 +109,16 @@ pub const ACCEL: Layout = &[
     Field::word(Key::Accel, "acceleration", 10, PERCENTS).within(TO_100).sets(Key::AccelFlag, 1),
     Field::word(Key::Decel, "deceleration", 11, PERCENTS).within(TO_100).sets(Key::DecelFlag, 1),
 ];
-/// The unit of the positions in the answer: bit 14 pulse, bit 15 mm, never both.
+/// Unit of the positions in the answer: bit 14 pulse, bit 15 mm, never both.
 pub const REPORT: Layout = &[Field::bits(Key::Report, "position output", 1, 14, 2, REPORTS).optional()];
-/// The point to go to, or with the distances to go.
+/// Target point, or a point with distances.
 pub const TO_POINT: Layout = &[Field::number(Key::Point, "point", 4).within(POINTS)];
 /// The points of an arc.
 pub const TO_ARC: Layout = &[
     Field::number(Key::Point, "first point", 4).within(POINTS),
     Field::number(Key::Point2, "second point", 5).within(POINTS),
 ];
-/// A place on a pallet.
+/// Position on a pallet.
 pub const TO_PALLET: Layout = &[
     Field::number(Key::Pallet, "pallet", 4).within(PALLETS),
     Field::number(Key::WorkPosition, "work position", 5).within(COUNTS),
@@ -148,21 +148,21 @@ const fn when(fields: &[Field; 4], key: Key, value: i32) -> [Field; 4] {
     ]
 }
 
-/// Coordinates or distances of the axes that move.
+/// Targets or distances of the moving axes.
 pub const TARGETS_MM: Layout = &of_axes(&per_axis(4, MM));
-/// Coordinates or distances of the axes that move.
+/// Targets or distances of the moving axes.
 pub const TARGETS_PULSE: Layout = &of_axes(&per_axis(4, PULSE));
-/// The hand system of coordinates in mm; coded otherwise than in [`ARM`].
+/// Hand system of coordinates in mm; its coding differs from [`ARM`].
 pub const HAND_SYSTEM: Layout = &[Field::bits(Key::HandSystem, "hand system", 1, 3, 2, HAND_SYSTEMS).optional()];
-/// The position of one axis.
+/// Target of one axis.
 pub const TARGET_MM: Layout = &[Field::long(Key::Target, "target position", 4, MM)];
-/// The position of one axis.
+/// Target of one axis.
 pub const TARGET_PULSE: Layout = &[Field::long(Key::Target, "target position", 4, PULSE)];
-/// The way of one axis.
+/// Distance of one axis.
 pub const DISTANCE_MM: Layout = &[Field::long(Key::Distance, "distance", 4, MM)];
-/// The way of one axis.
+/// Distance of one axis.
 pub const DISTANCE_PULSE: Layout = &[Field::long(Key::Distance, "distance", 4, PULSE)];
-/// The arch: over which axis, how high, where it begins and ends.
+/// Arch: axis, height, start and end.
 pub const ARCH: Layout = &[
     Field::bits(Key::ArchUnit, "arch unit", 1, 4, 1, UNITS),
     Field::bits(Key::ArchAxis, "arch axis", 2, 8, 4, ONE),
@@ -182,12 +182,12 @@ pub const PUSH: Layout = &[
         .sets(Key::PushForceFlag, 1),
     Field::word(Key::PushTime, "push time", 9, Show::Number(MS)).within(COUNTS).sets(Key::PushTimeFlag, 1),
 ];
-/// Distance of inching: pulses or 0.001 mm, as the inching command has it.
+/// Inching distance in pulses or 0.001 mm, depending on the command.
 pub const INCHING_AMOUNT: Layout = &[Field::number(Key::InchingAmount, "inching amount", 2).within(&[(1, 10_000)])];
-/// Where to store the position, and in which unit.
+/// Point and unit for storing the position.
 pub const TEACH: Layout =
     &[Field::number(Key::Point, "point", 2).within(POINTS), Field::word(Key::Unit, "unit", 3, UNITS)];
-/// Which axes return to origin; at most one of the three bits.
+/// Axes of the origin return; at most one of the three bits.
 pub const ORIGIN_AXES: Layout = &[Field::bits(Key::OriginAxes, "axes", 1, 1, 3, ORIGIN_CHOICES).optional()];
 /// A speed setting.
 pub const SPEED_SETTING: Layout = &[Field::word(Key::SpeedPercent, "speed", 2, PERCENTS).within(TO_100)];
@@ -197,14 +197,14 @@ pub const SHIFT: Layout = &[Field::number(Key::Shift, "shift", 2).within(PALLETS
 pub const HAND: Layout = &[Field::number(Key::Hand, "hand", 2).within(&[(0, 31)])];
 /// An arm to select.
 pub const ARM: Layout = &[Field::word(Key::Arm, "arm", 2, ARMS)];
-/// A limit of the torque of an axis.
+/// Torque limit of an axis.
 pub const TORQUE_LIMIT: Layout =
     &[Field::bits(Key::Axes, "axis", 2, 0, 4, ONE), Field::word(Key::Torque, "torque", 3, PERCENTS).within(TO_100)];
 
-/// Where the robot is at the end, in the unit that the command asked for.
+/// Final position, in the unit of the command.
 pub const POSITIONS: Layout =
     &joined(&when(&per_axis(4, PULSE), Key::Report, 1), &when(&per_axis(4, MM), Key::Report, 2));
-/// How a push ended.
+/// Result of a push.
 pub const PUSH_RESULT: Layout = &[Field::bits(
     Key::PushResult,
     "push",
@@ -227,14 +227,14 @@ const fn joined(first: &[Field; 4], second: &[Field; 4]) -> [Field; 8] {
 
 // Definitions and references (4.3).
 
-/// The number of a point.
+/// Point number.
 pub const POINT: Layout = &[Field::number(Key::Point, "point", 2).within(POINTS)];
-/// A point as defined.
+/// Point definition.
 pub const POINT_DATA: Layout = &[
     Field::bits(Key::Unit, "unit", 1, 0, 1, UNITS),
     Field::bits(Key::HandSystem, "hand system", 1, 1, 2, HAND_SYSTEMS).when(Key::Unit, 1, 1).optional(),
 ];
-/// A point as answered.
+/// Point in an answer.
 pub const POINT_DATA_ANSWER: Layout = &[
     Field::bits(Key::Unit, "unit", 3, 0, 1, UNITS),
     Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).when(Key::Unit, 1, 1).optional(),
@@ -242,11 +242,11 @@ pub const POINT_DATA_ANSWER: Layout = &[
 /// Coordinates of a point, in its unit.
 pub const COORDINATES: Layout =
     &joined(&when(&per_axis(4, PULSE), Key::Unit, 0), &when(&per_axis(4, MM), Key::Unit, 1));
-/// A comment of a point.
+/// Comment of a point.
 pub const COMMENT: Layout = &[Field::text(Key::Comment, "comment", 4, Charset::Comment)];
-/// The number of a pallet.
+/// Pallet number.
 pub const PALLET: Layout = &[Field::number(Key::Pallet, "pallet", 2).within(PALLETS)];
-/// Rows, columns, layers, and the first of its five points. The manual's ranges begin at 0, its product at 1.
+/// Rows, columns, layers, and the first of its five points. In the manual the ranges begin at 0, their product at 1.
 pub const PALLET_DATA: Layout = &[
     Field::number(Key::CountX, "places in X", 3).within(&[(0, 32_767)]),
     Field::number(Key::CountY, "places in Y", 4).within(&[(0, 32_767)]),
@@ -255,10 +255,10 @@ pub const PALLET_DATA: Layout = &[
 ];
 /// Coordinates of a shift.
 pub const SHIFT_DATA: Layout = &per_axis(4, MM);
-/// The robot that has a hand.
+/// Robot of a hand.
 pub const HAND_OWNER: Layout = &[Field::number(Key::Owner, "robot", 3)];
-/// The data of a hand. The manual scales data 1 in two ways: unscaled by its text, by 1000 in its examples (4.3.5); it
-/// is carried as it travels.
+/// Data of a hand. The manual has two scales for data 1: none in the text, 1000 in the examples (4.3.5). The raw
+/// value is used.
 pub const HAND_DATA: Layout = &[
     Field::long(Key::Data1, "data 1", 4, PLAIN),
     Field::long(Key::Data2, "data 2", 6, MM),
@@ -270,24 +270,24 @@ pub const HAND_DATA: Layout = &[
 
 /// A static variable.
 pub const VARIABLE: Layout = &[Field::word(Key::Variable, "variable", 2, Show::Variable).within(VARIABLES)];
-/// The variable on the right side.
+/// Variable on the right side.
 pub const VARIABLE_2: Layout = &[Field::word(Key::Variable2, "variable 2", 4, Show::Variable).within(VARIABLES)];
-/// A number for a variable, of its kind.
+/// Value of a variable, by its kind.
 pub const VARIABLE_VALUE: Layout = &[
     Field::long(Key::Value, "value", 4, PLAIN).when(Key::Variable, 0, 31),
     Field::real(Key::Value, "value", 4).when(Key::Variable, 256, 287),
 ];
-/// A parameter, of an axis or of the robot.
+/// Parameter of an axis or of the robot.
 pub const PARAMETER: Layout = &[
     Field::word(Key::Parameter, "parameter", 2, Show::Choice(&parameter::NAMES)),
     Field::bits(Key::Axes, "axis", 3, 0, 4, Show::Set { least: 0, most: 1 }).optional(),
 ];
-/// The value of a parameter.
+/// Value of a parameter.
 pub const PARAMETER_VALUE: Layout = &[Field::long(Key::Value, "value", 4, PLAIN)];
 /// Two points.
 pub const TWO_POINTS: Layout =
     &[Field::number(Key::Point, "point 1", 2).within(POINTS), Field::number(Key::Point2, "point 2", 3).within(POINTS)];
-/// A place on a pallet as a source.
+/// Source position on a pallet.
 pub const PALLET_PLACE: Layout = &[
     Field::number(Key::Pallet, "pallet", 3).within(PALLETS),
     Field::number(Key::WorkPosition, "work position", 4).within(COUNTS),
@@ -301,7 +301,7 @@ pub const VALUE_PULSE: Layout = &[Field::long(Key::Value, "value", 4, PULSE)];
 /// A number in mm.
 pub const VALUE_MM: Layout = &[Field::long(Key::Value, "value", 4, MM)];
 
-// Ports (4.5). The number of a port is two decimal digits in eight bits; which there are depends on its type.
+// Ports (4.5). A port number has two decimal digits in eight bits; its range depends on the port type.
 
 const OUTPUTS: &[(i32, i32)] = &[(2, 7), (10, 17), (20, 27)];
 const INPUTS_OR_OUTPUTS: &[(i32, i32)] = &[(0, 7), (10, 17), (20, 27)];
@@ -346,7 +346,7 @@ const BY_PROGRAM: Field = Field::number(Key::Program, "program", 2).within(PROGR
 const BY_TASK: Field = Field::number(Key::Task, "task", 3).within(TASKS).sets(Key::Selection, 2);
 const BY_NAME: Field = Field::text(Key::ProgramName, "program name", 6, Charset::Program).sets(Key::Selection, 4);
 
-/// A program to register in a task; task 0 is the lowest vacant one.
+/// Program to register in a task; task 0 means the lowest vacant one.
 pub const DESIGNATION: Layout = &[
     selection(&[SELECT[1], SELECT[3]]),
     BY_PROGRAM,
@@ -354,11 +354,11 @@ pub const DESIGNATION: Layout = &[
     Field::number(Key::Priority, "priority", 4).within(&[(1, 64)]),
     BY_NAME,
 ];
-/// A program, or all of them.
+/// A program, or all programs.
 pub const PROGRAM_OR_ALL: Layout = &[selection(&SELECT), BY_PROGRAM, BY_TASK, BY_NAME];
 /// A program.
 pub const PROGRAM: Layout = &[selection(&[SELECT[1], SELECT[2], SELECT[3]]), BY_PROGRAM, BY_TASK, BY_NAME];
-/// What a program does.
+/// State of a program.
 pub const PROGRAM_STATE: Layout = &[
     Field::number(Key::Program, "program", 2),
     Field::number(Key::Task, "task", 3),
@@ -369,7 +369,7 @@ pub const PROGRAM_STATE: Layout = &[
 
 // Information (4.7).
 
-/// Versions of the software.
+/// Software versions.
 pub const VERSIONS: Layout = &[
     Field::word(Key::HostVersion, "host version", 2, Show::Version),
     Field::word(Key::HostRevision, "host revision", 3, Show::Revision),
@@ -389,28 +389,28 @@ const fn word_per_axis(first: usize, show: Show) -> [Field; 4] {
     ]
 }
 
-/// The model number of a robot.
+/// Model number of a robot.
 pub const ROBOT_TYPE: Layout = &[Field::number(Key::RobotType, "robot type", 2)];
-/// The model number of each axis.
+/// Model number of each axis.
 pub const AXIS_TYPES: Layout = &word_per_axis(4, NUMBER);
-/// The servo of each axis.
+/// Servo state of each axis.
 pub const SERVO_STATUS: Layout = &word_per_axis(2, SERVO_STATES);
-/// The servo of axes that are reserved; they answer 9 nonetheless.
+/// Servo state of reserved axes; they always answer 9.
 pub const RESERVED_SERVO_STATUS: Layout = &[
     Field::word(Key::Axis5, "axis 5 (reserved)", 6, SERVO_STATES).optional(),
     Field::word(Key::Axis6, "axis 6 (reserved)", 7, SERVO_STATES).optional(),
 ];
-/// Whether the answer goes on until the status reset.
+/// Whether the output continues until the status reset.
 pub const CONTINUOUS: Layout =
     &[Field::bits(Key::Continuous, "continuous output", 1, 0, 1, Show::Choice(&[(0, "off"), (1, "on")])).optional()];
-/// Where the robot is.
+/// Current position.
 pub const POSITION_PULSE: Layout = &per_axis(4, PULSE);
-/// Where the robot is.
+/// Current position.
 pub const POSITION_MM: Layout = &per_axis(4, MM);
-/// The hand system of the position. Bit 0 is not used, though it is 1 in the manual's example.
+/// Hand system of the position. Bit 0 is unused, although it is 1 in the example of the manual.
 pub const POSITION_HAND_SYSTEM: Layout =
     &[Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).optional()];
-/// Which half of the tasks.
+/// Half of the tasks.
 pub const TASK_RANGE: Layout = &[Field::word(Key::TaskRange, "tasks", 2, TASK_RANGES)];
 
 const fn per_task(show: Show) -> [Field; 8] {
@@ -426,13 +426,13 @@ const fn per_task(show: Show) -> [Field; 8] {
     ]
 }
 
-/// What eight tasks do.
+/// State of eight tasks.
 pub const TASK_STATUS: Layout = &per_task(TASK_STATES);
-/// The lines of eight tasks; 0 is no task.
+/// Lines of eight tasks; 0 means no task.
 pub const TASK_LINES: Layout = &per_task(Show::Line);
-/// A number in the alarm history.
+/// Number in the alarm history.
 pub const HISTORY: Layout = &[Field::number(Key::History, "history number", 2).within(&[(1, 500)])];
-/// An alarm and where it came up.
+/// An alarm and its place.
 pub const ALARM: Layout = &[
     Field::number(Key::AlarmGroup, "alarm group", 1),
     Field::number(Key::AlarmCategory, "alarm category", 2),
@@ -447,7 +447,7 @@ pub const SPEED_STATUS: Layout = &[
     Field::word(Key::ManualSpeed, "manual speed", 3, PERCENTS),
     Field::word(Key::ProgramSpeed, "program speed", 4, PERCENTS),
 ];
-/// Whose origin; only with a robot named.
+/// Motor type of the origin; only with a robot.
 pub const MOTOR_TYPE: Layout = &[Field::bits(
     Key::MotorType,
     "motor type",
@@ -463,7 +463,7 @@ const fn origin(key: Key, name: &'static str, word: usize) -> Field {
     Field::word(key, name, word, ORIGIN_STATES).when(Key::Robot, 1, 4)
 }
 
-/// Whether the origin is known: of the whole system for robot 0, else of each axis.
+/// Origin status: of the whole system for robot 0, otherwise of each axis.
 pub const ORIGIN_STATUS: Layout = &[
     Field::word(Key::System, "whole system", 2, ORIGIN_STATES).when(Key::Robot, 0, 0),
     origin(Key::Axis1, "axis 1", 2),
@@ -473,16 +473,16 @@ pub const ORIGIN_STATUS: Layout = &[
     origin(Key::Axis5, "axis 5 (reserved)", 6).optional(),
     origin(Key::Axis6, "axis 6 (reserved)", 7).optional(),
 ];
-/// Axes to read; none is all.
+/// Selected axes; empty means all.
 pub const SOME_AXES: Layout = &[Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 0, most: 4 }).optional()];
-/// The torque of each axis, the sign its direction; two's complement is an assumption, the manual does not say.
+/// Torque of each axis, signed by direction. Two's complement is an assumption; the manual does not specify it.
 pub const TORQUES: Layout = &[
     Field::short(Key::Axis1, "axis 1", 2, PERCENT),
     Field::short(Key::Axis2, "axis 2", 3, PERCENT),
     Field::short(Key::Axis3, "axis 3", 4, PERCENT),
     Field::short(Key::Axis4, "axis 4", 5, PERCENT),
 ];
-/// A date; the year has two digits.
+/// Date with a two-digit year.
 pub const DATE: Layout = &[
     Field::number(Key::Year, "year", 2).within(&[(0, 99)]),
     Field::number(Key::Month, "month", 3).within(&[(1, 12)]),
@@ -496,7 +496,7 @@ pub const TIME: Layout = &[
 ];
 /// A controller.
 pub const CONTROLLER: Layout = &[Field::number(Key::Controller, "controller", 2).within(&[(1, 4)])];
-/// What is in the option slots; the manual has no code for PROFINET.
+/// Modules in the option slots; the manual has no code for PROFINET.
 pub const SLOTS: Layout = &[
     Field::word(Key::Slot1, "option slot 1", 2, MODULES),
     Field::word(Key::Slot2, "option slot 2", 3, MODULES),

@@ -1,24 +1,24 @@
-//! The parameters that remote commands reach (4.4.2). The manual lists neither 261 nor 263.
+//! Parameters that are accessible by remote commands (4.4.2). The manual lists neither 261 nor 263.
 
 /// One parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parameter {
     /// Its number.
     pub number: u16,
-    /// Its name in the robot language.
+    /// Name in the robot language.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub meaning: &'static str,
-    /// What it is measured in; empty where the manual does not say.
+    /// Unit; empty if the manual has none.
     pub unit: &'static str,
-    /// Whether it belongs to an axis; to the robot otherwise.
+    /// Whether it belongs to an axis instead of the robot.
     pub per_axis: bool,
-    /// Least and greatest value. A payload ends at what the robot carries, which only the controller knows.
+    /// Range. The maximum payload depends on the robot and is known only to the controller.
     pub span: (i32, i32),
 }
 
 impl Parameter {
-    /// The parameter of a number.
+    /// The parameter with this number.
     pub fn from_number(number: i32) -> Option<&'static Self> {
         PARAMETERS.iter().find(|parameter| i32::from(parameter.number) == number)
     }
@@ -28,12 +28,12 @@ const PAYLOAD: (i32, i32) = (0, i32::MAX);
 const DISTANCE: (i32, i32) = (1, 9_999_999);
 const RATIO: (i32, i32) = (1, 100);
 
-/// Every parameter.
+/// All parameters.
 pub const PARAMETERS: [Parameter; 14] = [
     robot(1, "WEIGHT", "payload of the robot", "kg"),
     robot(2, "WEIGHTG", "payload of the robot", "g"),
     axis(257, "ACCEL", "acceleration coefficient", "", RATIO),
-    // Spelled so in the manual.
+    // Spelling of the manual.
     axis(258, "DECCEL", "deceleration ratio", "", RATIO),
     axis(259, "TOLE", "tolerance", "pulses", (1, 16_384)),
     axis(260, "OUTPOS", "OUT effective position", "pulses", DISTANCE),
@@ -47,7 +47,6 @@ pub const PARAMETERS: [Parameter; 14] = [
     axis(270, "PSHSPD", "push speed ratio", "", RATIO),
 ];
 
-/// Their names by number.
 pub(super) const NAMES: [(u16, &str); PARAMETERS.len()] = {
     let mut names = [(0, ""); PARAMETERS.len()];
     let mut at = 0;

@@ -1,4 +1,4 @@
-//! One row a command, in the order of the codes.
+//! Rows of the command table, in the order of the codes.
 
 use super::{Pace, Row, Rule, layouts};
 use crate::Risk;
@@ -7,13 +7,13 @@ use crate::Risk;
 macro_rules! commands {
     ($($command:ident $code:literal $id:literal $section:literal $name:literal $kind:ident
         [$($request:ident)*] [$($answer:ident)*] $([$($rule:ident)*])?;)*) => {
-        /// A remote command. "Set", "select" and the arithmetic change data; see [`Row::risk`].
+        /// A remote command. "Set", "select" and arithmetic commands change data; see [`Row::risk`].
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Command {
             $(#[doc = concat!($section, ": ", $name, ".")] $command,)*
         }
 
-        /// Every command, ascending by code.
+        /// All commands, in ascending order of their codes.
         pub const ROWS: &[Row] = &[$(Row {
             command: Command::$command,
             code: $code,
@@ -31,13 +31,13 @@ macro_rules! commands {
 
 const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
-/// Overwrites what a person wrote or taught.
+/// Overwrites work of a person.
 const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
-/// Power on, power off, or brakes off: an axis may drop.
+/// Power on, power off, or brake release: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
 const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
 const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
-/// Starts a program; ends when that is accepted.
+/// Starts a program; ends when the start is accepted.
 const START: (Risk, Pace) = (Risk::Motion, Pace::Quick);
 
 commands! {
@@ -199,9 +199,9 @@ commands! {
 }
 
 impl Command {
-    /// Its row.
+    /// Row of the table.
     pub const fn row(self) -> &'static Row {
-        // The macro puts the rows in the order of the variants.
+        // The macro keeps rows and variants in the same order.
         &ROWS[self as usize]
     }
 }

@@ -1,50 +1,49 @@
-//! A bus in this process: any number of nodes, with the time that every bit takes and the arbitration of CAN. Without a
-//! clock: whoever drives it says what time it is.
+//! In-process CAN bus with bit timing and arbitration. It has no clock: the caller passes the time.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::{Bitrate, Frame};
 
-/// A bus.
+/// A CAN bus.
 #[derive(Debug)]
 pub struct Bus {
     bitrate: Bitrate,
     queues: Vec<VecDeque<(Duration, Frame)>>,
-    /// When the frame that was on it last ends.
+    /// Time when the last frame ended.
     free: Duration,
-    /// The frame that is on it, who sends it, and when it ends.
+    /// Frame on the bus: when it ends, its sender, the frame.
     current: Option<(Duration, usize, Frame)>,
-    /// What frames had it for, all in all.
+    /// Total transmission time of all frames.
     busy: Duration,
 }
 
-/// A frame that has passed: to all nodes but its sender.
+/// A transmitted frame, for all nodes but its sender.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Passed {
-    /// When its last bit had.
+    /// Time of its last bit.
     pub at: Duration,
-    /// The node that sent it.
+    /// Node that sent it.
     pub from: usize,
     /// The frame.
     pub frame: Frame,
 }
 
 impl Bus {
-    /// A bus with so many nodes.
+    /// Creates a bus with `nodes` nodes.
     pub fn new(bitrate: Bitrate, nodes: usize) -> Self {
         let queues = vec![VecDeque::new(); nodes];
         Self { bitrate, queues, free: Duration::ZERO, current: None, busy: Duration::ZERO }
     }
 
-    /// A node has this to send.
+    /// Queues a frame of a node.
     pub fn send(&mut self, now: Duration, node: usize, frame: Frame) {
         if let Some(queue) = self.queues.get_mut(node) {
             queue.push_back((now, frame));
         }
     }
 
-    /// The next frame that has passed by `now`; call until there is none.
+    /// Returns the next frame that was complete at `now`. Call it until it returns `None`.
     pub fn pass(&mut self, now: Duration) -> Option<Passed> {
         self.arbitrate(now);
         let (at, from, frame) = self.current.filter(|(end, ..)| *end <= now)?;
@@ -53,18 +52,18 @@ impl Bus {
         Some(Passed { at, from, frame })
     }
 
-    /// When the next frame will have passed, if there is one.
+    /// Time when the next frame is complete; `None` if there is none.
     pub fn wake(&self) -> Option<Duration> {
         let first = || self.queues.iter().filter_map(|queue| queue.front().map(|(at, _)| (*at).max(self.free))).min();
         self.current.map(|(end, ..)| end).or_else(first)
     }
 
-    /// How long frames had it, all in all.
+    /// Total time that the bus was in use.
     pub const fn busy(&self) -> Duration {
         self.busy
     }
 
-    /// Of all that wait when it is free, the lowest identifier begins.
+    /// Arbitration: of all waiting frames, the lowest identifier is sent first.
     fn arbitrate(&mut self, now: Duration) {
         if self.current.is_some() {
             return;
@@ -97,7 +96,7 @@ mod tests {
         let all = Duration::from_secs(1);
         let passed: Vec<Passed> = std::iter::from_fn(|| bus.pass(all)).collect();
         let ids: Vec<u16> = passed.iter().map(|passed| passed.frame.id()).collect();
-        // 001 came while 3C5 had begun.
+        // Frame 001 was queued after 3C5 had started.
         assert_eq!(ids, [0x3C5, 0x001, 0x42D]);
         assert_eq!(passed[0].at, frame(0x3C5).time(Bitrate::K500));
         assert_eq!(passed[2].at, bus.busy());

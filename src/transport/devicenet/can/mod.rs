@@ -1,4 +1,4 @@
-//! CAN: frames with 11-bit identifiers, and what carries them.
+//! CAN frames with 11-bit identifiers, and the adapters that carry them.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -15,9 +15,9 @@ pub mod socketcan;
 
 pub use self::slcan_port::SlcanPort;
 
-/// Most bytes of a frame.
+/// Most data bytes of a frame.
 pub const MOST_DATA: usize = 8;
-/// The highest identifier of 11 bits.
+/// Highest 11-bit identifier.
 pub const HIGHEST_ID: u16 = 0x7FF;
 
 /// A data frame with an 11-bit identifier.
@@ -29,7 +29,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame; `None` if the identifier has more than 11 bits or the data more than 8 bytes.
+    /// Creates a frame; `None` if the identifier has more than 11 bits or the data more than 8 bytes.
     pub fn new(id: u16, data: &[u8]) -> Option<Self> {
         if id > HIGHEST_ID || data.len() > MOST_DATA {
             return None;
@@ -44,17 +44,17 @@ impl Frame {
         self.id
     }
 
-    /// What it carries.
+    /// Data bytes.
     pub fn data(&self) -> &[u8] {
         self.data.get(..usize::from(self.len)).unwrap_or_default()
     }
 
-    /// Bits on the wire, with stuffed ones and the pause behind it (ISO 11898-1).
+    /// Length in bits, with stuff bits and the interframe space (ISO 11898-1).
     pub fn bits(&self) -> u32 {
-        // Delimiter of the checksum, acknowledgement with its own, end of frame, pause.
+        // CRC delimiter, acknowledge slot and its delimiter, end of frame, interframe space.
         const UNSTUFFED: u32 = 1 + 2 + 7 + 3;
         let mut stream = Stuffed::default();
-        // Start, identifier, data frame, short identifier, reserved, length.
+        // Start of frame, identifier, RTR, IDE, reserved bit, length.
         stream.push(u32::from(self.id), 12);
         stream.push(u32::from(self.len), 3 + 4);
         for byte in self.data() {
@@ -65,12 +65,12 @@ impl Frame {
         stream.bits + UNSTUFFED
     }
 
-    /// How long it has the bus.
+    /// Transmission time.
     pub fn time(&self, bitrate: Bitrate) -> Duration {
         Duration::from_nanos(u64::from(self.bits()) * 1_000_000_000 / u64::from(bitrate.bits_per_second()))
     }
 
-    /// As link type 227 has it: the identifier with its high byte first, the length, three zeros, the data.
+    /// Encodes the frame for link type 227: identifier (big-endian), length, three zeros, data.
     pub fn to_capture(&self) -> Vec<u8> {
         let mut bytes = u32::from(self.id).to_be_bytes().to_vec();
         bytes.extend([self.len, 0, 0, 0]);
@@ -78,15 +78,15 @@ impl Frame {
         bytes
     }
 
-    /// Reads that; `None` for what is no data frame with an 11-bit identifier.
+    /// Decodes a frame of link type 227; `None` if it is not a data frame with an 11-bit identifier.
     pub fn from_capture(bytes: &[u8]) -> Option<Self> {
         let (head, data) = bytes.split_at_checked(8)?;
         let id = u32::from_be_bytes([head[0], head[1], head[2], head[3]]);
         Self::new(u16::try_from(id).ok()?, data.get(..usize::from(head[4]))?)
     }
 
-    /// Reads a line of a `candump -l` log, `(1700000000.123456) can0 42D#0102`, or of `candump`, `can0 42D [2] 01 02`:
-    /// the time where there is one, and the frame.
+    /// Parses a line of a `candump -l` log, `(1700000000.123456) can0 42D#0102`, or of `candump`, `can0 42D [2] 01 02`.
+    /// Returns the time, if there is one, and the frame.
     pub fn from_candump(line: &str) -> Option<(Option<Duration>, Self)> {
         let mut words = line.split_whitespace().peekable();
         let time = words.next_if(|word| word.starts_with('(')).and_then(|word| {
@@ -111,7 +111,7 @@ impl Frame {
     }
 }
 
-/// As candump writes it: `42D#0102`.
+/// The form of candump: `42D#0102`.
 impl fmt::Display for Frame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:03X}#", self.id)?;
@@ -125,18 +125,18 @@ impl fmt::Debug for Frame {
     }
 }
 
-/// Counts bits with the stuffed ones: after five equal ones comes the other.
+/// Bit counter with stuffing: after five equal bits, one opposite bit is inserted.
 #[derive(Debug, Default)]
 struct Stuffed {
     bits: u32,
-    /// The last bit, and how often it came in a row.
+    /// Last bit, and the number of equal bits in a row.
     run: (bool, u8),
     checksum: u16,
 }
 
 impl Stuffed {
     fn push(&mut self, value: u32, count: u32) {
-        /// Of the checksum of 15 bits.
+        /// Polynomial of the 15-bit CRC.
         const POLYNOMIAL: u16 = 0x4599;
         for at in (0..count).rev() {
             let bit = value >> at & 1 == 1;
@@ -155,7 +155,7 @@ impl Stuffed {
     }
 }
 
-/// How fast a DeviceNet runs.
+/// Bit rate of a DeviceNet bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Bitrate {
     /// 125 kbit/s.
@@ -167,10 +167,10 @@ pub enum Bitrate {
 }
 
 impl Bitrate {
-    /// All of them, slow ones first, as attribute 2 of the DeviceNet object counts them.
+    /// All bit rates, slowest first, in the order of attribute 2 of the DeviceNet object.
     pub const ALL: [Self; 3] = [Self::K125, Self::K250, Self::K500];
 
-    /// Bits a second.
+    /// Bits per second.
     pub const fn bits_per_second(self) -> u32 {
         match self {
             Self::K125 => 125_000,
@@ -179,7 +179,7 @@ impl Bitrate {
         }
     }
 
-    /// As switches are labelled: `125k`.
+    /// Label on rotary switches: `125k`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K125 => "125k",
@@ -195,107 +195,104 @@ impl fmt::Display for Bitrate {
     }
 }
 
-/// How an adapter gets on with its bus.
+/// Error state of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BusState {
-    /// As it should be.
+    /// Error active: no problem.
     #[default]
     Active,
-    /// Errors happen now and then.
+    /// Some errors.
     Warning,
-    /// Many errors; often nobody else is there to acknowledge anything.
+    /// Error passive: many errors. Often no other node is present to acknowledge frames.
     Passive,
-    /// It has taken itself off the bus.
+    /// Bus-off: the adapter has disconnected from the bus.
     Off,
 }
 
-/// What an adapter tells of itself.
+/// Health of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Health {
-    /// How it gets on with its bus.
+    /// Error state.
     pub state: BusState,
-    /// How often received frames were lost in it.
+    /// Number of overruns: received frames that the adapter lost.
     pub overruns: u64,
-    /// How often it did not take a frame to send.
+    /// Number of frames that the adapter did not accept.
     pub rejected: u64,
 }
 
-/// What comes from an adapter.
+/// Event of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heard {
     /// A frame from the bus.
     Frame(Frame),
-    /// Its health changed.
+    /// The health changed.
     Health(Health),
 }
 
-/// Why an adapter does not do what it should.
+/// Failure of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PortError {
-    /// It could not be opened.
+    /// The adapter could not be opened.
     #[error("{path}: {why}")]
     Open {
-        /// Which.
+        /// Path of the adapter.
         path: String,
-        /// Why not, in words.
+        /// Reason, as text.
         why: String,
-        /// What to do about it.
+        /// What the user can do.
         advice: Cow<'static, str>,
     },
-    /// It is no adapter, or cannot be set as it must be.
+    /// The device is not a CAN adapter, or it refuses a setting.
     #[error("{path}: {why}")]
     Setup {
-        /// Which.
+        /// Path of the adapter.
         path: String,
-        /// What it does not do.
+        /// Reason, as text.
         why: String,
     },
-    /// Nothing came from it.
+    /// The adapter sends nothing.
     #[error("{path}: no answer from the adapter")]
     Mute {
-        /// Which.
+        /// Path of the adapter.
         path: String,
     },
-    /// It was there, and is gone.
+    /// The adapter was disconnected.
     #[error("{path} is gone: {why}")]
     Gone {
-        /// Which.
+        /// Path of the adapter.
         path: String,
-        /// How that showed.
+        /// Reason, as text.
         why: String,
     },
-    /// It sends without end, and more than a bus can carry.
+    /// The adapter sends more than a bus can carry.
     #[error("{path} sends without end, as no adapter does")]
     Flooded {
-        /// Which.
+        /// Path of the adapter.
         path: String,
     },
-    /// It takes no more frames.
+    /// The adapter accepts no more frames.
     #[error("{path} takes no more frames to send")]
     Stuck {
-        /// Which.
+        /// Path of the adapter.
         path: String,
     },
 }
 
-/// Something that is waited for.
+/// A boxed future.
 pub type Waiting<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
-/// An adapter on a bus: an end of an in-process bus, SLCAN, SocketCAN.
+/// An adapter on a bus: in-process, SLCAN or SocketCAN.
 pub trait CanPort: fmt::Debug + Send {
-    /// Hands over a frame, which leaves after those before it.
+    /// Queues a frame. Frames leave in order.
     ///
     /// # Errors
-    /// When the adapter is gone or takes no more.
+    /// The adapter is disconnected or accepts no more frames.
     fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
 
-    /// Waits for what comes next. The future may be dropped.
-    ///
-    /// # Errors
-    /// When the adapter is gone.
+    /// Waits for the next event. Cancel safe.
     fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>>;
 
-    /// What is known of its health.
+    /// Last known health.
     fn health(&self) -> Health;
 }
 
@@ -314,7 +311,7 @@ mod tests {
         assert_eq!(frame(0x42F, &[0, 0x7C, 2, 0xEE, 0xFF, 0xC0, 0]).to_string(), "42F#007C02EEFFC000");
     }
 
-    /// Between 47 + 8n bits and (34 + 8n - 1) / 4 more.
+    /// A frame has 47 + 8n bits, plus at most (34 + 8n - 1) / 4 stuff bits.
     #[test]
     fn bits_lie_between_none_and_all_stuffed() {
         for len in 0..=8usize {
@@ -327,7 +324,7 @@ mod tests {
                 }
             }
         }
-        // All 34 up to the end of the checksum are zeros: a stuffed one after every five.
+        // All 34 bits up to the end of the CRC are zeros: one stuff bit after every five.
         assert_eq!(frame(0, &[]).bits(), 47 + 34 / 5);
     }
 

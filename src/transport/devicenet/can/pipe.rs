@@ -1,5 +1,5 @@
-//! A stream of bytes both ways whose ends are queues, so that writing never waits for reading: a serial port with a
-//! thread for each way, or a TCP connection with a task.
+//! Byte stream with a queue in each direction, so that a write never waits for a read. Behind it is a serial port with
+//! two threads, or a TCP connection with two tasks.
 
 use std::io;
 use std::sync::Arc;
@@ -14,29 +14,29 @@ use tokio::sync::mpsc::{Receiver, Sender, UnboundedReceiver, UnboundedSender, ch
 
 use crate::vanished;
 
-/// Most bytes read at a time, and pieces that wait to be taken.
+/// Limits: bytes per read, and pieces that wait for the reader.
 const PIECE: usize = 4096;
 const PIECES: usize = 64;
-/// How long a thread waits for bytes before it looks whether anybody still wants them.
+/// Read timeout of a thread. After it, the thread checks whether the pipe still exists.
 const SLICE: Duration = Duration::from_millis(20);
-/// How long a port may take no byte.
+/// Write timeout of a port.
 const STUCK: Duration = Duration::from_secs(2);
 
-/// The stream.
+/// A byte stream.
 #[derive(Debug)]
 pub struct Pipe {
     writer: Writer,
     arriving: Receiver<io::Result<Vec<u8>>>,
 }
 
-/// What has bytes written to a stream.
+/// Write half of a [`Pipe`].
 #[derive(Debug, Clone)]
 pub struct Writer {
     out: UnboundedSender<Vec<u8>>,
     waiting: Arc<AtomicUsize>,
 }
 
-/// Its other end.
+/// Ends of the queues at the port.
 struct End {
     leaving: UnboundedReceiver<Vec<u8>>,
     waiting: Arc<AtomicUsize>,
@@ -52,10 +52,7 @@ fn pair() -> (Pipe, End) {
 }
 
 impl Pipe {
-    /// Over a TCP connection, by tasks of this runtime.
-    ///
-    /// # Errors
-    /// When the connection is gone already.
+    /// Opens a pipe over a TCP connection, with two tasks on the current runtime.
     pub fn tcp(stream: TcpStream) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         let (pipe, mut end) = pair();
@@ -84,7 +81,7 @@ impl Pipe {
         });
         tokio::spawn(async move {
             while let Some(bytes) = end.leaving.recv().await {
-                // That it is gone, the reader tells.
+                // The reader reports that the connection is closed.
                 if writer.write_all(&bytes).await.is_err() {
                     return;
                 }
@@ -94,10 +91,7 @@ impl Pipe {
         Ok(pipe)
     }
 
-    /// Over a serial port.
-    ///
-    /// # Errors
-    /// When it cannot be had twice, for both ways.
+    /// Opens a pipe over a serial port.
     pub fn serial(mut writer: Box<dyn SerialPort>) -> io::Result<Self> {
         let mut reader = writer.try_clone()?;
         reader.set_timeout(SLICE)?;
@@ -127,7 +121,7 @@ impl Pipe {
         thread::Builder::new().name("slcan-write".to_owned()).spawn(move || {
             while let Some(bytes) = end.leaving.blocking_recv() {
                 if let Err(error) = writer.write_all(&bytes) {
-                    // Nobody may be there to hear it.
+                    // The receiver can be gone already.
                     let _ = end.arrived.blocking_send(Err(vanished(error)));
                     return;
                 }
@@ -137,39 +131,40 @@ impl Pipe {
         Ok(pipe)
     }
 
-    /// What has bytes written to it.
+    /// Write half of the pipe.
     pub const fn writer(&self) -> &Writer {
         &self.writer
     }
 
-    /// Waits for bytes. The future may be dropped.
+    /// Waits for bytes. Cancel safe.
     ///
     /// # Errors
-    /// When the other end is gone.
+    /// The other end has closed the stream.
     pub async fn read(&mut self) -> io::Result<Vec<u8>> {
         self.arriving.recv().await.unwrap_or_else(|| Err(vanished("it was closed")))
     }
 }
 
 impl Writer {
-    /// One whose bytes whoever has the queue writes, and tells with [`written`](Self::written).
+    /// Creates a writer for a queue that the caller drains. The caller reports progress with
+    /// [`written`](Self::written).
     pub fn queue() -> (Self, UnboundedReceiver<Vec<u8>>) {
         let (out, leaving) = unbounded_channel();
         (Self { out, waiting: Arc::default() }, leaving)
     }
 
-    /// So many bytes have been written.
+    /// Reports that `len` bytes were written.
     pub fn written(&self, len: usize) {
         self.waiting.fetch_sub(len, Ordering::Relaxed);
     }
 
-    /// Has bytes written, after those before them. That the other end is gone, [`Pipe::read`] tells.
+    /// Queues bytes. A closed stream is reported by [`Pipe::read`].
     pub fn write(&self, bytes: &[u8]) {
         self.waiting.fetch_add(bytes.len(), Ordering::Relaxed);
         let _ = self.out.send(bytes.to_vec());
     }
 
-    /// Bytes that have not been written yet.
+    /// Number of bytes that are not written yet.
     pub fn waiting(&self) -> usize {
         self.waiting.load(Ordering::Relaxed)
     }

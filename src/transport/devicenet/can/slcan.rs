@@ -1,31 +1,31 @@
-//! SLCAN, the lines of Lawicel's adapters: frames and commands as ASCII that ends with CR. Both ends of it.
+//! SLCAN, the ASCII protocol of Lawicel CAN adapters. Lines end with CR. This module has both ends of it.
 
 use super::{Bitrate, Frame, MOST_DATA};
 
-/// Ends a line, and says yes.
+/// Ends a line; alone, it is a positive answer.
 pub const CR: u8 = 0x0D;
-/// Says no; it ends a line, too.
+/// Ends a line; it is a negative answer.
 pub const BELL: u8 = 0x07;
-/// Longest line there is: an extended frame with its timestamp is shorter.
+/// Line limit. The longest valid line, an extended frame with a timestamp, is shorter.
 const MOST_LINE: usize = 32;
 
-/// Flags of an adapter, as `F` tells them.
+/// Status flags of an adapter (answer to `F`).
 pub mod flag {
     /// The queue of received frames is full.
     pub const RECEIVE_FULL: u8 = 0x01;
     /// The queue of frames to send is full.
     pub const SEND_FULL: u8 = 0x02;
-    /// Errors are counted.
+    /// Error warning level reached.
     pub const WARNING: u8 = 0x04;
-    /// Received frames were lost.
+    /// Overrun: received frames were lost.
     pub const OVERRUN: u8 = 0x08;
-    /// So many errors that it only whispers.
+    /// Error passive.
     pub const PASSIVE: u8 = 0x20;
-    /// An error on the bus.
+    /// Bus error.
     pub const BUS_ERROR: u8 = 0x80;
 }
 
-/// The command that sets a bit rate.
+/// Command that sets a bit rate.
 pub const fn bitrate_command(bitrate: Bitrate) -> &'static [u8] {
     match bitrate {
         Bitrate::K125 => b"S4\r",
@@ -34,7 +34,7 @@ pub const fn bitrate_command(bitrate: Bitrate) -> &'static [u8] {
     }
 }
 
-/// A frame as a line, to the adapter or from it.
+/// Encodes a frame as a line, in either direction.
 pub fn emit(frame: &Frame) -> Vec<u8> {
     let mut line = format!("t{:03X}{}", frame.id(), frame.data().len());
     for byte in frame.data() {
@@ -44,75 +44,75 @@ pub fn emit(frame: &Frame) -> Vec<u8> {
     line.into_bytes()
 }
 
-/// What an adapter says.
+/// A line from an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Said {
     /// A frame from the bus.
     Frame(Frame),
-    /// A frame that DeviceNet does not have: extended, or remote.
+    /// A frame type that DeviceNet does not use: extended or remote.
     Other,
-    /// Its flags.
+    /// Status flags.
     Flags(u8),
-    /// Its version, or its number: it is there.
+    /// Version or serial number.
     About(String),
-    /// Yes; also to a frame that it took.
+    /// Positive answer, also to a frame.
     Done,
-    /// No.
+    /// Negative answer.
     No,
 }
 
-/// What it is told.
+/// A line to an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Command {
-    /// A bit rate, by the digit of its command.
+    /// Bit rate, as the digit of the command.
     Bitrate(u8),
-    /// On the bus.
+    /// Open the channel.
     Open,
-    /// On the bus, but not to be heard.
+    /// Open the channel in listen-only mode.
     Listen,
-    /// Off the bus.
+    /// Close the channel.
     Close,
-    /// Send this.
+    /// Send a frame.
     Send(Frame),
-    /// Send something that DeviceNet does not have; whether it is extended.
+    /// Send a frame of a type that DeviceNet does not use.
     SendOther {
-        /// Answered with `Z`.
+        /// Extended frame; its answer is `Z`.
         is_extended: bool,
     },
-    /// Which version?
+    /// Ask for the version.
     Version,
-    /// Which number?
+    /// Ask for the serial number.
     Number,
-    /// Which flags?
+    /// Ask for the status flags.
     Flags,
-    /// Received frames with a time behind them, or without.
+    /// Switch timestamps of received frames on or off.
     Timestamps(bool),
-    /// Filters and the like, which are taken and not looked at.
+    /// Filters and other settings, which are accepted and ignored.
     Setting,
     /// An empty line.
     Empty,
-    /// Something else.
+    /// Unknown command.
     Unknown,
 }
 
-/// Puts lines together.
+/// Line assembler.
 #[derive(Debug, Clone, Default)]
 pub struct Lines {
     line: Vec<u8>,
     is_long: bool,
 }
 
-/// A line: how it ended, and its text. One that is too long has none.
+/// A complete line. A line that was too long has an empty text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// Whether it ended with [`BELL`].
+    /// The line ended with [`BELL`].
     pub is_bell: bool,
-    /// What stood before.
+    /// Text without the terminator.
     pub text: String,
 }
 
 impl Lines {
-    /// Takes a byte; a line, if it ends one. LF is passed over, for those who put it behind CR.
+    /// Adds a byte. Returns the line that it completes. LF is ignored, because some devices send CR LF.
     pub fn push(&mut self, byte: u8) -> Option<Line> {
         match byte {
             CR | BELL => {
@@ -134,7 +134,7 @@ impl Lines {
 }
 
 impl Line {
-    /// As an adapter's; `None` for what has no meaning.
+    /// Decodes a line from an adapter; `None` if it is not valid.
     pub fn said(&self) -> Option<Said> {
         if self.is_bell {
             return Some(Said::No);
@@ -145,12 +145,12 @@ impl Line {
             Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(Said::Flags),
             Some(b'V' | b'N') => Some(Said::About(text.to_owned())),
             Some(b'T' | b'r' | b'R') => Some(Said::Other),
-            // What is in front of a frame is the rest of a line that got lost.
+            // Text before a frame is the rest of a damaged line.
             _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(Said::Frame),
         }
     }
 
-    /// As one to an adapter.
+    /// Decodes a line to an adapter.
     pub fn command(&self) -> Command {
         if self.is_bell {
             return Command::Unknown;
@@ -176,7 +176,7 @@ impl Line {
     }
 }
 
-/// `tIIILDD..`, from an adapter maybe with a timestamp of four digits behind it.
+/// Parses `tIIILDD..`; a line from an adapter can end with a timestamp of four digits.
 fn frame(text: &str, with_time: bool) -> Option<Frame> {
     let id = u16::from_str_radix(text.get(1..4)?, 16).ok()?;
     let len: usize = text.get(4..5)?.parse().ok()?;
@@ -246,7 +246,7 @@ mod tests {
             Command::Open,
             Command::Listen,
             Command::Send(frame),
-            // Only an adapter puts a time behind it.
+            // Only a line from an adapter can have a timestamp.
             Command::Unknown,
             Command::SendOther { is_extended: false },
             Command::SendOther { is_extended: true },

@@ -1,4 +1,4 @@
-//! An adapter that speaks SLCAN, on a serial port or behind TCP.
+//! SLCAN adapter on a serial port or behind TCP.
 
 use std::collections::VecDeque;
 use std::io;
@@ -10,24 +10,24 @@ use super::pipe::Pipe;
 use super::slcan::{Lines, Said, bitrate_command, emit, flag};
 use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 
-/// Silence after which what is left of an earlier use has been read.
+/// Silence after which all leftovers of an earlier use have been read.
 const QUIET: Duration = Duration::from_millis(50);
-/// How long that may take. An adapter that is off the bus has nothing more to send.
+/// Time limit for the leftovers. An adapter with a closed channel sends nothing more.
 const LEFTOVERS: Duration = Duration::from_millis(400);
-/// Bytes that may come within [`WINDOW`]: a full bus of 500 kbit/s makes lines of 250 kB in a second, and those of some seconds
-/// come together after a pause of this machine.
+/// Limit of bytes per [`WINDOW`]. A full bus of 500 kbit/s makes 250 kB of text per second. After this computer was
+/// suspended, some seconds of it can arrive at once.
 const MOST_RECEIVED: usize = 8 * 1024 * 1024;
 const WINDOW: Duration = Duration::from_secs(1);
-/// What may come while a command is not answered.
+/// Limit of lines that arrive while a command waits for its answer.
 const MOST_SAID: usize = 4096;
-/// How long an adapter may take to answer a command.
+/// Time limit for the answer to a command.
 const ANSWER: Duration = Duration::from_millis(300);
-/// Between questions how it is.
+/// Interval of the status flag request.
 const FLAGS: Duration = Duration::from_secs(1);
-/// Bytes that wait to be written beyond which the adapter takes no more.
+/// Limit of unwritten bytes. Above it, the adapter counts as stuck.
 const MOST_WAITING: usize = 16 * 1024;
 
-/// The adapter.
+/// An SLCAN adapter.
 #[derive(Debug)]
 pub struct SlcanPort {
     path: String,
@@ -35,19 +35,16 @@ pub struct SlcanPort {
     lines: Lines,
     said: VecDeque<Said>,
     health: Health,
-    /// When to ask for its flags; `None` if it does not tell them.
+    /// Time of the next status flag request; `None` if the adapter does not support it.
     flags_due: Option<Instant>,
-    /// When the window began, and the bytes that have come in it.
+    /// Start of the current window, and the bytes received in it.
     received: (Instant, usize),
     /// Whether anything came since it was set up anew.
     hears: bool,
 }
 
 impl SlcanPort {
-    /// Sets up an adapter at the other end of a stream: off the bus, bit rate, on the bus; or on the bus to listen only.
-    ///
-    /// # Errors
-    /// When nothing answers as such an adapter does, or it refuses.
+    /// Sets up an adapter: closes the channel, sets the bit rate, opens the channel (in listen-only mode if `listens`).
     pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool) -> Result<Self, PortError> {
         let mut port = Self {
             path,
@@ -59,7 +56,7 @@ impl SlcanPort {
             received: (Instant::now(), 0),
             hears: false,
         };
-        // Ends whatever line an earlier use has left.
+        // Ends a line that an earlier use left unfinished.
         port.write(b"\r\r\r")?;
         port.write(b"C\r")?;
         let begun = Instant::now();
@@ -95,7 +92,7 @@ impl SlcanPort {
         Ok(port)
     }
 
-    /// Sends a command; what answers it: what is looked for, or no. Frames that come meanwhile are kept.
+    /// Sends a command and waits for its answer, positive or negative. Frames that arrive in between are kept.
     async fn ask(&mut self, command: &[u8], wanted: impl Fn(&Said) -> bool) -> Result<Option<Said>, PortError> {
         let mut before = self.said.len();
         self.write(command)?;
@@ -124,14 +121,14 @@ impl SlcanPort {
         if self.pipe.writer().waiting() > MOST_WAITING {
             return Err(PortError::Stuck { path: self.path.clone() });
         }
-        // Why it is gone, reading tells.
+        // A closed stream is reported by the next read.
         self.pipe.writer().write(bytes);
         Ok(())
     }
 
-    /// Reads what there is; whether anything came in time.
+    /// Reads available bytes. Returns whether bytes arrived in time.
     async fn read(&mut self, until: Instant) -> Result<bool, PortError> {
-        // What comes without end is always there in time.
+        // An adapter that sends without end always has bytes ready, so the time is checked first.
         if Instant::now() >= until {
             return Ok(false);
         }
@@ -139,7 +136,6 @@ impl SlcanPort {
         self.take(read).map(|()| true)
     }
 
-    /// Takes what was read.
     fn take(&mut self, read: io::Result<Vec<u8>>) -> Result<(), PortError> {
         let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
         if self.received.0.elapsed() > WINDOW {
@@ -156,7 +152,7 @@ impl SlcanPort {
     }
 
     fn flagged(&mut self, flags: u8) {
-        // There is no flag for bus-off: an adapter that is has all three.
+        // SLCAN has no flag for bus-off. An adapter that is bus-off sets all three flags.
         const OFF: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
         self.health.state = match flags {
             _ if flags & OFF == OFF => BusState::Off,
@@ -209,7 +205,7 @@ impl CanPort for SlcanPort {
 }
 
 impl Drop for SlcanPort {
-    /// Off the bus: an adapter that is left on it goes on acknowledging.
+    /// Closes the channel. An adapter with an open channel continues to acknowledge frames.
     fn drop(&mut self) {
         self.pipe.writer().write(b"C\r");
     }

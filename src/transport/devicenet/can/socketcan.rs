@@ -1,4 +1,4 @@
-//! An interface of Linux's own CAN (`can0`). Bit rate and state are the administrator's.
+//! Linux SocketCAN interface (`can0`). The administrator sets its bit rate and state.
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -9,9 +9,8 @@ use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, 
 
 use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 
-/// Frames that wait to be sent beyond which the interface takes no more.
+/// Limit of frames that wait. Above it, the interface counts as stuck.
 const MOST_WAITING: usize = 256;
-/// How an interface is set up.
 fn advice(interface: &str) -> Cow<'static, str> {
     format!(
         "set the interface up: `ip link set {interface} up type can bitrate 500000 restart-ms 100` (as root; the bit rate is \
@@ -19,13 +18,13 @@ fn advice(interface: &str) -> Cow<'static, str> {
     )
     .into()
 }
-/// Numbers of errors of the system that `io::ErrorKind` does not name.
+/// Linux error numbers without an `io::ErrorKind`.
 const NO_DEVICE: i32 = 19;
 const NO_FAMILY: i32 = 97;
 const IS_DOWN: i32 = 100;
 const NO_BUFFER: i32 = 105;
 
-/// The interface.
+/// A SocketCAN interface.
 pub struct SocketCan {
     interface: String,
     socket: CanSocket,
@@ -41,9 +40,6 @@ impl std::fmt::Debug for SocketCan {
 
 impl SocketCan {
     /// Opens an interface.
-    ///
-    /// # Errors
-    /// When there is none of that name, or no CAN at all.
     pub fn open(interface: &str) -> Result<Self, PortError> {
         let failed = |error: &io::Error| {
             let (why, advice) = match error.raw_os_error() {
@@ -80,7 +76,7 @@ impl SocketCan {
                     }
                 } => {
                     match written {
-                        // The queue of the interface is full: it counts as not taken, as with other adapters.
+                        // The queue of the interface is full. The frame counts as rejected, as with other adapters.
                         Err(error) if error.raw_os_error() == Some(NO_BUFFER) => self.health.rejected += 1,
                         written => written.map_err(|error| self.gone(&error))?,
                     }

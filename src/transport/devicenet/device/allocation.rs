@@ -1,21 +1,21 @@
-//! Who has the connections of the predefined set.
+//! Allocation of the connections of the predefined set.
 
 use std::time::Duration;
 
 use super::super::Now;
 use super::super::wire::{Mac, connection, general, owner};
 
-/// The explicit connection is let go of after four times its packet rate of 2500 ms.
+/// Timeout of the explicit connection: four times its packet rate of 2500 ms.
 const EXPLICIT_PATIENCE: Duration = Duration::from_secs(10);
 
-/// What is allocated, and to whom.
+/// The allocated connections, and the master that owns them.
 #[derive(Debug, Default)]
 pub(super) struct Allocation {
     held: Option<(u8, Mac)>,
     explicit_until: Now,
 }
 
-/// Why something is not allocated or released: general and additional code.
+/// Refusal of an allocation or release: general and additional code.
 pub(super) type Refusal = (u8, u8);
 
 const KNOWN: u8 = connection::EXPLICIT | connection::POLL;
@@ -28,12 +28,11 @@ impl Allocation {
         }
     }
 
-    /// What is allocated.
     pub(super) fn choice(&self) -> u8 {
         self.held.map_or(0, |(choice, _)| choice)
     }
 
-    /// Whether the explicit connection is this master's.
+    /// Whether this master owns the explicit connection.
     pub(super) fn is_explicit_of(&self, mac: Mac) -> bool {
         self.held.is_some_and(|(choice, master)| master == mac && choice & connection::EXPLICIT != 0)
     }
@@ -42,7 +41,7 @@ impl Allocation {
         self.held.map(|_| self.explicit_until)
     }
 
-    /// Something came from the master.
+    /// Restarts the timeout of the explicit connection.
     pub(super) fn refresh(&mut self, now: Now) {
         self.explicit_until = now + EXPLICIT_PATIENCE;
     }

@@ -1,31 +1,31 @@
-//! What a slave can do wrong, for tests of masters.
+//! Deliberate faults of a simulated slave, for tests of masters.
 
 use super::super::can::MOST_DATA;
 use super::super::wire::Fragment;
 
-/// Something that a slave does wrong.
+/// A fault of the slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DeviceFault {
-    /// It acknowledges no fragments of explicit requests, and takes no acknowledgements.
+    /// The slave neither sends nor accepts acknowledgements of explicit fragments.
     NoAcknowledge,
-    /// The third fragment of every image from it is missing.
+    /// Every image from the slave lacks its third fragment.
     LostFragment,
-    /// The fragments of every image from it are counted wrong.
+    /// Every image from the slave has wrong fragment counts.
     WrongCount,
-    /// It says that its images have another size.
+    /// The slave reports another image size.
     OtherSize,
-    /// Another master has its connections.
+    /// Another master owns the connections of the slave.
     ForeignOwner,
-    /// It answers that every MAC is taken.
+    /// The slave answers every duplicate MAC check.
     DuplicateMac,
-    /// It says nothing.
+    /// The slave does not answer.
     Silence,
-    /// The adapters of its bus are bus-off.
+    /// The adapters on the bus are bus-off.
     BusOff,
 }
 
 impl DeviceFault {
-    /// All, by their names.
+    /// All faults with their names.
     pub const ALL: [(&str, Self); 8] = [
         ("no-acknowledge", Self::NoAcknowledge),
         ("lost-fragment", Self::LostFragment),
@@ -38,11 +38,11 @@ impl DeviceFault {
     ];
 }
 
-/// Does it to the frames of an image.
+/// Applies a fault to the frames of an image.
 pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     match fault {
         Some(DeviceFault::LostFragment) if frames.len() > 2 => drop(frames.remove(2)),
-        // A bare image has no fragments; one that is a byte short comes to the same.
+        // A single frame has no fragments. Removing a byte has the same effect.
         Some(DeviceFault::LostFragment) => {
             for frame in &mut frames {
                 frame.truncate(frame.len().saturating_sub(1));

@@ -1,4 +1,4 @@
-//! Explicit messages as a slave takes and gives them: in fragments, acknowledged.
+//! Explicit messages of a slave: reassembly, acknowledgement, fragmentation.
 
 use std::time::Duration;
 
@@ -7,17 +7,17 @@ use super::super::can::Frame;
 use super::super::wire::{Fragment, Header, Id, Kind, Mac};
 
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Most bytes of a request that are put together.
+/// Longest request that is reassembled, in bytes.
 const ROOM: usize = 64;
 
-/// A request that is whole.
+/// A complete request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Whole {
     pub(super) header: Header,
     pub(super) body: Vec<u8>,
 }
 
-/// The traffic of one slave.
+/// Fragmentation state of one slave.
 #[derive(Debug)]
 pub(super) struct Messages {
     mac: Mac,
@@ -55,7 +55,7 @@ impl Messages {
         self.leaving.as_ref().map(|leaving| if leaving.is_due { Now::ZERO } else { leaving.deadline })
     }
 
-    /// Takes a frame; what is whole comes out, and what must be said at once goes into `out`.
+    /// Handles a frame. Returns the request that it completes. Acknowledgements go to `out`.
     pub(super) fn take(&mut self, now: Now, bytes: &[u8], out: &mut Vec<Frame>, acknowledges: bool) -> Option<Whole> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
@@ -71,7 +71,7 @@ impl Messages {
             }
             return None;
         }
-        // Only the last one may have fewer than six bytes.
+        // Only the last fragment can have fewer than six bytes.
         if part.is_empty() || kind != Kind::Last && part.len() != 6 {
             self.arriving = None;
             return None;
@@ -107,7 +107,7 @@ impl Messages {
         Some(Whole { header: Header { is_fragment: false, ..header }, body: arriving.body })
     }
 
-    /// Gives an answer.
+    /// Sends an answer.
     pub(super) fn give(&mut self, now: Now, header: Header, body: &[u8], out: &mut Vec<Frame>) {
         if body.len() < 8 {
             self.leaving = None;
@@ -130,7 +130,7 @@ impl Messages {
         self.leaving = Some(Leaving { header, pieces, at: 0, deadline: now, is_repeated: false, is_due: true });
     }
 
-    /// A fragment that is to leave.
+    /// Returns the next fragment to send.
     pub(super) fn poll(&mut self, now: Now) -> Option<Frame> {
         let leaving = self.leaving.as_mut()?;
         if leaving.is_due {

@@ -1,5 +1,5 @@
-//! The other end: a slave that knows group 2 only, with the objects of the predefined set. Without sockets and without a
-//! clock. It is stricter than devices are, and reads what comes with code of its own.
+//! Simulated DeviceNet slave (group 2 only server) with the objects of the predefined set. It has no sockets and no
+//! clock. It is stricter than real devices, and shares no decoder with the master.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -20,34 +20,34 @@ pub use self::fault::DeviceFault;
 use self::messages::Messages;
 use self::polled::Polled;
 
-/// Between the questions whether the MAC is free.
+/// Interval of the duplicate MAC checks.
 const CHECK: Duration = Duration::from_secs(1);
 
-/// What a slave is.
+/// Configuration of a slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Its MAC.
+    /// MAC of the slave.
     pub mac: Mac,
-    /// How fast its bus is.
+    /// Bit rate of its bus.
     pub bitrate: Bitrate,
-    /// Its maker.
+    /// Vendor id.
     pub vendor: u16,
-    /// The kind of device.
+    /// Device type.
     pub device_type: u16,
-    /// The product.
+    /// Product code.
     pub product: u16,
     /// Major and minor revision.
     pub revision: (u8, u8),
-    /// Its serial number.
+    /// Serial number.
     pub serial: u32,
-    /// Its name, 255 characters at most.
+    /// Product name, at most 255 characters.
     pub name: String,
-    /// Bytes of its images, the same both ways.
+    /// Size of the images in bytes, the same in both directions.
     pub size: u16,
 }
 
 impl Setup {
-    /// With the identity of an older controller of YAMAHA, as its EDS file has it.
+    /// A slave with the identity of an older YAMAHA controller, from its EDS file.
     pub fn stand_in(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
         Self {
             mac,
@@ -63,26 +63,26 @@ impl Setup {
     }
 }
 
-/// What a slave is for.
+/// Behaviour behind the slave.
 pub trait Application: Send {
-    /// A new image from the master.
+    /// Receives a new image from the master.
     fn image_out(&mut self, now: Now, image: &[u8]);
-    /// Fills the image that goes to the master; it has the bytes of the last time.
+    /// Updates the image to the master. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
-    /// The master is gone: released it, or went silent.
+    /// The master released the connections or timed out.
     fn master_gone(&mut self, now: Now);
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Asked so often whether its MAC is free; the next step is due then.
+    /// Number of duplicate MAC checks sent, and the time of the next step.
     Checking(u8, Now),
     OnLine,
-    /// Another node has its MAC.
+    /// Another node has this MAC.
     Faulted,
 }
 
-/// The slave.
+/// A simulated slave.
 pub struct Device<A> {
     setup: Setup,
     application: A,
@@ -103,7 +103,7 @@ impl<A> fmt::Debug for Device<A> {
 }
 
 impl<A: Application> Device<A> {
-    /// One that is switched on, and goes on line once it has found its MAC to be free.
+    /// Creates a slave at power-on. It checks its MAC before it goes on line.
     pub fn new(setup: Setup, application: A) -> Self {
         Self {
             image_in: vec![0; setup.size.into()],
@@ -119,42 +119,42 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// One that has been on line for long.
+    /// Creates a slave that is already on line.
     pub fn on_line(setup: Setup, application: A) -> Self {
         Self { phase: Phase::OnLine, ..Self::new(setup, application) }
     }
 
-    /// What it is for.
+    /// The application.
     pub const fn application(&mut self) -> &mut A {
         &mut self.application
     }
 
-    /// What it is.
+    /// The configuration.
     pub const fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// Makes it do something wrong from now on, or no longer.
+    /// Activates a fault, or none.
     pub const fn misbehave(&mut self, fault: Option<DeviceFault>) {
         self.fault = fault;
     }
 
-    /// What it does wrong.
+    /// The active fault.
     pub const fn fault(&self) -> Option<DeviceFault> {
         self.fault
     }
 
-    /// Whether it is on line.
+    /// Whether the slave is on line.
     pub fn is_on_line(&self) -> bool {
         self.phase == Phase::OnLine
     }
 
-    /// Who has its connections.
+    /// The master that owns its connections.
     pub const fn master(&self) -> Option<Mac> {
         self.allocation.master()
     }
 
-    /// A frame to send at `now`; call until there is none.
+    /// Returns the next frame to send at `now`. Call it until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Frame> {
         match self.phase {
             Phase::Checking(2, due) if now >= due => self.phase = Phase::OnLine,
@@ -172,7 +172,7 @@ impl<A: Application> Device<A> {
         self.outbox.pop_front()
     }
 
-    /// When to call again at the latest.
+    /// Latest time of the next call.
     pub fn wake(&self) -> Option<Now> {
         if !self.outbox.is_empty() {
             return Some(Now::ZERO);
@@ -185,7 +185,7 @@ impl<A: Application> Device<A> {
         [own, polled, self.explicit_until(), self.messages.wake()].into_iter().flatten().min()
     }
 
-    /// A frame from the bus.
+    /// Handles a frame from the bus.
     pub fn handle(&mut self, now: Now, frame: &Frame) {
         let mac = self.setup.mac;
         match Id::parse(frame.id()) {
@@ -218,7 +218,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Lets go of what was silent for too long.
+    /// Closes connections that timed out.
     fn expire(&mut self, now: Now) {
         if let Some(polled) = &mut self.polled
             && polled.expire(now)
@@ -232,13 +232,13 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// The explicit connection goes with its master's silence, but not while polls come.
+    /// The explicit connection times out if its master is silent, except while polls arrive.
     fn explicit_until(&self) -> Option<Now> {
         let is_polled = self.polled.as_ref().is_some_and(Polled::is_established);
         self.allocation.explicit_until().filter(|_| !is_polled)
     }
 
-    /// The poll connection is gone.
+    /// Closes the poll connection.
     fn forget_poll(&mut self, now: Now) {
         if self.polled.take().is_some_and(|polled| polled.is_established()) {
             self.application.master_gone(now);

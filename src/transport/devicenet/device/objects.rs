@@ -1,4 +1,4 @@
-//! What a slave answers to explicit requests.
+//! Objects of a slave, and its answers to explicit requests.
 
 use super::super::Now;
 use super::super::can::Bitrate;
@@ -9,7 +9,7 @@ use super::messages::Whole;
 use super::polled::Polled;
 use super::{Application, Device};
 
-/// The assembly that it shows.
+/// Instance of the produced assembly.
 const ASSEMBLY: u16 = 100;
 /// Packet rate of the explicit connection, in milliseconds.
 const EXPLICIT_RATE: u16 = 2500;
@@ -17,11 +17,12 @@ const NO_ATTRIBUTE: Refusal = (general::NO_ATTRIBUTE, owner::NONE);
 const NO_SERVICE: Refusal = (general::NO_SERVICE, owner::NONE);
 
 impl<A: Application> Device<A> {
-    /// A frame with an explicit request, or a part of one.
+    /// Handles a frame with an explicit request or a fragment of one.
     pub(super) fn request(&mut self, now: Now, bytes: &[u8], is_connected: bool) {
         let Some(first) = bytes.first() else { return };
         let from = Header::parse(*first).mac;
-        // One who asks for a connection on that of nobody is taken; whoever has none is not heard on it.
+        // If no master owns the connections, a request on the explicit connection is accepted, because it can be an
+        // allocation. Otherwise only the owner can use that connection.
         if is_connected && self.allocation.master().is_some() && !self.allocation.is_explicit_of(from) {
             return;
         }
@@ -41,7 +42,7 @@ impl<A: Application> Device<A> {
     }
 
     fn answer(&mut self, now: Now, whole: &Whole, is_explicit: bool) -> Option<Answer> {
-        // An answer is no request.
+        // Ignore answers.
         if whole.body.first().is_none_or(|service| service & service::ANSWER != 0) {
             return None;
         }
@@ -197,7 +198,7 @@ impl<A: Application> Device<A> {
     }
 }
 
-/// Too few bytes, or too many.
+/// Refusal for a wrong length.
 const fn length(data: &[u8], wanted: usize) -> Refusal {
     (if data.len() < wanted { general::TOO_SHORT } else { general::TOO_LONG }, owner::NONE)
 }

@@ -1,4 +1,4 @@
-//! The poll connection of a slave.
+//! Poll connection of a slave.
 
 use std::time::Duration;
 
@@ -8,38 +8,36 @@ use super::super::wire::{Id, split};
 use super::fault::spoil;
 use super::{Application, Device};
 
-/// Before the first poll the watchdog waits at least this long.
+/// Minimum watchdog time before the first poll.
 const FIRST: Duration = Duration::from_secs(10);
-/// Packet rates are rounded up to a multiple of this.
+/// Packet rates are rounded up to a multiple of this, in ms.
 const TICK: u16 = 10;
 
-/// How it is (attribute 1 of the connection object).
+/// Connection state (attribute 1 of the connection object).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// Allocated; polls are passed over.
+    /// Allocated. Polls are ignored.
     Configuring = 1,
-    /// Up.
     Established = 3,
-    /// The master was silent for too long.
+    /// The watchdog expired.
     TimedOut = 4,
 }
 
-/// A poll that is whole.
+/// A complete poll.
 enum Poll {
-    /// Its master idles.
+    /// The master is in idle mode.
     Idle,
     Image(Vec<u8>),
 }
 
-/// The connection.
 #[derive(Debug)]
 pub(super) struct Polled {
     pub(super) state: State,
-    /// Milliseconds; 0 switches the watchdog off.
+    /// Packet rate in ms; 0 switches the watchdog off.
     pub(super) rate: u16,
     until: Option<Now>,
     parts: Vec<u8>,
-    /// Fragments of the image that have come.
+    /// Number of fragments received of the current image.
     count: u8,
 }
 
@@ -56,7 +54,7 @@ impl Polled {
         self.until
     }
 
-    /// Takes a packet rate, which brings it up; the rate that it keeps.
+    /// Sets the packet rate, which establishes the connection. Returns the rounded rate.
     pub(super) fn set_rate(&mut self, now: Now, rate: u16) -> u16 {
         self.rate = rate.checked_next_multiple_of(TICK).unwrap_or(u16::MAX);
         self.state = State::Established;
@@ -64,7 +62,7 @@ impl Polled {
         self.rate
     }
 
-    /// Whether the master has just been silent for too long.
+    /// Whether the watchdog has just expired.
     pub(super) fn expire(&mut self, now: Now) -> bool {
         if self.until.is_none_or(|until| now < until) {
             return false;
@@ -78,7 +76,7 @@ impl Polled {
         (self.rate > 0).then(|| Duration::from_millis(self.rate.into()) * 4)
     }
 
-    /// Takes a frame of a poll: what is whole with it.
+    /// Handles a frame of a poll. Returns the poll that it completes.
     fn take(&mut self, bytes: &[u8], size: usize) -> Option<Poll> {
         let Some((first, part)) = bytes.split_first() else {
             self.count = 0;
@@ -108,7 +106,6 @@ impl Polled {
 }
 
 impl<A: Application> Device<A> {
-    /// A frame of a poll.
     pub(super) fn polled(&mut self, now: Now, bytes: &[u8]) {
         let size = usize::from(self.setup.size);
         let Some(polled) = self.polled.as_mut().filter(|polled| polled.is_established()) else { return };

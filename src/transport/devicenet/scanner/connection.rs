@@ -1,8 +1,8 @@
-//! The master's end of a connection with a slave: allocates it, finds its sizes, polls, notices its loss, opens it again.
+//! Master side of a connection: allocation, image sizes, polling, loss detection, reopening.
 //!
-//! Every opening is a generation. What is to be shown names the generation it is meant for: after a loss the slave gets
-//! the resting image until somebody who knows of the loss says otherwise. So nothing that was meant for the time before
-//! can happen a second time.
+//! Each opening starts a new generation, and every image to send names its generation. After a loss, the slave gets the
+//! resting image until a caller that has seen the loss sets another. Therefore no image from before a loss is sent
+//! again.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,9 +18,9 @@ use crate::devicenet::error::Error;
 use crate::devicenet::settings::{Purpose, Settings};
 use crate::devicenet::wire::{Answer, Id, Mac, Request, class, connection, general, owner};
 
-/// Pause before a lost connection is opened again, one after the other; the last one again and again.
+/// Pauses before a lost connection is opened again. The last one repeats.
 const BACKOFF: [Duration; 3] = [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(5)];
-/// The slave lets go of an explicit connection that is silent for 10 s.
+/// Keepalive interval. The slave closes an explicit connection after 10 s of silence.
 const KEEP_ALIVE: Duration = Duration::from_secs(3);
 const ALLOCATION: &str = "the allocation of its connections";
 const OWNER: &str = "who has its connections";
@@ -33,34 +33,34 @@ const RATE: &str = "the packet rate";
 enum Phase {
     /// Before the master is on line.
     New,
-    /// The connections are being allocated; whether they were found to be this master's already.
+    /// Allocating the connections. `again`: the second attempt, after the owner was read.
     Allocating {
         again: bool,
     },
-    /// What this master's MAC had before is asked.
+    /// Reading which connections this MAC owns.
     AskingOwner,
-    /// It is being released.
+    /// Releasing leftovers of this MAC.
     Freeing,
-    /// The size of the image from the slave is asked.
+    /// Reading the size of the image from the slave.
     AskingProduced,
-    /// The size of the image to it, too; that from it is known.
+    /// Reading the size of the image to the slave. The other size is known.
     AskingConsumed(u16),
-    /// The packet rate is set, which brings the connection up.
+    /// Setting the packet rate, which establishes the connection.
     SettingRate,
     Open,
-    /// The connections are being released; then all ends, or it is opened again.
+    /// Releasing the connections. Then the connection ends, or opens again.
     Releasing {
         again: bool,
     },
-    /// Until the next try.
+    /// Waiting until the next attempt.
     Waiting(Now),
     Ended,
 }
 
-/// What a request of a caller came to.
+/// Result of a caller's request.
 pub(super) type Reply = (Token, Result<Answer, Error>);
 
-/// A connection.
+/// A connection to a slave.
 #[derive(Debug)]
 pub(super) struct Connection {
     settings: Settings,
@@ -72,9 +72,9 @@ pub(super) struct Connection {
     revision: u64,
     is_over: bool,
     tries: usize,
-    /// What callers want asked.
+    /// Requests of callers that wait.
     asks: VecDeque<(Token, Request)>,
-    /// Whose answer is waited for; `None` while the connection asks for itself.
+    /// Request of the caller in progress; `None` for an internal request.
     asking: Option<Token>,
     replies: VecDeque<Reply>,
     keep_alive: Now,
@@ -119,7 +119,7 @@ impl Connection {
         self.phase == Phase::Ended && self.replies.is_empty()
     }
 
-    /// Shows this image from the next poll on; see [`Scanner::set_image`](super::Scanner::set_image).
+    /// Sends this image from the next poll on; see [`Scanner::set_image`](super::Scanner::set_image).
     pub(super) fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Error> {
         self.view.check(generation)?;
         if image.len() != self.image.len() {
@@ -131,7 +131,7 @@ impl Connection {
         Ok(self.revision)
     }
 
-    /// Asks something of the slave once the connection is open.
+    /// Queues an explicit request until the connection is open.
     pub(super) fn ask(&mut self, token: Token, request: Request) {
         if self.phase == Phase::Ended || self.is_over {
             self.replies.push_back((token, Err(Error::Ended)));
@@ -144,7 +144,7 @@ impl Connection {
         self.replies.pop_front()
     }
 
-    /// Ends it: the connections are released.
+    /// Closes the connection: releases the connections of the slave.
     pub(super) fn close(&mut self, now: Now) {
         if std::mem::replace(&mut self.is_over, true) {
             return;
@@ -157,12 +157,12 @@ impl Connection {
                 self.requester.cancel();
                 self.release(now, false);
             }
-            // The answer that is awaited comes first.
+            // The pending answer comes first.
             _ => self.show(State::Closing),
         }
     }
 
-    /// The adapter or the whole bus is lost.
+    /// The adapter or the bus failed.
     pub(super) fn fail(&mut self, now: Now, error: Error) {
         self.requester.cancel();
         match self.phase {
@@ -174,7 +174,7 @@ impl Connection {
         }
     }
 
-    /// A frame of this slave.
+    /// Handles a frame of this slave.
     pub(super) fn take(&mut self, now: Now, id: Id, bytes: &[u8], bus: &Bus) {
         match id {
             Id::Answer(_) => {
@@ -198,7 +198,7 @@ impl Connection {
         }
     }
 
-    /// Does what is due; frames to send come out.
+    /// Does what is due. Frames to send go to `out`.
     pub(super) fn poll(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
         if let Some(outcome) = self.requester.expire(now) {
             self.done(now, outcome, bus);
@@ -225,13 +225,13 @@ impl Connection {
         [own, polling, self.requester.wake()].into_iter().flatten().min()
     }
 
-    /// Polls, keeps the explicit connection alive, and asks what callers want.
+    /// Polls, keeps the explicit connection alive, and sends requests of callers.
     fn serve(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
         if let Some(polling) = &mut self.polling {
             if now >= polling.until() {
                 let (mac, after) = (self.settings.slave, polling.patience());
                 let is_bus_alive = bus.is_alive_without(mac, now.saturating_sub(after));
-                // In the second half: before it the last whole answer was heard.
+                // Only the second half counts: frames in the first half can belong to the last complete image.
                 let is_heard = bus.is_heard(mac, now.saturating_sub(after / 2));
                 let state = bus.health.state;
                 return self.retreat(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
@@ -249,7 +249,7 @@ impl Connection {
         }
     }
 
-    /// A request has come to its end.
+    /// Handles the outcome of a request.
     fn done(&mut self, now: Now, outcome: Outcome, bus: &Bus) {
         self.keep_alive = now + KEEP_ALIVE;
         let mac = self.settings.slave;
@@ -307,7 +307,8 @@ impl Connection {
             }
             Phase::Releasing { again: true } => self.pause(now),
             Phase::Releasing { again: false } => {
-                // A slave that is silent lets go by itself; that is worth a word, not an error of the link.
+                // A silent slave releases the connections by its own timeout. This is a warning, not an error of the
+                // link.
                 let error = answer(RELEASE).err().filter(|error| !matches!(error, Error::Refused { .. }));
                 self.finish(error);
             }
@@ -336,7 +337,7 @@ impl Connection {
             Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
                 self.give_up(now, Error::Owned { mac }, false);
             }
-            // A process with this MAC has died, or the answer to the first try was lost.
+            // A process with this MAC died, or the answer to the first attempt was lost.
             Err(Error::Refused { general: general::ALREADY, .. }) if !again => {
                 let request = Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE);
                 self.request(now, Phase::AskingOwner, &request);
@@ -345,7 +346,7 @@ impl Connection {
         }
     }
 
-    /// Who has the connections: {choice, master}.
+    /// Handles the allocation attribute: {choice, master}.
     fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
         let mac = self.settings.slave;
         match answer.as_deref() {
@@ -355,7 +356,7 @@ impl Connection {
             Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
             Ok([_, _, ..]) => self.allocate(now, true),
             Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
-            // It has let go of the explicit connection, and kept the other.
+            // The explicit connection timed out, but the poll connection still exists.
             Err(Error::Silent { .. }) => {
                 self.phase = Phase::Freeing;
                 self.requester.ask(now, &Request::release(connection::POLL), false);
@@ -364,7 +365,7 @@ impl Connection {
         }
     }
 
-    /// The profile that these sizes are of; the packet rate to set.
+    /// Selects the profile with these sizes. Returns the packet rate to set.
     fn sized(&mut self, produced: u16, consumed: u16) -> Result<u16, Error> {
         let mac = self.settings.slave;
         let Purpose::Images(images) = &self.settings.purpose else { return Err(Error::Ended) };
@@ -383,7 +384,7 @@ impl Connection {
         Ok(u16::try_from(images.rate.as_millis()).unwrap_or(u16::MAX))
     }
 
-    /// It is up, with this packet rate.
+    /// The connection is established with this packet rate.
     fn opened(&mut self, now: Now, rate: u16) {
         if self.is_over {
             return self.release(now, false);
@@ -394,13 +395,13 @@ impl Connection {
             let rate = Duration::from_millis(rate.into());
             self.view.details.rate = Some(rate);
             self.polling = Some(Polling::new(now, self.settings.slave, size, images.cycle, rate));
-            // What is shown now is the resting image: a change of this generation.
+            // The resting image is the first change of this generation.
             self.revision += 1;
         }
         self.show(State::Open);
     }
 
-    /// Opening has failed. What was allocated is released.
+    /// Opening failed. Releases what was allocated.
     fn give_up(&mut self, now: Now, error: Error, is_allocated: bool) {
         let again = self.view.generation > 0 && !self.is_over;
         self.set_error(error);
@@ -413,7 +414,7 @@ impl Connection {
         }
     }
 
-    /// It was up, and is lost: released if anybody hears it, and opened again.
+    /// The connection is lost. Releases it if possible, and opens it again.
     fn retreat(&mut self, now: Now, error: Error) {
         self.polling = None;
         self.requester.cancel();
@@ -487,12 +488,12 @@ impl Connection {
 
 /// Attribute 5 of the DeviceNet object: {choice, master}.
 const ALLOCATION_ATTRIBUTE: u8 = 5;
-/// Attributes of a connection.
+/// Attributes of the connection object.
 const PRODUCED_SIZE: u8 = 7;
 const CONSUMED_SIZE: u8 = 8;
 const PACKET_RATE: u8 = 9;
 
-/// An answer of two bytes.
+/// Decodes an answer of two bytes.
 fn word(data: &[u8], mac: Mac, what: &'static str) -> Result<u16, Error> {
     let bytes = data.try_into().map_err(|_| Error::Senseless { mac, what, why: "it has not two bytes" })?;
     Ok(u16::from_le_bytes(bytes))

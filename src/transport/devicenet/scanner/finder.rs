@@ -1,8 +1,8 @@
-//! Who is on the bus, without owning anybody: every node on line answers the question whether its MAC is free.
+//! Node discovery without connections: every node on line answers a duplicate MAC check of its MAC.
 //!
-//! A node that is about to go on line takes that question, too, for another node's that wants its MAC, and stays off.
-//! So it begins with listening for longer than the pause between such a node's own questions, and leaves those alone
-//! that were heard asking.
+//! A node that is about to go on line would take such a check for a conflict and stay off line. The finder therefore
+//! first listens for longer than the interval of a starting node's own checks. It does not check the MACs of starting
+//! nodes.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -12,14 +12,14 @@ use crate::devicenet::Now;
 use crate::devicenet::can::Frame;
 use crate::devicenet::wire::{DuplicateCheck, Id, Mac};
 
-/// A node asks twice, a second apart, and is on line a second later.
+/// A node sends two checks, a second apart, and goes on line a second later.
 const LISTEN: Duration = Duration::from_millis(1200);
 const GOING_ON_LINE: Duration = Duration::from_millis(2200);
-/// Between questions: a slow adapter must keep up.
+/// Pause between checks, so that a slow adapter can keep up.
 const PAUSE: Duration = Duration::from_millis(10);
-/// How long the last one may take to answer.
+/// Time limit for the last answer.
 const LINGER: Duration = Duration::from_millis(300);
-/// How often each MAC is asked.
+/// Number of checks per MAC.
 const ROUNDS: u8 = 2;
 
 /// A node that was found.
@@ -27,24 +27,23 @@ const ROUNDS: u8 = 2;
 pub struct Found {
     /// Its MAC.
     pub mac: Mac,
-    /// Its maker.
+    /// Vendor id.
     pub vendor: u16,
     /// Its serial number.
     pub serial: u32,
-    /// Whether it answered; else it was only heard asking whether its MAC is free.
+    /// Whether the node answered. If not, it only sent its own checks.
     pub is_on_line: bool,
 }
 
-/// A search.
 #[derive(Debug)]
 pub(super) struct Finder {
     own: Identity,
     due: Now,
-    /// When the last question left.
+    /// Time of the last check.
     asked: Now,
-    /// What is left to ask, the last first.
+    /// MACs still to check, in reverse order.
     left: Vec<Mac>,
-    /// Nodes that are about to go on line, and when they will be.
+    /// Starting nodes, and the time when they are on line.
     booting: BTreeMap<Mac, Now>,
     found: BTreeMap<Mac, Found>,
 }
@@ -69,7 +68,7 @@ impl Finder {
         self.found.into_values().collect()
     }
 
-    /// The next question, if one is due.
+    /// Returns the next check if one is due.
     pub(super) fn poll(&mut self, now: Now) -> Option<Frame> {
         if now < self.due {
             return None;
@@ -89,7 +88,7 @@ impl Finder {
         None
     }
 
-    /// A message of the check from somebody else.
+    /// Handles a duplicate MAC check of another node.
     pub(super) fn heard(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
         let DuplicateCheck { is_answer, vendor, serial, .. } = check;
         if !is_answer {
@@ -128,7 +127,7 @@ mod tests {
             assert!(now < MS * 5000);
         }
         let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
-        // 7 answered at once, 5 was about to go on line, the own MAC is nobody else's.
+        // MAC 7 answered at once, MAC 5 was starting, MAC 0 is our own.
         assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));
         let found: Vec<(u8, bool)> =
             finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();

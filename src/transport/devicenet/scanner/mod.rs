@@ -1,4 +1,4 @@
-//! The master: its own MAC, and connections with any number of slaves, on one adapter. Without sockets and without a
+//! DeviceNet master: its own MAC, and connections to any number of slaves on one adapter. It has no sockets and no
 //! clock.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -21,56 +21,55 @@ use self::finder::Finder;
 pub use self::finder::Found;
 pub use self::view::{Details, Input, State, Statistics, View, Views};
 
-/// Between the questions whether a MAC is free, and before the master is on line.
+/// Interval of the duplicate MAC checks, and the wait after the last one.
 const CHECK: Duration = Duration::from_secs(1);
-/// Questions whether a MAC is free.
+/// Number of duplicate MAC checks.
 const CHECKS: u8 = 2;
 
-/// Tells the questions of callers apart.
+/// Identifies a request of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Token(
     /// Any number.
     pub u64,
 );
 
-/// What a question of a caller came to.
+/// Result of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
-    /// The connection it was asked on.
+    /// Number of the connection.
     pub connection: u64,
-    /// The question.
+    /// The request.
     pub token: Token,
-    /// The answer.
+    /// The answer or error.
     pub result: Result<Answer, Error>,
 }
 
-/// Who the master is.
+/// Identity of the master.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Identity {
-    /// Its MAC.
+    /// MAC of the master.
     pub mac: Mac,
-    /// Its maker.
+    /// Vendor id.
     pub vendor: u16,
-    /// Its serial number.
+    /// Serial number.
     pub serial: u32,
 }
 
-/// What is known of the bus.
+/// Observed state of the bus.
 #[derive(Debug)]
 pub(crate) struct Bus {
-    /// How the adapter is.
     pub(crate) health: Health,
-    /// When each MAC was last heard.
+    /// Time of the last frame from each MAC.
     heard: [Option<Now>; 64],
 }
 
 impl Bus {
-    /// Whether this node was heard since then.
+    /// Whether the node has sent a frame since `since`.
     pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
         self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
     }
 
-    /// Whether any node but this one was heard since then.
+    /// Whether any other node has sent a frame since `since`.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
         let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
         others.filter_map(|(_, heard)| *heard).any(|heard| heard >= since)
@@ -79,12 +78,12 @@ impl Bus {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Phase {
-    /// Before the first poll, or since the adapter was opened anew.
+    /// Before the first poll, or after the adapter was opened again.
     New,
-    /// Asked so often whether the MAC is free; the next step is due then.
+    /// Number of duplicate MAC checks sent, and the time of the next step.
     Checking(u8, Now),
     OnLine,
-    /// Not on the bus, and why.
+    /// Off the bus, with the reason.
     Failed(Error),
 }
 
@@ -102,7 +101,7 @@ pub struct Scanner {
 }
 
 impl Scanner {
-    /// A master before it is on line.
+    /// Creates a master that is not on line yet.
     pub const fn new(identity: Identity) -> Self {
         let health = Health { state: BusState::Active, overruns: 0, rejected: 0 };
         Self {
@@ -117,20 +116,20 @@ impl Scanner {
         }
     }
 
-    /// Who it is.
+    /// Identity of the master.
     pub const fn identity(&self) -> Identity {
         self.identity
     }
 
-    /// Whether it has found its MAC to be free.
+    /// Whether the duplicate MAC check has passed.
     pub fn is_on_line(&self) -> bool {
         self.phase == Phase::OnLine
     }
 
-    /// Opens a connection under this number, which must be new.
+    /// Opens a connection under a new number.
     ///
     /// # Errors
-    /// If none can be as the settings say, or the slave is connected already.
+    /// The settings are invalid, or the slave is connected already.
     pub fn open(&mut self, number: u64, settings: Settings) -> Result<(), Error> {
         settings.check(self.identity.mac)?;
         if let Phase::Failed(error) = &self.phase {
@@ -147,12 +146,12 @@ impl Scanner {
         Ok(())
     }
 
-    /// What there is to see of a connection; `None` once it has ended and was cleared away.
+    /// State of a connection; `None` after it ended and was removed.
     pub fn view(&self, number: u64) -> Option<&View> {
         self.connections.get(&number).map(Connection::view)
     }
 
-    /// The connections that have something new to see since this was last asked.
+    /// Connections whose view changed since the last call.
     pub fn changed(&mut self) -> Vec<u64> {
         self.connections
             .iter_mut()
@@ -160,16 +159,16 @@ impl Scanner {
             .collect()
     }
 
-    /// Shows this image from the next poll on, and says which change it was: the slave has taken it when the view's
-    /// `sent` is as high.
+    /// Sends this image from the next poll on. Returns the number of the change. The slave has accepted it when `sent`
+    /// of the view has reached that number.
     ///
     /// # Errors
-    /// If the connection is not open in this generation, or the image has another size.
+    /// The connection is not open in this generation, or the image has another size.
     pub fn set_image(&mut self, number: u64, generation: u32, image: &[u8]) -> Result<u64, Error> {
         self.connections.get_mut(&number).ok_or(Error::Ended)?.set_image(generation, image)
     }
 
-    /// Asks something of the slave; [`reply`](Self::reply) has the answer.
+    /// Queues an explicit request; [`reply`](Self::reply) returns the answer.
     pub fn ask(&mut self, number: u64, token: Token, request: Request) {
         match self.connections.get_mut(&number) {
             Some(connection) => connection.ask(token, request),
@@ -177,26 +176,26 @@ impl Scanner {
         }
     }
 
-    /// An answer to a question.
+    /// Returns the next answer.
     pub fn reply(&mut self) -> Option<Reply> {
         self.replies.pop_front()
     }
 
-    /// Ends a connection.
+    /// Closes a connection.
     pub fn close(&mut self, now: Now, number: u64) {
         if let Some(connection) = self.connections.get_mut(&number) {
             connection.close(now);
         }
     }
 
-    /// Looks which MACs answer, without owning anybody; [`found`](Self::found) has them.
+    /// Starts node discovery without connections; [`found`](Self::found) returns the result.
     pub fn find(&mut self, now: Now) {
         self.found = None;
         self.finder = Some(Finder::new(now, self.identity));
         self.give_up_search();
     }
 
-    /// Where nothing can be sent, a search ends with what it has found.
+    /// Ends discovery if the adapter is bus-off and nothing can be sent.
     fn give_up_search(&mut self) {
         if self.bus.health.state == BusState::Off
             && let Some(finder) = self.finder.take()
@@ -205,12 +204,12 @@ impl Scanner {
         }
     }
 
-    /// What the last search has found, once it is over.
+    /// Result of the last discovery, once it is complete.
     pub fn found(&mut self) -> Option<Vec<Found>> {
         self.found.take()
     }
 
-    /// Why it is not on the bus and will not be.
+    /// Reason why the master is permanently off the bus.
     pub const fn failure(&self) -> Option<&Error> {
         match &self.phase {
             Phase::Failed(error) => Some(error),
@@ -218,14 +217,14 @@ impl Scanner {
         }
     }
 
-    /// The adapter was opened, or opened anew: the MAC is checked before anything else.
+    /// The adapter was opened. The MAC is checked before anything else.
     pub fn restart(&mut self) {
         self.phase = Phase::New;
         self.bus.health = Health::default();
         self.outbox.clear();
     }
 
-    /// The adapter is gone. Connections that were open wait until it is back.
+    /// The adapter failed. Open connections wait until it is back.
     pub fn fail(&mut self, now: Now, error: &Error) {
         for connection in self.connections.values_mut() {
             connection.fail(now, error.clone());
@@ -235,7 +234,7 @@ impl Scanner {
         self.gather();
     }
 
-    /// The adapter tells how it is.
+    /// Handles a health report of the adapter.
     pub fn handle_health(&mut self, now: Now, health: Health) {
         let was_off = std::mem::replace(&mut self.bus.health, health).state == BusState::Off;
         if health.state == BusState::Off && !was_off {
@@ -247,7 +246,7 @@ impl Scanner {
         }
     }
 
-    /// A frame from the bus.
+    /// Handles a frame from the bus.
     pub fn handle(&mut self, now: Now, frame: &Frame) {
         let Some(id) = Id::parse(frame.id()) else { return };
         if let Some(heard) = id.sender().and_then(|mac| self.bus.heard.get_mut(usize::from(mac.number()))) {
@@ -270,7 +269,7 @@ impl Scanner {
         }
     }
 
-    /// A frame to send at `now`; call until there is none.
+    /// Returns the next frame to send at `now`. Call it until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Frame> {
         if self.outbox.is_empty() {
             self.advance(now);
@@ -278,7 +277,7 @@ impl Scanner {
         self.outbox.pop_front()
     }
 
-    /// When to call again at the latest.
+    /// Latest time of the next call.
     pub fn wake(&self) -> Option<Now> {
         if !self.outbox.is_empty() {
             return Some(Now::ZERO);
@@ -286,7 +285,7 @@ impl Scanner {
         match self.phase {
             Phase::New => Some(Now::ZERO),
             Phase::Checking(_, due) => Some(due),
-            // Until the adapter is back on the bus.
+            // Wait until the adapter is back on the bus.
             Phase::OnLine if self.bus.health.state == BusState::Off => None,
             Phase::OnLine => {
                 let connections = self.connections.values().filter_map(Connection::wake);
@@ -296,7 +295,7 @@ impl Scanner {
         }
     }
 
-    /// Forgets connections that have ended and were seen to.
+    /// Removes connections that have ended and whose results were collected. Returns their numbers.
     pub fn clear(&mut self) -> Vec<u64> {
         let is_ended = |(number, connection): (&u64, &Connection)| connection.is_finished().then_some(*number);
         let ended: Vec<u64> = self.connections.iter().filter_map(is_ended).collect();
@@ -304,7 +303,7 @@ impl Scanner {
         ended
     }
 
-    /// Whether nothing is left that it could do: there is no connection and no search, or it is not on the bus.
+    /// Whether the master has nothing to do: no connection and no discovery, or it is off the bus.
     pub fn is_idle(&self) -> bool {
         let is_off = matches!(self.phase, Phase::Failed(_)) || self.bus.health.state == BusState::Off;
         is_off || self.connections.is_empty() && self.finder.is_none()
@@ -344,7 +343,7 @@ impl Scanner {
         Frame::new(Id::Duplicate(mac).emit(), &check.emit())
     }
 
-    /// Somebody asks whether a MAC is free, or says that it is not.
+    /// Handles a duplicate MAC check: a request or an answer.
     fn checked(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
         if let Some(finder) = &mut self.finder {
             finder.heard(now, mac, check);

@@ -1,4 +1,4 @@
-//! The poll: an image out, an image in, in a rhythm that does not drift.
+//! Poll cycle: one image in each direction at a fixed rate without drift.
 
 use std::time::Duration;
 
@@ -8,36 +8,37 @@ use crate::devicenet::wire::{Assembler, Id, Mac, Piece, split};
 
 use super::view::Statistics;
 
-/// Packet rates without an answer after which a slave is lost, as it gives up the master after as many.
+/// Number of packet rates without an answer after which a slave counts as lost. The slave gives up the master after the
+/// same time.
 pub(super) const WATCHDOG: u32 = 4;
-/// Most answers that are still thought to be on their way.
+/// Limit of late answers that can still arrive.
 const MOST_OWED: u8 = 2;
 
-/// The exchange of one generation.
+/// Poll cycle of one generation.
 #[derive(Debug)]
 pub(super) struct Polling {
     slave: Mac,
     cycle: Duration,
     rate: Duration,
     due: Now,
-    /// When the poll left that waits for its answer.
+    /// Time of the poll that waits for its answer.
     asked: Option<Now>,
-    /// How long an answer took the last time, from poll to its last frame.
+    /// Duration of the last exchange, from the poll to the last frame of its answer.
     round_trip: Duration,
-    /// Polls that were given up and may still be answered: such an answer says nothing of the polls behind them.
+    /// Number of abandoned polls that can still be answered. Such an answer does not confirm a later poll.
     owed: u8,
-    /// The change that the last poll carried.
+    /// Number of the change in the last poll.
     carried: u64,
     assembler: Assembler,
     heard: Now,
 }
 
-/// What a frame of an answer came to.
+/// Effect of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Heard {
-    /// Nothing yet.
+    /// No complete image.
     Nothing,
-    /// An image, and the change that the slave has taken with the poll that it answers, where that is sure.
+    /// A complete image. If it certainly answers the last poll, the change that the slave has accepted.
     Image(Vec<u8>, Option<u64>),
 }
 
@@ -57,24 +58,24 @@ impl Polling {
         }
     }
 
-    /// How long a slave may be silent.
+    /// Silence after which the slave counts as lost.
     pub(super) fn patience(&self) -> Duration {
         self.rate * WATCHDOG
     }
 
-    /// When it is lost if nothing comes.
+    /// Time when the slave counts as lost.
     pub(super) fn until(&self) -> Now {
         self.heard + self.patience()
     }
 
-    /// When to poll next.
+    /// Time of the next poll.
     pub(super) fn next(&self) -> Now {
-        // A slow adapter must not be handed polls faster than it carries them.
+        // A slow adapter must not get polls faster than it can send them.
         let given_up = self.asked.map(|asked| asked + self.cycle.max(self.round_trip * 2).min(self.rate));
         given_up.map_or(self.due, |given_up| self.due.max(given_up))
     }
 
-    /// The frames of a poll with this image, if one is due.
+    /// Returns the frames of a poll with this image, if one is due.
     pub(super) fn poll(&mut self, now: Now, image: &[u8], change: u64, counted: &mut Statistics) -> Vec<Frame> {
         if now < self.next() {
             return Vec::new();
@@ -83,7 +84,7 @@ impl Polling {
             counted.missed += 1;
             self.owed = (self.owed + 1).min(MOST_OWED);
         }
-        // What is left of an older answer must not be put together with the next one.
+        // Fragments of an older answer must not be combined with the next one.
         self.assembler = Assembler::new(image.len());
         self.asked = Some(now);
         self.carried = change;
@@ -97,7 +98,7 @@ impl Polling {
         split(image).iter().filter_map(|bytes| Frame::new(id, bytes)).collect()
     }
 
-    /// A frame of the slave's answer.
+    /// Handles a frame of the slave's answer.
     pub(super) fn hear(&mut self, now: Now, bytes: &[u8], counted: &mut Statistics) -> Heard {
         match self.assembler.take(bytes) {
             Piece::Part => Heard::Nothing,
@@ -106,7 +107,7 @@ impl Polling {
                 Heard::Nothing
             }
             Piece::Whole(image) => {
-                // Doubled, or so late that it was given up: it may be older than what was seen since.
+                // A duplicate, or the answer to an abandoned poll. It can be older than the last image.
                 let Some(asked) = self.asked.take() else {
                     counted.late += 1;
                     return Heard::Nothing;
@@ -142,12 +143,12 @@ mod tests {
             assert!(matches!(polling.hear(now + MS, &[0; 4], &mut counted), Heard::Image(..)));
         }
         assert_eq!((counted.sent, counted.received, counted.skipped), (6, 6, 0));
-        // Behind a pause it goes on in the same rhythm, and catches nothing up.
+        // After a pause, the rhythm continues. Missed polls are not repeated.
         assert_eq!(polling.poll(MS * 190, &[0; 4], 1, &mut counted).len(), 1);
         assert_eq!((polling.due, counted.skipped), (MS * 200, 3));
     }
 
-    /// An answer that may be that to an older poll does not tell that the newest was taken.
+    /// An answer that can belong to an older poll does not confirm the newest one.
     #[test]
     fn a_late_answer_confirms_nothing() {
         let (mut polling, mut counted) = polling();
@@ -156,7 +157,7 @@ mod tests {
         assert!(again >= MS * 20);
         polling.poll(again, &[1; 4], 2, &mut counted);
         assert_eq!(polling.hear(again + MS, &[7; 4], &mut counted), Heard::Image(vec![7; 4], None));
-        // The one to the newest poll, or the same once more: nobody can tell.
+        // The answer to the newest poll and a duplicate look the same.
         assert_eq!(polling.hear(again + MS, &[8; 4], &mut counted), Heard::Nothing);
         let next = polling.next();
         polling.poll(next, &[1; 4], 2, &mut counted);

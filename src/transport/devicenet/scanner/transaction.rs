@@ -1,4 +1,4 @@
-//! One explicit request after the other, and its answer: in fragments, acknowledged, repeated once.
+//! Explicit messaging client: one request at a time, with fragmentation, acknowledgement and one retry.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -7,27 +7,25 @@ use crate::devicenet::Now;
 use crate::devicenet::can::{Frame, MOST_DATA};
 use crate::devicenet::wire::{Answer, Format, Fragment, Header, Id, Kind, Mac, Request};
 
-/// Bytes of a message in a fragment, behind header and fragment byte.
+/// Bytes of a message per fragment, after header and fragment byte.
 const PART: usize = MOST_DATA - 2;
-/// Longest answer that is put together.
+/// Longest answer that is reassembled.
 const MOST_ANSWER: usize = 512;
-/// In an acknowledgement: the fragment was taken.
+/// Acknowledge status: fragment accepted.
 const TAKEN: u8 = 0;
-/// How often a request or a fragment leaves at most.
+/// Number of attempts per request or fragment.
 const TRIES: u8 = 2;
 
-/// How a request came to its end.
+/// Outcome of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// It was answered.
+    /// The slave answered.
     Answer(Answer),
-    /// It was not.
     Silent,
-    /// It was answered, but not so that it could be read.
+    /// The answer was invalid.
     Senseless(&'static str),
 }
 
-/// Asks a slave.
 #[derive(Debug)]
 pub(super) struct Requester {
     own: Mac,
@@ -35,7 +33,7 @@ pub(super) struct Requester {
     patience: Duration,
     xid: bool,
     current: Option<Transaction>,
-    /// The last fragment of an answer that was taken: it comes again if its acknowledgement was lost.
+    /// Last fragment of the last answer. It is repeated if its acknowledgement was lost.
     taken: Option<u8>,
     outbox: VecDeque<Frame>,
 }
@@ -43,14 +41,14 @@ pub(super) struct Requester {
 #[derive(Debug)]
 struct Transaction {
     service: u8,
-    /// The request behind its header.
+    /// Request without its header.
     body: Vec<u8>,
     destination: Id,
-    /// The fragment that waits for its acknowledgement; `None` once all of the request has left.
+    /// Fragment that waits for its acknowledgement; `None` after the whole request was sent.
     sending: Option<usize>,
     tries: u8,
     deadline: Now,
-    /// The answer as far as it has come, and the count of the fragment that came last.
+    /// Received part of the answer, and the count of its last fragment.
     answer: Option<(Vec<u8>, u8)>,
 }
 
@@ -59,12 +57,11 @@ impl Requester {
         Self { own, slave, patience, xid: true, current: None, taken: None, outbox: VecDeque::new() }
     }
 
-    /// Whether a request is on its way.
     pub(super) const fn is_busy(&self) -> bool {
         self.current.is_some()
     }
 
-    /// Sends a request: on the explicit connection, or without one.
+    /// Sends a request, on the explicit connection or unconnected.
     pub(super) fn ask(&mut self, now: Now, request: &Request, is_connected: bool) {
         let Some(body) = request.emit(Format::Byte8Byte8) else { return };
         self.xid = !self.xid;
@@ -77,23 +74,22 @@ impl Requester {
         self.begin(now);
     }
 
-    /// Gives up whatever is on its way.
     pub(super) fn cancel(&mut self) {
         self.current = None;
         self.outbox.clear();
     }
 
-    /// A frame to send.
+    /// Returns the next frame to send.
     pub(super) fn send(&mut self) -> Option<Frame> {
         self.outbox.pop_front()
     }
 
-    /// When to call [`expire`](Self::expire).
+    /// Time of the next call of [`expire`](Self::expire).
     pub(super) fn wake(&self) -> Option<Now> {
         if self.outbox.is_empty() { self.current.as_ref().map(|current| current.deadline) } else { Some(Now::ZERO) }
     }
 
-    /// Repeats what was not answered in time, or gives up.
+    /// Repeats a request that timed out, or gives up.
     pub(super) fn expire(&mut self, now: Now) -> Option<Outcome> {
         let current = self.current.as_mut().filter(|current| now >= current.deadline)?;
         current.tries -= 1;
@@ -109,16 +105,16 @@ impl Requester {
         None
     }
 
-    /// Takes a frame of the slave's explicit answers.
+    /// Handles a frame of the slave's explicit answers.
     pub(super) fn take(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
-        // The xid tells an answer that comes late or twice from the one that is waited for.
+        // The transaction id excludes late and duplicate answers to the previous request.
         if header.mac != self.own || header.xid != self.xid {
             return None;
         }
         if !header.is_fragment {
-            // Heartbeats and shutdowns are no answers.
+            // Heartbeats and shutdowns are not answers.
             return self.answered(Answer::parse(body)?);
         }
         let (second, part) = body.split_first()?;
@@ -134,14 +130,14 @@ impl Requester {
         };
         current.deadline = now + self.patience;
         match &mut current.answer {
-            // It comes again if its acknowledgement was lost.
+            // A duplicate: its acknowledgement was lost.
             Some((_, last)) if *last == count => {}
             Some((answer, last)) if kind != Kind::First && count == (*last + 1) % 64 => {
                 answer.extend(part);
                 *last = count;
             }
             None if kind == Kind::First && count == 0 => current.answer = Some((part.to_vec(), 0)),
-            // What is missing comes again, or the whole answer does.
+            // After a gap, the slave repeats the missing fragment or the whole answer.
             _ => return None,
         }
         self.acknowledge(count);
@@ -237,7 +233,7 @@ mod tests {
         std::iter::from_fn(|| requester.send()).map(|frame| frame.to_string()).collect()
     }
 
-    /// The name of ten characters, in fragments, each acknowledged.
+    /// A name of ten characters in fragments, each acknowledged.
     #[test]
     fn a_long_answer_is_put_together_and_acknowledged() {
         let mut requester = requester();
@@ -250,7 +246,7 @@ mod tests {
         let answer = Outcome::Answer(Answer::Done { service: service::GET, data });
         assert_eq!(requester.take(NOW, &last), Some(answer));
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
-        // The acknowledgement was lost: it comes again, and is acknowledged again.
+        // The acknowledgement was lost. The fragment comes again and is acknowledged again.
         assert_eq!(requester.take(NOW, &last), None);
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
     }
@@ -264,7 +260,7 @@ mod tests {
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(sent(&mut requester).len(), 2);
-        // One that overtook another is not taken.
+        // A fragment out of order is not accepted.
         assert_eq!(requester.take(NOW, &[0x81, 0x82, 9]), None);
         assert!(sent(&mut requester).is_empty());
         let Some(Outcome::Answer(Answer::Done { data, .. })) = requester.take(NOW, &[0x81, 0x81, 5, 6, 7]) else {
@@ -306,7 +302,7 @@ mod tests {
             assert_eq!(requester.take(NOW, other), None, "{other:x?}");
         }
         assert!(matches!(requester.take(NOW, &[0x01, 0x8E, 0x30, 0]), Some(Outcome::Answer(_))));
-        // The next request has the other xid, so that this one's answer, doubled, is not taken for its.
+        // The next request has the other transaction id, so a duplicate of this answer is ignored.
         requester.ask(NOW, &Request::get(class::CONNECTION, 2, 8), true);
         assert_eq!(requester.take(NOW, &[0x01, 0x8E, 0x30, 0]), None);
         let refused = Answer::Refused { general: general::NO_ATTRIBUTE, additional: owner::NONE };

@@ -1,4 +1,4 @@
-//! What can be seen of a connection.
+//! State of a connection for callers.
 
 use std::time::Duration;
 
@@ -6,12 +6,12 @@ use crate::devicenet::error::Error;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// What can be seen of a connection. What is sent has left when a poll with it was answered.
+/// State of a connection. A change counts as sent after a poll with it was answered.
 pub type View = view::View<Error, Statistics, Details>;
-/// The same as it changes.
+/// Receiver of state changes.
 pub type Views = view::Views<Error, Statistics, Details>;
 
-/// What was counted.
+/// Counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Polls sent.
@@ -20,19 +20,19 @@ pub struct Statistics {
     pub received: u64,
     /// Polls without an answer in time.
     pub missed: u64,
-    /// Frames of answers that did not belong together or had a wrong size, and were dropped.
+    /// Frames dropped because of a wrong count or size.
     pub wrong: u64,
-    /// Whole answers that nobody waited for any more, and were dropped.
+    /// Complete answers that came too late and were dropped.
     pub late: u64,
-    /// Moments to poll that were missed by a whole cycle.
+    /// Polls omitted because a whole cycle was missed.
     pub skipped: u64,
 }
 
-/// What only DeviceNet has to see.
+/// Details that only DeviceNet has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Details {
-    /// Bytes of the images both ways, once they are known: that of one of the profiles.
+    /// Image size in bytes, the same in both directions, once known.
     pub size: Option<usize>,
-    /// The packet rate that the slave keeps.
+    /// Packet rate that the slave has accepted.
     pub rate: Option<Duration>,
 }

@@ -1,4 +1,4 @@
-//! A line that loses, doubles, delays and reorders frames.
+//! Connections on a bus that loses, doubles, delays and reorders frames.
 
 use std::time::Duration;
 
@@ -13,8 +13,8 @@ const KINDS: [Line; 5] = [
     Line { drop: 100, double: 100, late: 100, swap: 100, reorder: 0 },
 ];
 
-/// Shows numbered images for two seconds. Each is shown, waited for and then followed by the next, as commands are; none may
-/// be told to have been taken that was not.
+/// Sends numbered images for two seconds. As with commands, each image is confirmed before the next one. No image may
+/// be confirmed that the slave did not get.
 fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
     let mut world = World::linked(size, seed);
     world.line = line;
@@ -44,7 +44,7 @@ fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
     world
 }
 
-/// Whatever the line does, the controller must see images in order, none again after a later one.
+/// On any bus, the slave gets the images in order, and no image again after a later one.
 #[test]
 fn no_image_comes_twice_or_is_told_wrongly() {
     for (kind, line) in KINDS.iter().enumerate() {
@@ -66,13 +66,13 @@ fn no_image_comes_twice_or_is_told_wrongly() {
     }
 }
 
-/// Frames of one identifier that overtake each other. Counts tell it within an image of fragments, so no command is
-/// made of two and none comes back. Two things carry no mark and cannot be told: the last fragment of an image in place of that of
-/// the next (six bytes of general-purpose signals), and a whole image that is one frame (4 bytes, no commands): an old one may
-/// be seen for a cycle.
+/// Frames with the same identifier overtake each other. Within a fragmented image, counts detect this, so no command is
+/// mixed or repeated. Two cases have no mark and cannot be detected. The last fragment of one image can replace that of
+/// the next (six bytes of general-purpose signals). An image in a single frame (4 bytes, no commands) can come back for
+/// one cycle.
 #[test]
 fn frames_of_one_identifier_out_of_order_make_no_command() {
-    /// Where the last fragment begins.
+    /// Offset of the last fragment.
     const LAST: usize = 42;
 
     for seed in 0..32 {
@@ -95,7 +95,7 @@ fn frames_of_one_identifier_out_of_order_make_no_command() {
     }
 }
 
-/// A bus that loses one frame in a hundred, for half an hour of polls; the small images for a part of it.
+/// Half an hour of polls with 1 % lost frames; less for the small images.
 #[test]
 fn half_an_hour_at_one_percent_loses_no_image_and_does_not_drift() {
     polls_at_one_percent(4, SECOND * 180);
@@ -119,7 +119,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
     let view = world.view();
     assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.trouble);
     assert_eq!(shown, taken);
-    // Those that were late because an answer was waited for aside, there is a poll every 20 ms.
+    // Except for polls that were late because an answer was missing, there is one poll every 20 ms.
     let all = world.now.saturating_sub(start).as_millis() / 20;
     assert!(
         u128::from(view.statistics.sent + view.statistics.skipped).abs_diff(all) < 10,
@@ -128,7 +128,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
     );
 }
 
-/// What crosses the bus is what the bits allow: 14 frames and the gap between polls.
+/// The bus load is what the bits need: 14 frames and the gap between polls.
 #[test]
 fn an_exchange_takes_hardly_more_than_its_bits() {
     let mut world = World::linked(48, 1);
@@ -139,7 +139,7 @@ fn an_exchange_takes_hardly_more_than_its_bits() {
     assert_eq!(polls, 50);
     let each = world.bus.busy().saturating_sub(busy) / 50;
     assert!((MS * 3..MS * 4).contains(&each), "{each:?}");
-    // From the first bit of a poll to the last of its answer there is no more than that.
+    // From the first bit of a poll to the last bit of its answer.
     let first = world.trace.iter().position(|(_, frame)| frame.id() == 0x42D && frame.data()[0] == 0).unwrap();
     let (begin, end) = (world.trace[first].0, world.trace[first + 13].0);
     assert_eq!(world.trace[first + 13].1.id(), 0x3C5);

@@ -1,4 +1,4 @@
-//! How a connection begins, goes on and ends where nothing gets lost, and what is said where it does not begin.
+//! Opening, running and closing a connection without losses, and errors of a failed opening.
 
 use std::time::Duration;
 
@@ -14,8 +14,8 @@ fn frames(world: &World) -> Vec<String> {
     world.trace.iter().map(|(_, frame)| frame.to_string()).collect()
 }
 
-/// Master 1 and slave 5, both of which have just been switched on: every frame up to the first images. The first request
-/// of a master has the xid 0 and the next one the other; recorded masters leave it at 0.
+/// Master 1 and slave 5 after power-on: every frame up to the first images. The first request of our master has xid 0
+/// and the next one xid 1. Recorded masters always use 0.
 #[test]
 fn a_connection_begins_with_the_known_frames() {
     let mut world = World::new(vec![Device::new(setup(5, 48), Mirror::default())], 1);
@@ -47,7 +47,7 @@ fn a_connection_begins_with_the_known_frames() {
     assert_eq!(got[19], "3C5#0041000000000000");
     let view = world.view();
     assert_eq!((view.details.size, view.details.rate, view.generation), (Some(48), Some(MS * 100), 1));
-    // The very first image that the controller gets is the one at rest.
+    // The first image that the controller gets is the resting image.
     assert_eq!(world.mirror().history[0].1, resting(48));
     let checked = world.trace.iter().position(|(_, frame)| frame.id() == 0x42E).unwrap();
     assert!(world.trace[checked].0 >= SECOND * 2, "two seconds of checking the MAC");
@@ -94,7 +94,7 @@ fn closing_releases_both_connections() {
     assert!(last[0].ends_with("CC") && last[1].ends_with("4C030103"), "{last:?}");
 }
 
-/// Opens a link that does not come about.
+/// Opens a link that fails, and returns the error.
 fn refused(device: Device<Mirror>) -> Error {
     let mut world = World::new(vec![device], 1);
     world.scanner.open(LINK, images(5)).unwrap();
@@ -120,7 +120,7 @@ fn what_hinders_a_connection_is_told() {
         state: BusState::Active,
     };
     assert_eq!(refused(with(DeviceFault::Silence)), silent);
-    // Another node is there, but not this one.
+    // Another node is present, but not this one.
     let other = refused(Device::on_line(setup(6, 48), Mirror::default()));
     assert!(matches!(other, Error::Silent { .. }), "{other}");
 }
@@ -129,7 +129,7 @@ fn what_hinders_a_connection_is_told() {
 fn another_masters_slave_is_not_taken() {
     let mut world = World::linked(48, 1);
     let device = world.devices.remove(0);
-    // The same slave, seen by a master with another MAC.
+    // The same slave and a master with another MAC.
     let mut other = World::new(vec![device], 2);
     other.now = world.now;
     other.scanner = crate::devicenet::scanner::Scanner::new(crate::devicenet::scanner::Identity {
@@ -138,12 +138,12 @@ fn another_masters_slave_is_not_taken() {
         serial: 8,
     });
     other.scanner.open(LINK, images(5)).unwrap();
-    // Its own master has fallen silent, and the poll times out; but the explicit connection lives 10 s.
+    // The first master is silent and the poll connection times out. The explicit connection lives 10 s.
     other.until(SECOND * 5, |world| world.view().state == State::Closed);
     assert_eq!(other.view().trouble, Some(Error::Owned { mac: mac(5) }));
 }
 
-/// A process with the same MAC was killed: its connections are released and allocated again.
+/// A process with the same MAC was killed. Its connections are released and allocated again.
 #[test]
 fn what_the_own_mac_left_behind_is_taken_over() {
     let mut world = World::linked(48, 1);
@@ -190,7 +190,7 @@ fn a_slave_that_was_switched_off_is_found_again() {
     world.until(SECOND, |world| world.view().state == State::Lost);
     world.run(SECOND * 20);
     let now = world.now;
-    // It comes back without a memory, and checks its MAC first.
+    // The slave restarts and checks its MAC first.
     let mut fresh = Device::new(setup(5, 4), Mirror::default());
     while fresh.wake().is_some_and(|wake| wake < now) && !fresh.is_on_line() {
         let _ = fresh.poll(now);
@@ -236,7 +236,7 @@ fn who_asks_for_the_own_mac_is_answered_at_once() {
     assert!(frames(&world).contains(&"40F#80FFFF07000000".to_owned()));
 }
 
-/// Who searches only then would wait for ever.
+/// A search that starts after the failure must not wait forever.
 #[test]
 fn a_search_after_the_own_mac_was_found_taken_keeps_nothing_alive() {
     let mut world = World::new(vec![Device::on_line(setup(1, 48), Mirror::default())], 1);

@@ -1,4 +1,4 @@
-//! Master and slave together, in virtual time.
+//! Tests of master and slave together, in virtual time.
 
 mod faults;
 mod link;

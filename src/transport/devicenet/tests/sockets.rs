@@ -1,4 +1,4 @@
-//! The master on its thread, and slaves behind SLCAN adapters: by TCP and on a pseudo-terminal.
+//! Master on its thread, with slaves behind SLCAN adapters on TCP and on a pseudo-terminal.
 
 use std::net::SocketAddr;
 
@@ -67,7 +67,7 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
 async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let hub = hub(4, &[anywhere()]);
     let master = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
-    // Another process would have another adapter; here it has another name for the same place.
+    // Another process would have its own adapter. Here another name for the same endpoint has the same effect.
     let Place::Tcp { port, .. } = place(&hub) else { panic!() };
     let elsewhere = Place::Tcp { host: "localhost".to_owned(), port };
     let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }, Tap::default()).await.unwrap();
@@ -103,7 +103,7 @@ async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
     assert!(matches!(view.trouble, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.trouble);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
-        // The system may hold the port for a moment.
+        // The system can still hold the port for a moment.
         match Hub::start(Bitrate::K500, Some(device_like(&device)), &[Listen::Tcp(address)], None) {
             Ok(hub) => break hub,
             Err(_) => tokio::task::yield_now().await,
@@ -121,7 +121,7 @@ fn device_like(device: &Device<Mirror>) -> Device<Mirror> {
 
 #[tokio::test]
 async fn what_is_no_adapter_is_told() {
-    // Nobody listens.
+    // No listener on this port.
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
@@ -131,7 +131,7 @@ async fn what_is_no_adapter_is_told() {
     let absent = Place::Serial { path: "/dev/there-is-none".to_owned(), baud: 115_200 };
     let error = open(absent).await;
     assert!(matches!(&error, Error::Port(PortError::Open { advice, .. }) if advice.contains("plug")), "{error:?}");
-    // Somebody listens who says nothing.
+    // A listener that never answers.
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     let silent = async {
@@ -184,14 +184,14 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     assert!(matches!(view.trouble, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.trouble);
 }
 
-/// What python-can sends to open an adapter: C while it is closed, an empty line, O twice.
+/// Lines that python-can sends to open an adapter: C on a closed channel, an empty line, O twice.
 #[tokio::test]
 async fn the_lines_of_python_can_are_borne() {
     let hub = hub(48, &[anywhere()]);
     let mut stream = TcpStream::connect(hub.places()[0].as_str()).await.unwrap();
     stream.write_all(b"C\rS6\r\rO\rO\rt42FZ\rt42F700FFFF07000000\r").await.unwrap();
     let mut got = Vec::new();
-    // The question whether MAC 5 is free is answered by the slave.
+    // The slave answers the check of MAC 5.
     while !got.ends_with(b"t42F7807C02EEFFC000\r") {
         assert!(stream.read_buf(&mut got).await.unwrap() > 0);
     }

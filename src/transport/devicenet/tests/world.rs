@@ -1,5 +1,5 @@
-//! A master and slaves on a bus in virtual time, with frames that get lost, doubled, late and out of order on their way
-//! to whoever receives them. Those of one identifier keep their order: one node sends them, one after the other.
+//! Test bench: a master and slaves on a bus in virtual time. Frames can be lost, doubled, delayed and reordered on the
+//! way to each receiver. Frames with the same identifier keep their order, because one node sends them in sequence.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -16,18 +16,18 @@ use crate::devicenet::wire::{Mac, Request};
 
 pub const MS: Duration = Duration::from_millis(1);
 pub const SECOND: Duration = Duration::from_secs(1);
-/// The connection of most tests.
+/// Number of the connection in most tests.
 pub const LINK: u64 = 1;
 
 pub fn mac(number: u8) -> Mac {
     Mac::new(number).unwrap()
 }
 
-/// Shows what it was shown, bit for bit, and counts.
+/// Echo application: returns the received image and counts.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Vec<u8>,
-    /// Every different image, in order, with when it came first.
+    /// Every new image with the time of its arrival, in order.
     pub history: Vec<(Now, Vec<u8>)>,
     pub images: u64,
     pub gone: Vec<Now>,
@@ -58,7 +58,7 @@ pub fn setup(number: u8, size: u16) -> Setup {
     Setup { serial: 0x00C0_FFEE, name, ..Setup::stand_in(mac(number), Bitrate::K500, size) }
 }
 
-/// The resting image of that size: one that is not all zeros.
+/// A resting image that is not all zeros.
 pub fn resting(size: usize) -> Vec<u8> {
     let mut image = vec![0; size];
     image[0] = 0x41;
@@ -70,19 +70,18 @@ pub fn images(number: u8) -> Settings {
     Settings { slave: mac(number), purpose: Purpose::Images(Images::usual(profiles.to_vec(), None)), timeout: SECOND }
 }
 
-/// Shares of frames, of 10,000, to which something happens on their way to one receiver.
+/// Fault rates per receiver, in 1/10,000 of the frames.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line {
     pub drop: u16,
     pub double: u16,
     pub late: u16,
-    /// A little late, so that frames of other identifiers overtake.
+    /// Short delays, so that frames with other identifiers overtake.
     pub swap: u16,
-    /// Behind frames that the same node sends later under the same identifier: no bus does so, a broken adapter may.
+    /// Delays beyond later frames with the same identifier. No bus does this, but a broken adapter can.
     pub reorder: u16,
 }
 
-/// All of it.
 #[derive(Debug)]
 pub struct World {
     pub now: Now,
@@ -90,14 +89,14 @@ pub struct World {
     pub devices: Vec<Device<Mirror>>,
     pub bus: Bus,
     pub line: Line,
-    /// Whether nothing passes any more.
+    /// No frame passes.
     pub is_cut: bool,
     pub trace: Vec<(Now, Frame)>,
     pub replies: Vec<Reply>,
     rng: Rng,
-    /// Frames on their way: when, to which node.
+    /// Delayed frames: time, receiver, frame.
     arriving: Vec<(Now, usize, Frame)>,
-    /// When the last frame of an identifier reaches a node.
+    /// Arrival of the last frame of an identifier at a node.
     last: HashMap<(usize, u16), Now>,
 }
 
@@ -119,7 +118,7 @@ impl World {
         }
     }
 
-    /// A slave 5 that has been on line for long, with images of this size, and a link to it.
+    /// Slave 5, on line, with images of this size and an open link.
     pub fn linked(size: u16, seed: u64) -> Self {
         let mut world = Self::new(vec![Device::on_line(setup(5, size), Mirror::default())], seed);
         world.scanner.open(LINK, images(5)).unwrap();
@@ -135,7 +134,7 @@ impl World {
         self.devices[0].application()
     }
 
-    /// Runs until that is so, and says when; panics if it is not within `longest`.
+    /// Runs until the condition is true, and returns the time. Panics after `longest`.
     pub fn until(&mut self, longest: Duration, mut condition: impl FnMut(&mut Self) -> bool) -> Now {
         let end = self.now + longest;
         while !condition(self) {
@@ -152,14 +151,14 @@ impl World {
         }
     }
 
-    /// Asks on the link, and waits for the answer.
+    /// Sends a request on the link, and waits for the answer.
     pub fn ask(&mut self, request: Request) -> Reply {
         self.scanner.ask(LINK, Token(9), request);
         self.until(SECOND * 30, |world| !world.replies.is_empty());
         self.replies.remove(0)
     }
 
-    /// On to the next thing that happens, but not beyond `end`.
+    /// Advances to the next event, but not beyond `end`.
     fn step(&mut self, end: Now) {
         let now = self.now;
         while let Some(frame) = self.scanner.poll(now) {
@@ -190,7 +189,8 @@ impl World {
         let next = wakes.chain(self.arriving.iter().map(|(at, ..)| *at)).min();
         self.now = next.map_or(end, |next| next.clamp(now, end));
         if self.now == now && next.is_some_and(|next| next <= now) {
-            // What is due at once has its turn at the top; nothing may be due for ever.
+            // Immediate work is done at the start of the next step. Advance a little, so that endless immediate work is
+            // detected.
             self.now += Duration::from_nanos(100);
         }
     }

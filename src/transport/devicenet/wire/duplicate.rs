@@ -1,25 +1,25 @@
-//! The duplicate MAC check: two questions before a node goes on line, answered by whoever has the MAC.
+//! Duplicate MAC check: two requests before a node goes on line, and the answer of a node with the same MAC.
 
-/// A message of the check.
+/// A request or answer of the check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DuplicateCheck {
-    /// Whether it is the answer of one who has the MAC.
+    /// Whether it is an answer.
     pub is_answer: bool,
-    /// The physical port; 0 on DeviceNet.
+    /// Physical port number; 0 on DeviceNet.
     pub port: u8,
-    /// The maker of who sends it.
+    /// Vendor id of the sender.
     pub vendor: u16,
-    /// Its serial number.
+    /// Serial number of the sender.
     pub serial: u32,
 }
 
 const ANSWER: u8 = 0x80;
 
 impl DuplicateCheck {
-    /// Bytes of it.
+    /// Length in bytes.
     pub const LEN: usize = 7;
 
-    /// Reads exactly that many bytes.
+    /// Decodes exactly [`LEN`](Self::LEN) bytes.
     pub fn parse(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; Self::LEN] = bytes.try_into().ok()?;
         Some(Self {
@@ -30,7 +30,7 @@ impl DuplicateCheck {
         })
     }
 
-    /// The bytes.
+    /// Encodes the message.
     pub fn emit(self) -> [u8; Self::LEN] {
         let mut bytes = [0; Self::LEN];
         bytes[0] = self.port & !ANSWER | if self.is_answer { ANSWER } else { 0 };

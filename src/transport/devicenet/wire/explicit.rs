@@ -1,8 +1,8 @@
-//! Explicit messages: a header byte, a service, and in requests which object is meant.
+//! Codec for explicit messages: header, service, path, data.
 
 use super::Mac;
 
-/// Codes of services; an answer has `ANSWER` added.
+/// Service codes. Answers also have the bit `ANSWER`.
 pub mod service {
     /// Restart the node.
     pub const RESET: u8 = 0x05;
@@ -10,37 +10,37 @@ pub mod service {
     pub const GET: u8 = 0x0E;
     /// Change an attribute.
     pub const SET: u8 = 0x10;
-    /// In answers: no.
+    /// Error response.
     pub const ERROR: u8 = 0x14;
     /// Allocate connections of the predefined set.
     pub const ALLOCATE: u8 = 0x4B;
-    /// Release them.
+    /// Release connections of the predefined set.
     pub const RELEASE: u8 = 0x4C;
-    /// A node says that it lives.
+    /// Heartbeat of a node.
     pub const HEARTBEAT: u8 = 0x4D;
-    /// A node says that it goes off line.
+    /// A node goes off line.
     pub const SHUTDOWN: u8 = 0x4E;
-    /// Set in the service of answers.
+    /// Bit of the service code in answers.
     pub const ANSWER: u8 = 0x80;
 }
 
-/// Numbers of classes.
+/// Class codes.
 pub mod class {
-    /// Who a node is.
+    /// Identity object.
     pub const IDENTITY: u8 = 1;
-    /// Its MAC, bit rate, and who has its connections.
+    /// DeviceNet object: MAC, bit rate, allocation.
     pub const DEVICENET: u8 = 3;
-    /// Data that are carried together.
+    /// Assembly object.
     pub const ASSEMBLY: u8 = 4;
-    /// A connection.
+    /// Connection object.
     pub const CONNECTION: u8 = 5;
 }
 
-/// Connections of the predefined set, as allocation names them, and their instances.
+/// Allocation choice bits and instances of the predefined connections.
 pub mod connection {
-    /// For explicit messages.
+    /// Explicit messages.
     pub const EXPLICIT: u8 = 0x01;
-    /// For polls.
+    /// Polls.
     pub const POLL: u8 = 0x02;
     /// Instance of the explicit connection.
     pub const EXPLICIT_INSTANCE: u8 = 1;
@@ -48,34 +48,34 @@ pub mod connection {
     pub const POLL_INSTANCE: u8 = 2;
 }
 
-/// General codes of refusals.
+/// General error codes.
 pub mod general {
-    /// No room for another.
+    /// No resource left.
     pub const NO_RESOURCE: u8 = 0x02;
-    /// There is no such object.
+    /// No such object.
     pub const NO_PATH: u8 = 0x05;
-    /// The object has no such service.
+    /// No such service.
     pub const NO_SERVICE: u8 = 0x08;
-    /// The value is not one that the attribute can have.
+    /// Invalid attribute value.
     pub const INVALID_VALUE: u8 = 0x09;
-    /// It is so already.
+    /// Already in the requested state.
     pub const ALREADY: u8 = 0x0B;
-    /// Not now.
+    /// Not possible in the current state.
     pub const CONFLICT: u8 = 0x0C;
-    /// The attribute cannot be changed.
+    /// The attribute is read-only.
     pub const NOT_SETTABLE: u8 = 0x0E;
-    /// Too few bytes.
+    /// Not enough data.
     pub const TOO_SHORT: u8 = 0x13;
-    /// There is no such attribute.
+    /// No such attribute.
     pub const NO_ATTRIBUTE: u8 = 0x14;
-    /// Too many bytes.
+    /// Too much data.
     pub const TOO_LONG: u8 = 0x15;
-    /// There is no such instance.
+    /// No such instance.
     pub const NO_INSTANCE: u8 = 0x16;
-    /// A parameter is wrong.
+    /// Invalid parameter.
     pub const INVALID_PARAMETER: u8 = 0x20;
 
-    /// What a general code means.
+    /// Text of a general error code.
     pub const fn meaning(code: u8) -> &'static str {
         match code {
             NO_RESOURCE => "no resource left",
@@ -98,35 +98,35 @@ pub mod general {
     }
 }
 
-/// Additional codes of refusals to allocate or release.
+/// Additional error codes of allocate and release.
 pub mod owner {
     /// Another master has the connections.
     pub const ANOTHER_MASTER: u8 = 0x01;
-    /// The choice is not possible.
+    /// The choice is not valid.
     pub const INVALID_CHOICE: u8 = 0x02;
-    /// A node that knows group 2 only takes nothing else without a connection.
+    /// A group 2 only server accepts no other unconnected service.
     pub const UNCONNECTED: u8 = 0x03;
-    /// No room.
+    /// No resource left.
     pub const NO_RESOURCE: u8 = 0x04;
-    /// None.
+    /// No additional code.
     pub const NONE: u8 = 0xFF;
 }
 
-/// How class and instance are written.
+/// Width of class and instance in requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// Both in 8 bits.
+    /// 8-bit class, 8-bit instance.
     Byte8Byte8,
-    /// Class in 8, instance in 16.
+    /// 8-bit class, 16-bit instance.
     Byte8Word16,
-    /// Both in 16.
+    /// 16-bit class, 16-bit instance.
     Word16Word16,
-    /// Class in 16, instance in 8.
+    /// 16-bit class, 8-bit instance.
     Word16Byte8,
 }
 
 impl Format {
-    /// From its code in the answer to an allocation; 4 is a path, and above that nothing is defined.
+    /// Decodes the message body format of an allocate answer. Code 4 is a path; higher codes are not defined.
     pub const fn from_code(code: u8) -> Option<Self> {
         Some(match code {
             0 => Self::Byte8Byte8,
@@ -137,7 +137,7 @@ impl Format {
         })
     }
 
-    /// Its code.
+    /// Code of the format.
     pub const fn code(self) -> u8 {
         match self {
             Self::Byte8Byte8 => 0,
@@ -148,14 +148,14 @@ impl Format {
     }
 }
 
-/// The first byte of an explicit message.
+/// Header byte of an explicit message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Header {
-    /// Whether a fragment follows.
+    /// Whether a fragment byte follows.
     pub is_fragment: bool,
-    /// Tells requests apart; an answer repeats it.
+    /// Transaction id. An answer repeats it.
     pub xid: bool,
-    /// The node at the other end.
+    /// MAC of the other node.
     pub mac: Mac,
 }
 
@@ -163,7 +163,7 @@ impl Header {
     const FRAGMENT: u8 = 0x80;
     const XID: u8 = 0x40;
 
-    /// Reads the byte.
+    /// Decodes the byte.
     pub const fn parse(byte: u8) -> Self {
         Self {
             is_fragment: byte & Self::FRAGMENT != 0,
@@ -172,7 +172,7 @@ impl Header {
         }
     }
 
-    /// The byte.
+    /// Encodes the byte.
     pub const fn emit(self) -> u8 {
         let fragment = if self.is_fragment { Self::FRAGMENT } else { 0 };
         let xid = if self.xid { Self::XID } else { 0 };
@@ -180,26 +180,26 @@ impl Header {
     }
 }
 
-/// A request, behind its header.
+/// A request without its header.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Request {
-    /// What is to be done.
+    /// Service code.
     pub service: u8,
-    /// The class of the object.
+    /// Class of the object.
     pub class: u16,
-    /// Which of them; 0 is the class itself.
+    /// Instance; 0 is the class itself.
     pub instance: u16,
-    /// What else the service needs.
+    /// Service data.
     pub data: Vec<u8>,
 }
 
 impl Request {
-    /// Reads an attribute.
+    /// Get_Attribute_Single.
     pub fn get(class: u8, instance: u16, attribute: u8) -> Self {
         Self { service: service::GET, class: class.into(), instance, data: vec![attribute] }
     }
 
-    /// Changes an attribute.
+    /// Set_Attribute_Single.
     pub fn set(class: u8, instance: u16, attribute: u8, value: &[u8]) -> Self {
         let data = [&[attribute], value].concat();
         Self { service: service::SET, class: class.into(), instance, data }
@@ -216,7 +216,7 @@ impl Request {
         Self { service: service::RELEASE, class: class::DEVICENET.into(), instance: 1, data: vec![choice] }
     }
 
-    /// The bytes; `None` if class or instance are too high for the format.
+    /// Encodes the request; `None` if class or instance do not fit the format.
     pub fn emit(&self, format: Format) -> Option<Vec<u8>> {
         let mut bytes = vec![self.service];
         let byte = |value: u16| u8::try_from(value).ok().map(|value| vec![value]);
@@ -233,7 +233,7 @@ impl Request {
         Some(bytes)
     }
 
-    /// Reads it; `None` if it is too short, or an answer.
+    /// Decodes a request; `None` if it is too short or an answer.
     pub fn parse(format: Format, bytes: &[u8]) -> Option<Self> {
         let (service, rest) = bytes.split_first()?;
         if service & service::ANSWER != 0 {
@@ -260,27 +260,27 @@ fn number(bytes: &[u8], is_wide: bool) -> Option<(u16, &[u8])> {
     Some((u16::from_le_bytes([*low, *high]), rest))
 }
 
-/// An answer, behind its header.
+/// An answer without its header.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Answer {
-    /// Done, with what was asked for.
+    /// Success.
     Done {
-        /// The service of the request.
+        /// Service code of the request.
         service: u8,
-        /// What it answers.
+        /// Service data.
         data: Vec<u8>,
     },
-    /// No.
+    /// Error response.
     Refused {
         /// The general code.
         general: u8,
-        /// The additional one; `FF` is none.
+        /// The additional code; `FF` means none.
         additional: u8,
     },
 }
 
 impl Answer {
-    /// Reads it; `None` if it is none.
+    /// Decodes an answer; `None` if it is not one.
     pub fn parse(bytes: &[u8]) -> Option<Self> {
         let (service, data) = bytes.split_first()?;
         if service & service::ANSWER == 0 {
@@ -297,7 +297,7 @@ impl Answer {
         }
     }
 
-    /// The bytes.
+    /// Encodes the answer.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Self::Done { service, data } => {
@@ -324,7 +324,7 @@ mod tests {
         Mac::new(number).unwrap()
     }
 
-    /// The start of a connection of master 1 with slave 5, behind the header 01.
+    /// Master 1 opens a connection to slave 5; the header is 01.
     #[test]
     fn requests_of_a_start_have_the_recorded_bytes() {
         for (request, bytes) in [
@@ -352,7 +352,7 @@ mod tests {
             assert_eq!(Answer::parse(&bytes), Some(answer.clone()));
             assert_eq!(answer.emit(), bytes);
         }
-        // A heartbeat and a shutdown are no answers.
+        // Heartbeat and shutdown are not answers.
         for service in [service::HEARTBEAT, service::SHUTDOWN] {
             assert_eq!(Answer::parse(&[service, 1, 0, 0]), None);
         }

@@ -1,32 +1,32 @@
-//! The byte that fragments begin with.
+//! Codec for the fragment byte.
 
-/// Which part of a message a fragment is.
+/// Fragment type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// The first.
+    /// First fragment.
     First,
-    /// One between.
+    /// Middle fragment.
     Middle,
-    /// The last.
+    /// Last fragment.
     Last,
-    /// None: what the receiver of explicit fragments says to each.
+    /// Acknowledgement of an explicit fragment.
     Acknowledge,
 }
 
-/// Kind and count.
+/// Fragment type and count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Fragment {
-    /// Which part it is.
+    /// Fragment type.
     pub kind: Kind,
-    /// Its number, from 0, modulo 64.
+    /// Count from 0, modulo 64.
     pub count: u8,
 }
 
 impl Fragment {
-    /// The count of a first fragment of cyclic data that is the last one, too.
+    /// Count of a cyclic fragment that is both first and last.
     pub const ONLY: u8 = 0x3F;
 
-    /// Reads the byte.
+    /// Decodes the byte.
     pub const fn parse(byte: u8) -> Self {
         let kind = match byte >> 6 {
             0 => Kind::First,
@@ -37,7 +37,7 @@ impl Fragment {
         Self { kind, count: byte & 0x3F }
     }
 
-    /// The byte.
+    /// Encodes the byte.
     pub const fn emit(self) -> u8 {
         let kind = match self.kind {
             Kind::First => 0,
@@ -48,7 +48,7 @@ impl Fragment {
         kind << 6 | self.count & 0x3F
     }
 
-    /// Of the pieces of a message: which one this is.
+    /// Fragment byte of piece `index` of `pieces`.
     pub fn of(index: usize, pieces: usize) -> Self {
         let kind = match index {
             0 => Kind::First,

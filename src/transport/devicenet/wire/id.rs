@@ -1,32 +1,32 @@
-//! What identifiers mean.
+//! CAN identifiers of DeviceNet.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The address of a node: 0 to 63.
+/// Node address (MAC ID): 0 to 63.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Mac(u8);
 
 impl Mac {
-    /// The highest.
+    /// Highest MAC.
     pub const LAST: u8 = 63;
 
-    /// `None` above 63.
+    /// Creates a MAC; `None` above 63.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= Self::LAST { Some(Self(number)) } else { None }
     }
 
-    /// The lower six bits.
+    /// MAC from the lower six bits.
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits.to_le_bytes()[0] & Self::LAST)
     }
 
-    /// Its number.
+    /// MAC as a number.
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// All of them.
+    /// All MACs.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..=Self::LAST).map(Self)
     }
@@ -51,47 +51,47 @@ impl FromStr for Mac {
     }
 }
 
-/// An identifier of 11 bits.
+/// Meaning of an 11-bit identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
-    /// Of group 1, without a meaning in the predefined set: message 0 to 11.
+    /// Other group 1 message, 0 to 11. Not used by the predefined set.
     Group1(u8, Mac),
-    /// A slave's answer to a multicast poll.
+    /// Slave's multicast poll response.
     MulticastAnswer(Mac),
-    /// A slave's change of state, or cyclic data.
+    /// Slave's change of state or cyclic message.
     Change(Mac),
-    /// A slave's answer to a bit strobe.
+    /// Slave's bit strobe response.
     StrobeAnswer(Mac),
-    /// A slave's answer to a poll, or its acknowledgement of a change of state.
+    /// Slave's poll response, or its acknowledgement of a change of state.
     PollAnswer(Mac),
-    /// A master's bit strobe; the MAC is the master's.
+    /// Master's bit strobe command, with the MAC of the master.
     Strobe(Mac),
-    /// A master's multicast poll; the MAC is that of a group.
+    /// Master's multicast poll command, with the MAC of the group.
     MulticastPoll(Mac),
-    /// A master's acknowledgement of a change of state or cyclic data.
+    /// Master's acknowledgement of change of state or cyclic data.
     ChangeAck(Mac),
-    /// A slave's explicit answers, connected or not.
+    /// Slave's explicit responses, connected or unconnected.
     Answer(Mac),
-    /// A master's explicit request on a connection.
+    /// Master's explicit request on a connection.
     Request(Mac),
-    /// A master's poll, change of state, or cyclic data.
+    /// Master's poll command, change of state or cyclic message.
     Poll(Mac),
-    /// An explicit request without a connection, to a slave that knows group 2 only.
+    /// Unconnected explicit request to a group 2 only server.
     Unconnected(Mac),
-    /// The duplicate MAC check; the MAC is the one that is checked.
+    /// Duplicate MAC check, with the MAC that is checked.
     Duplicate(Mac),
-    /// Of group 3, message 0 to 4: explicit messages of connections.
+    /// Group 3, messages 0 to 4: connected explicit messages.
     Group3(u8, Mac),
-    /// An answer without a connection.
+    /// Unconnected explicit response (group 3).
     UnconnectedAnswer(Mac),
-    /// A request without a connection.
+    /// Unconnected explicit request (group 3).
     UnconnectedRequest(Mac),
-    /// Of group 4: 00 to 2F.
+    /// Group 4: 00 to 2F.
     Group4(u8),
 }
 
 impl Id {
-    /// What it means; `None` for those that DeviceNet does not have.
+    /// Decodes an identifier; `None` if DeviceNet does not use it.
     pub fn parse(id: u16) -> Option<Self> {
         let low = Mac::from_bits(id);
         let high = Mac::from_bits(id >> 3);
@@ -119,7 +119,7 @@ impl Id {
         })
     }
 
-    /// The identifier. Message numbers beyond those of their group are cut.
+    /// Encodes the identifier. Message numbers are limited to their group.
     pub fn emit(self) -> u16 {
         let group2 = |mac: Mac, message: u16| 0x400 | mac.bits() << 3 | message;
         match self {
@@ -143,7 +143,7 @@ impl Id {
         }
     }
 
-    /// Who sent it, where the identifier tells.
+    /// MAC of the sender, if the identifier contains it.
     pub const fn sender(self) -> Option<Mac> {
         match self {
             Self::Group1(_, mac)
@@ -160,7 +160,7 @@ impl Id {
         }
     }
 
-    /// The number of its group.
+    /// Message group.
     pub const fn group(self) -> u8 {
         match self {
             Self::Group1(..)
@@ -182,7 +182,7 @@ impl Id {
     }
 }
 
-/// In words: `MAC 5: answer to a poll`.
+/// Text for traces: `MAC 5: answer to a poll`.
 impl fmt::Display for Id {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (mac, what) = match *self {
@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// The predefined master/slave connection set for slave 5.
+    /// Predefined master/slave connection set of slave 5.
     #[test]
     fn the_predefined_set_has_its_identifiers() {
         let mac = Mac::new(5).unwrap();

@@ -1,12 +1,12 @@
-//! Cyclic data: bare where it fits a frame, in fragments without acknowledgement where the connection is larger.
+//! Codec for cyclic data: a single frame if the image fits, otherwise unacknowledged fragments.
 
 use super::{Fragment, Kind};
 use crate::devicenet::can::MOST_DATA;
 
-/// Bytes of cyclic data in a fragment.
+/// Data bytes per fragment.
 const PART: usize = MOST_DATA - 1;
 
-/// The contents of the frames that carry `image`, whose size is that of the connection.
+/// Splits an image into frames. Its length must be the size of the connection.
 pub fn split(image: &[u8]) -> Vec<Vec<u8>> {
     if image.len() <= MOST_DATA {
         return vec![image.to_vec()];
@@ -20,40 +20,40 @@ pub fn split(image: &[u8]) -> Vec<Vec<u8>> {
     image.chunks(PART).enumerate().map(piece).collect()
 }
 
-/// What a frame of cyclic data came to.
+/// Effect of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Piece {
-    /// All of an image is there.
+    /// The image is complete.
     Whole(Vec<u8>),
-    /// More has to come.
+    /// More fragments follow.
     Part,
-    /// Nothing was in it: the sender idles.
+    /// An empty frame: the sender is in idle mode.
     Idle,
-    /// It does not belong to what came before, or has a wrong size; what came before is dropped.
+    /// Wrong count or size. The partial image is dropped.
     Wrong,
 }
 
-/// Puts fragments together, of a connection of a known size. A gap drops everything up to the next first fragment.
+/// Reassembly for a connection of a known size. A gap drops everything up to the next first fragment.
 #[derive(Debug, Clone)]
 pub struct Assembler {
     size: usize,
     parts: Vec<u8>,
-    /// The count that must come; `None` while a first fragment is waited for.
+    /// Expected count; `None` before a first fragment.
     next: Option<u8>,
 }
 
 impl Assembler {
-    /// For images of this size.
+    /// Creates an assembler for images of `size` bytes.
     pub const fn new(size: usize) -> Self {
         Self { size, parts: Vec::new(), next: None }
     }
 
-    /// Whether a fragment of an image is there and the rest is not.
+    /// Whether an image is partially received.
     pub const fn is_partial(&self) -> bool {
         self.next.is_some()
     }
 
-    /// Takes the contents of a frame.
+    /// Handles the data of a frame.
     pub fn take(&mut self, bytes: &[u8]) -> Piece {
         let Some((first, part)) = bytes.split_first() else {
             self.next = None;
@@ -65,8 +65,8 @@ impl Assembler {
         let Fragment { kind, count } = Fragment::parse(*first);
         let expected = self.next.take();
         match kind {
-            // A first one begins anew, even where the rest of another is missing; but two in a row may be out of order, and
-            // nobody can tell which of them the rest belongs to.
+            // A first fragment starts a new image even if the last one is incomplete. But after two first fragments in
+            // a row the order is uncertain: the following fragments can belong to either.
             Kind::First if count == 0 && part.len() < self.size && expected != Some(1) => {
                 self.parts = part.to_vec();
                 self.next = Some(1);
@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(assembler.take(&frames[6]), Piece::Whole(image));
     }
 
-    /// As an adapter would hand them over that mixes up what it has: the rest would be put behind an older beginning.
+    /// With a faulty adapter that mixes up frames, the rest would follow an older beginning.
     #[test]
     fn of_two_beginnings_in_a_row_neither_is_taken() {
         let (older, newer) = (split(&[1; 48]), split(&[2; 48]));
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(assembler.take(&[]), Piece::Idle);
     }
 
-    /// Any loss, doubling or exchange of frames of an image spoils this image and no other.
+    /// A lost, doubled or exchanged frame damages its own image and no other.
     #[test]
     fn what_is_damaged_is_dropped_and_the_next_is_whole() {
         let image: Vec<u8> = (0..48).collect();
@@ -147,7 +147,7 @@ mod tests {
                 let mut assembler = Assembler::new(48);
                 for frame in &frames_in {
                     match assembler.take(frame) {
-                        // Only a doubled first or last one leaves a whole image behind.
+                        // Only a doubled first or last fragment leaves a complete image.
                         Piece::Whole(got) => assert_eq!(got, image),
                         Piece::Part | Piece::Wrong => {}
                         Piece::Idle => panic!("no frame was empty"),

@@ -1,7 +1,7 @@
-//! The bytes of DeviceNet: identifiers, explicit messages, fragments, the duplicate MAC check.
+//! DeviceNet codec: identifiers, explicit messages, fragments, duplicate MAC check.
 //!
-//! Little-endian. The layouts are those of the ODVA's volume 3 ("DeviceNet Adaptation of CIP"), as tshark's dissector and
-//! two codecs that others wrote read them.
+//! Numbers are little-endian. The layouts follow ODVA volume 3 ("DeviceNet Adaptation of CIP"), as read by Wireshark's
+//! dissector and two codecs of other authors.
 
 mod duplicate;
 mod explicit;

@@ -1,47 +1,47 @@
-//! What an adapter can be made to do wrong, for tests of the other end.
+//! Deliberate faults of a simulated adapter, for tests of originators.
 
 use super::super::wire::Cyclic;
 
-/// A thing to do wrong.
+/// A fault of the adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AdapterFault {
-    /// Sends every other image only.
+    /// Sends only every other image.
     Drop,
     /// Sends no images.
     Stall,
-    /// Sends every image with the numbers of the one before.
+    /// Sends every image with the sequence numbers of the previous one.
     Stale,
     /// Sends every image twice.
     Double,
     /// Counts backwards.
     WrongSequence,
-    /// Sends images under an id that nobody has.
+    /// Sends images with an unknown connection id.
     WrongId,
-    /// Sends images that are a byte short.
+    /// Sends images that are one byte short.
     WrongSize,
-    /// Sends what it showed at first, whatever it is shown: what is behind it has stopped.
+    /// Repeats its first image: the application behind it has stopped.
     Frozen,
-    /// Lets nobody read its assemblies by messages.
+    /// Refuses to read assemblies with messages.
     Unreadable,
-    /// Ends the TCP connection at every request.
+    /// Closes the TCP connection at every request.
     Reset,
     /// Answers no request.
     Mute,
-    /// Ends the TCP connection instead of answering what sets an attribute.
+    /// Closes the TCP connection at every Set_Attribute.
     ResetSet,
-    /// Answers noise.
+    /// Sends garbage.
     Garbage,
-    /// Puts a socket address behind the items that it counts when it answers ForwardOpen, as OpENer boards do.
+    /// Appends a socket address after the counted items of a ForwardOpen reply, as OpENer boards do.
     Trailing,
-    /// Does not say of itself that it has an owner, and names it before it looks at sizes, as OpENer boards do.
+    /// Does not report an owner in its status, and checks the owner before the sizes, as OpENer boards do.
     Unowned,
 }
 
-/// An item of a socket address, 0.0.0.0:2222.
+/// Socket address item 0.0.0.0:2222.
 pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 impl AdapterFault {
-    /// All there are, with the names they are asked for by.
+    /// All faults with their names.
     pub const ALL: [(&'static str, Self); 15] = [
         ("drop", Self::Drop),
         ("stall", Self::Stall),
@@ -61,7 +61,7 @@ impl AdapterFault {
     ];
 }
 
-/// What is sent in place of an image, which is the `number`th.
+/// Applies a fault to image number `number`.
 pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
     let Some(mischief) = mischief else { return vec![bytes] };
     let changed = |change: fn(&mut Cyclic<'_>)| {
@@ -73,7 +73,7 @@ pub(super) fn images(mischief: Option<AdapterFault>, number: u64, bytes: Vec<u8>
         AdapterFault::Drop if number.is_multiple_of(2) => Vec::new(),
         AdapterFault::Stall => Vec::new(),
         AdapterFault::Stale => changed(|datagram| {
-            // The first is as it should be: there is none before.
+            // The first image is correct, because there is no previous one.
             datagram.sequence = datagram.sequence.min(1);
             datagram.count = datagram.count.min(1);
         }),

@@ -1,4 +1,4 @@
-//! The other end: an adapter with assemblies, without sockets and without a clock. It is stricter than devices are.
+//! Simulated EtherNet/IP adapter with assemblies. It has no sockets and no clock, and is stricter than real devices.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -22,120 +22,119 @@ pub use fault::AdapterFault;
 
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
-/// Refusals of the encapsulation.
+/// Encapsulation status codes.
 const UNSUPPORTED_COMMAND: u32 = 0x01;
 const NO_MEMORY: u32 = 0x02;
 const INCORRECT_DATA: u32 = 0x03;
 const INVALID_SESSION: u32 = 0x64;
 const INVALID_LENGTH: u32 = 0x65;
 const UNSUPPORTED_VERSION: u32 = 0x69;
-/// Refusals of objects.
+/// General status codes.
 const PATH_SEGMENT: u8 = 0x04;
 const UNKNOWN_DESTINATION: u8 = 0x05;
 const UNKNOWN_SERVICE: u8 = 0x08;
 const NOT_ENOUGH_DATA: u8 = 0x13;
-/// Refusal of a close.
+/// Extended status of a refused close.
 const NOT_FOUND: u16 = 0x0107;
 
-/// What an assembly is for, seen from the originator.
+/// Use of an assembly, from the originator's view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Purpose {
-    /// Sent by the adapter.
+    /// Produced by the adapter.
     Input,
-    /// Taken by the adapter.
+    /// Consumed by the adapter.
     Output,
-    /// Taken when a connection is opened.
+    /// Consumed when a connection opens.
     Configuration,
 }
 
 /// An assembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Assembly {
-    /// Its number.
+    /// Instance number.
     pub instance: u32,
-    /// What it is for.
+    /// Use of the assembly.
     pub purpose: Purpose,
-    /// Its bytes.
+    /// Size in bytes.
     pub size: u16,
 }
 
-/// What an adapter is.
+/// Configuration of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Who it is; its address is the one it listens on.
+    /// Identity. Its address is the one that the adapter listens on.
     pub identity: Identity,
-    /// What it has.
+    /// Assemblies.
     pub assemblies: Vec<Assembly>,
-    /// The output instance that connections without outputs name.
+    /// Output instance of input-only connections.
     pub input_only: u32,
-    /// The output instance that listeners name.
+    /// Output instance of listen-only connections.
     pub listen_only: u32,
-    /// The intervals it takes.
+    /// Supported intervals (RPI).
     pub rpi: RangeInclusive<Duration>,
     /// Intervals are rounded up to a multiple of this.
     pub tick: Duration,
-    /// Most connections at a time.
+    /// Connection limit.
     pub most_connections: usize,
-    /// Most sessions at a time.
+    /// Session limit.
     pub most_sessions: usize,
-    /// UDP port on which it takes images.
+    /// UDP port for images.
     pub io_port: u16,
-    /// The group it sends to when asked for multicast.
+    /// Multicast group of images.
     pub group: Ipv4Addr,
 }
 
-/// What an adapter is for.
+/// Behaviour behind the adapter.
 pub trait Application: Send {
-    /// A new image from the owner, and whether its master runs.
+    /// Receives a new image from the owner, with the run/idle bit.
     fn image_out(&mut self, now: Now, instance: u32, image: &[u8], run: bool);
-    /// Fills the image that goes to originators; it has the bytes of the last time.
+    /// Updates the image to originators. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, instance: u32, image: &mut [u8]);
-    /// A connection came or went.
+    /// A connection was opened or closed.
     fn event(&mut self, now: Now, event: &Event);
 }
 
-/// Result of a connection.
+/// Event of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// It was opened.
+    /// The connection was opened.
     Opened(Peer),
-    /// It was closed by its originator, or with the connection it listened to.
+    /// The originator closed it, or the connection that it listened to was closed.
     Closed(Peer),
-    /// Its originator went silent.
+    /// The originator timed out.
     TimedOut(Peer),
 }
 
-/// Who is at the other end of a connection, and what for.
+/// Originator of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Peer {
-    /// Its host.
+    /// IP address.
     pub address: Ipv4Addr,
-    /// What it wants.
+    /// Role of the connection.
     pub role: Role,
-    /// The assembly it is sent.
+    /// Produced assembly.
     pub input: u32,
-    /// The assembly it sets, if it is an owner.
+    /// Consumed assembly, if the originator is the owner.
     pub output: Option<u32>,
-    /// The interval to the adapter.
+    /// Interval from originator to target.
     pub o_t: Duration,
-    /// The interval from it.
+    /// Interval from target to originator.
     pub t_o: Duration,
 }
 
-/// What is to be done.
+/// An action for the driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Output {
-    /// Send this to a client on its TCP connection.
+    /// Send these bytes to a TCP client.
     Send(u64, Vec<u8>),
     /// Close the TCP connection of a client.
     HangUp(u64),
-    /// Send an image from the port for images.
+    /// Send an image from the UDP port for images.
     Datagram(SocketAddrV4, Vec<u8>),
-    /// Answer from the port for ListIdentity.
+    /// Send a ListIdentity answer.
     Discovered(SocketAddrV4, Vec<u8>),
 }
 
-/// A TCP connection.
 #[derive(Debug)]
 struct Client {
     address: Ipv4Addr,
@@ -143,13 +142,13 @@ struct Client {
     session: Option<u32>,
 }
 
-/// A connection.
+/// An open I/O connection.
 #[derive(Debug)]
 struct Held {
     peer: Peer,
     triad: Triad,
     consumer: Consumer,
-    /// `None` where another connection has the same group served.
+    /// `None` if another connection already sends to the same group.
     producer: Option<Producer>,
     t_o_id: u32,
     destination: SocketAddrV4,
@@ -157,7 +156,7 @@ struct Held {
     run: bool,
 }
 
-/// The adapter.
+/// A simulated adapter.
 #[derive(Debug)]
 pub struct Adapter<A> {
     setup: Setup,
@@ -172,7 +171,7 @@ pub struct Adapter<A> {
 }
 
 impl<A: Application> Adapter<A> {
-    /// An adapter before anybody came.
+    /// Creates an adapter without connections.
     pub fn new(setup: Setup, application: A) -> Self {
         let images = setup.assemblies.iter().map(|assembly| (assembly.instance, vec![0; assembly.size.into()]));
         Self {
@@ -188,38 +187,38 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// What it is for.
+    /// The application.
     pub const fn application(&mut self) -> &mut A {
         &mut self.application
     }
 
-    /// Where it listens, once that is known.
+    /// Sets the address and port after the sockets are bound.
     pub const fn listens(&mut self, address: SocketAddrV4, io_port: u16) {
         self.setup.identity.address = address;
         self.setup.io_port = io_port;
     }
 
-    /// Makes it do something wrong from now on, or no longer.
+    /// Activates a fault, or none.
     pub const fn misbehave(&mut self, mischief: Option<AdapterFault>) {
         self.mischief = mischief;
     }
 
-    /// Who is connected.
+    /// Originators of the open connections.
     pub fn peers(&self) -> impl Iterator<Item = &Peer> {
         self.held.iter().map(|held| &held.peer)
     }
 
-    /// A client connected by TCP.
+    /// A TCP client connected.
     pub fn connected(&mut self, client: u64, address: Ipv4Addr) {
         self.clients.insert(client, Client { address, frames: Frames::default(), session: None });
     }
 
-    /// A client is gone. Its connections stay until they are silent.
+    /// A TCP client disconnected. Its I/O connections stay open until they time out.
     pub fn hung_up(&mut self, client: u64) {
         self.clients.remove(&client);
     }
 
-    /// A client sent something.
+    /// Handles bytes from a TCP client.
     pub fn received(&mut self, now: Now, client: u64, bytes: &[u8]) {
         let Some(state) = self.clients.get_mut(&client) else { return };
         state.frames.push(bytes);
@@ -240,7 +239,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// A datagram came on the port for ListIdentity.
+    /// Handles a datagram on the ListIdentity port.
     pub fn discovered(&mut self, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
         if self.mischief == Some(AdapterFault::Mute) {
@@ -252,7 +251,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// A datagram came on the port for images.
+    /// Handles a datagram on the image port.
     pub fn hear(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
         let is_meant = |held: &&mut Held| held.consumer.id() == datagram.id && held.peer.address == *from.ip();
@@ -266,7 +265,7 @@ impl<A: Application> Adapter<A> {
         self.application.image_out(now, instance, image, run);
     }
 
-    /// What to do at `now`; call until it answers `None`.
+    /// Returns the next action at `now`. Call it until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Output> {
         if self.outputs.is_empty() {
             self.expire(now);
@@ -275,7 +274,7 @@ impl<A: Application> Adapter<A> {
         self.outputs.pop_front()
     }
 
-    /// When to call again at the latest.
+    /// Latest time of the next call.
     pub fn wake(&self) -> Option<Now> {
         if !self.outputs.is_empty() {
             return Some(Now::ZERO);
@@ -308,7 +307,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Takes a connection out, with those that only listened to it.
+    /// Removes a connection, and the connections that only listen to it.
     fn remove(&mut self, now: Now, index: usize) -> Peer {
         let held = self.held.remove(index);
         if held.is_multicast {
@@ -373,7 +372,7 @@ impl<A: Application> Adapter<A> {
         Ok((self.last_session, data.to_vec()))
     }
 
-    /// The data of an answer to a command that asks what there is.
+    /// Data of the answer to a list command.
     fn listed(&self, command: Command) -> Option<Vec<u8>> {
         match command {
             Command::LIST_IDENTITY => Some(self.identity().emit()),
@@ -383,7 +382,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Who it is, with a status of now (volume 1, 5-2.2.1.5).
+    /// Identity with the current status (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
         let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
         let is_owned = is_owned && self.mischief != Some(AdapterFault::Unowned);
@@ -395,7 +394,7 @@ impl<A: Application> Adapter<A> {
         Identity { status: u16::from(is_owned) | extended << 4, ..self.setup.identity.clone() }
     }
 
-    /// Answers an unconnected message: the data of the answer.
+    /// Answers an unconnected message.
     fn message(&mut self, now: Now, from: Ipv4Addr, data: &RrData<'_>) -> Vec<u8> {
         let Ok(request) = Request::parse(data.message) else {
             let service = data.message.first().copied().unwrap_or_default();
@@ -448,7 +447,7 @@ impl<A: Application> Adapter<A> {
 }
 
 impl Setup {
-    /// An adapter with one input and one output assembly, and one for a configuration of no bytes, as `identity`.
+    /// An adapter with one input, one output and one empty configuration assembly.
     pub fn new(identity: Identity, input: (u32, u16), output: (u32, u16), configuration: u32) -> Self {
         let assembly = |instance, purpose, size| Assembly { instance, purpose, size };
         Self {
@@ -458,7 +457,7 @@ impl Setup {
                 assembly(output.0, Purpose::Output, output.1),
                 assembly(configuration, Purpose::Configuration, 0),
             ],
-            // The instances that data sheets name most.
+            // The usual instance numbers of data sheets.
             input_only: 238,
             listen_only: 237,
             rpi: Duration::from_millis(2)..=Duration::from_millis(3200),
@@ -475,7 +474,7 @@ impl Setup {
     }
 }
 
-/// Whether it is a message that sets an attribute.
+/// Whether the frame is a Set_Attribute_Single.
 fn is_set(frame: &Frame<'_>) -> bool {
     frame.command == Command::SEND_RR_DATA
         && RrData::parse(frame.data).is_ok_and(|data| data.message.first() == Some(&service::SET_ATTRIBUTE_SINGLE))

@@ -1,4 +1,4 @@
-//! What an adapter can be asked about: itself, and its assemblies.
+//! Objects of an adapter: identity and assemblies.
 
 use std::cmp::Ordering;
 
@@ -8,19 +8,19 @@ use super::super::{ASSEMBLY, Now};
 use super::{Adapter, AdapterFault, Application, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
 
 const IDENTITY: u32 = 1;
-/// The attribute of an assembly that is its image.
+/// Attribute 3 of an assembly: its data.
 const DATA: u32 = 3;
 const STATE_CONFLICT: u8 = 0x0C;
 const NOT_SETTABLE: u8 = 0x0E;
 const TOO_LARGE: u8 = 0x11;
 const UNKNOWN_ATTRIBUTE: u8 = 0x14;
 const TOO_MUCH_DATA: u8 = 0x15;
-/// Revisions of the classes.
+/// Class revisions.
 const IDENTITY_REVISION: u16 = 1;
 const ASSEMBLY_REVISION: u16 = 2;
 
 impl<A: Application> Adapter<A> {
-    /// Carries out a service of an object, or says with which general status it is refused.
+    /// Executes a service. The error is a general status.
     pub(super) fn object(
         &mut self,
         now: Now,
@@ -50,7 +50,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Revision, highest instance, number of instances.
+    /// Class attributes: revision, highest instance, number of instances.
     fn class_attribute(&self, class: u32, attribute: u32) -> Result<Vec<u8>, u8> {
         let instances = &self.setup.assemblies;
         let (revision, highest, count) = match class {
@@ -80,7 +80,7 @@ impl<A: Application> Adapter<A> {
         })
     }
 
-    /// Takes an image that comes by a message, as long as nobody owns it.
+    /// Sets an output assembly with a message, if no connection owns it.
     fn set_image(&mut self, now: Now, instance: u32, image: &[u8]) -> Result<Vec<u8>, u8> {
         if self.setup.assembly(instance, Purpose::Output).is_none() {
             return Err(NOT_SETTABLE);
@@ -98,7 +98,7 @@ impl<A: Application> Adapter<A> {
         Ok(Vec::new())
     }
 
-    /// Data and size.
+    /// Instance attributes: data and size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
         if self.mischief == Some(AdapterFault::Unreadable) {
             return Err(UNKNOWN_ATTRIBUTE);

@@ -1,4 +1,4 @@
-//! Whether an adapter opens a connection.
+//! Checks and decisions of a ForwardOpen.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -10,7 +10,7 @@ use super::{
     Adapter, AdapterFault, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
 };
 
-/// Refusals (volume 1, table 3-5.29).
+/// Extended status codes (volume 1, table 3-5.29).
 const DUPLICATE: u16 = 0x0100;
 const TRANSPORT: u16 = 0x0103;
 const OWNED: u16 = 0x0106;
@@ -26,25 +26,25 @@ const CONFIGURATION: u16 = 0x0118;
 const NOTHING_TO_HEAR: u16 = 0x0119;
 const CONFIGURATION_SIZE: u16 = 0x0126;
 const SEGMENT: u16 = 0x0315;
-/// A multiplier there is not.
+/// General status for an invalid timeout multiplier.
 const INVALID_PARAMETER: u8 = 0x20;
 
-/// Class 1, cyclic, the originator as client: the only transport there is.
+/// Transport class 1, cyclic, originator as client: the only supported one.
 const CYCLIC: u8 = 0x01;
-/// Sizes of a heartbeat: nothing, a count, or a count and a header.
+/// Valid heartbeat sizes: empty, a sequence count, or a count and a run/idle header.
 const HEARTBEATS: [u16; 3] = [0, COUNT, COUNT + HEADER];
 const COUNT: u16 = 2;
 const HEADER: u16 = 4;
 
-/// A connection that was opened.
+/// An accepted connection.
 pub(super) struct Granted {
-    /// The data of the reply.
+    /// Data of the reply.
     pub(super) data: Vec<u8>,
-    /// Where images go: to the adapter, to the originator.
+    /// Image addresses of the adapter and of the originator.
     pub(super) addresses: (Option<SocketAddrV4>, Option<SocketAddrV4>),
 }
 
-/// What a connection path says.
+/// Decoded connection path.
 #[derive(Debug)]
 struct Points<'a> {
     key: Option<Key>,
@@ -74,7 +74,7 @@ impl<A: Application> Adapter<A> {
 
     fn granted(&mut self, now: Now, from: Ipv4Addr, to: Option<SocketAddrV4>, open: &Open) -> Result<Granted, Status> {
         let points = points(open)?;
-        // Some boards look for an owner before they look at sizes.
+        // Some boards check the owner before the sizes.
         let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
         if self.mischief == Some(AdapterFault::Unowned) && is_owned {
             return Err(Status::connection(OWNED, &[]));
@@ -94,7 +94,8 @@ impl<A: Application> Adapter<A> {
         let o_t = self.setup.interval(&open.o_t);
         let mut t_o = self.setup.interval(&open.t_o);
         let is_multicast = open.t_o.net == Net::Multicast;
-        // A group is served once for all that want the same at the same interval; who only listens takes what there is.
+        // A multicast group has one producer for all connections with the same interval. A listen-only connection
+        // accepts any interval.
         let shared = self.held.iter().find(|held| {
             let fits = held.peer.t_o == t_o || role == Role::ListenOnly;
             held.is_multicast && is_multicast && held.peer.input == points.input && fits
@@ -112,7 +113,7 @@ impl<A: Application> Adapter<A> {
             (id, Some(Producer::new(id, t_o, now)))
         };
         let group = is_multicast.then(|| SocketAddrV4::new(self.setup.group, IO_PORT));
-        // The originator says on which port it listens; its host is the one that asks.
+        // The originator names its port. Its address is the sender of the request.
         let port = to.map(|address| address.port()).filter(|port| *port != 0);
         let own = SocketAddrV4::new(from, port.unwrap_or(IO_PORT));
         let header = open.o_t.size >= COUNT + HEADER;
@@ -149,7 +150,7 @@ impl<A: Application> Adapter<A> {
 }
 
 impl Setup {
-    /// Checks all that does not depend on who else is connected.
+    /// Checks everything that does not depend on other connections.
     fn allows(&self, open: &Open, points: &Points<'_>) -> Result<Role, Status> {
         let refuse = |code| Err(Status::connection(code, &[]));
         if open.transport != CYCLIC {
@@ -206,7 +207,7 @@ impl Setup {
         Ok(())
     }
 
-    /// The interval that is kept: what was asked for, rounded up.
+    /// The requested interval, rounded up to the tick.
     fn interval(&self, flow: &Flow) -> Duration {
         let tick = self.tick.as_micros().max(1);
         let asked = u128::from(flow.rpi_us).next_multiple_of(tick);
@@ -214,7 +215,7 @@ impl Setup {
     }
 }
 
-/// Key, assembly class, configuration or none, output, input, configuration data.
+/// Path: key, assembly class, optional configuration, output, input, configuration data.
 fn points(open: &Open) -> Result<Points<'_>, Status> {
     let (key, rest) = match &open.path.0[..] {
         [Segment::Key(key), rest @ ..] => (Some(*key), rest),
@@ -238,7 +239,7 @@ fn points(open: &Open) -> Result<Points<'_>, Status> {
     Ok(Points { key, configuration, output, input, data })
 }
 
-/// A size must be exact; a variable one may be smaller in use, but not here. The right one goes with the refusal.
+/// Checks a size. It must match exactly, even if it is declared variable. A refusal contains the correct size.
 fn sized(flow: &Flow, right: u16) -> Result<(), Status> {
     if flow.size == right { Ok(()) } else { Err(Status::connection(SIZE, &[right])) }
 }

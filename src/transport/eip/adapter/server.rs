@@ -1,4 +1,4 @@
-//! An adapter on sockets: sessions by TCP, ListIdentity by UDP on the same port, images by UDP.
+//! Socket server for an adapter: TCP for sessions, UDP on the same port for ListIdentity, UDP for images.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -16,40 +16,40 @@ use super::super::{IO_PORT, Now, PORT};
 use super::{Adapter, Application, Output, Setup};
 use crate::fault::Faults;
 
-/// Room for the largest datagram.
+/// Receive buffer for the largest datagram.
 const BUFFER: usize = 65_536;
-/// Most TCP connections; more are closed at once.
+/// Client limit. Further TCP connections are closed at once.
 const MOST_CLIENTS: usize = 64;
-/// Where the system chooses the port, TCP and UDP must get the same one; how often that is tried.
+/// Attempts to get the same TCP and UDP port when the system chooses the port.
 const TRIES: usize = 16;
 
-/// Pause after a TCP connection that could not be taken.
+/// Pause after a failed accept.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Where an adapter listens.
+/// Addresses of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Listen {
-    /// Its address.
+    /// IP address.
     pub address: Ipv4Addr,
-    /// TCP port of sessions, and UDP port of ListIdentity; 0 lets the system choose.
+    /// TCP port of sessions and UDP port of ListIdentity; 0 lets the system choose.
     pub port: u16,
-    /// UDP port of images; likewise. Originators that do not look at where the adapter says it listens want 2222.
+    /// UDP port of images; 0 lets the system choose. Some originators ignore the port in the reply and need 2222.
     pub io_port: u16,
 }
 
 impl Listen {
-    /// On the usual ports.
+    /// The standard ports.
     pub const fn usual(address: Ipv4Addr) -> Self {
         Self { address, port: PORT, io_port: IO_PORT }
     }
 
-    /// On ports that the system chooses.
+    /// Ports that the system chooses.
     pub const fn anywhere(address: Ipv4Addr) -> Self {
         Self { address, port: 0, io_port: 0 }
     }
 }
 
-/// An adapter that is running; it ends when it is dropped, without taking leave.
+/// A running adapter. It stops when it is dropped, and does not close its connections.
 #[derive(Debug)]
 pub struct Server<A: Application + 'static> {
     inner: Arc<Inner<A>>,
@@ -72,9 +72,9 @@ struct State<A> {
     adapter: Adapter<A>,
     lines: BTreeMap<u64, UnboundedSender<Vec<u8>>>,
     last: u64,
-    /// Of images: to the adapter, from it.
+    /// Fault injection for images: to the adapter, from the adapter.
     faults: Option<(Faults, Faults)>,
-    /// Images that faults delay.
+    /// Delayed images.
     delayed: Vec<(Now, Delayed)>,
 }
 
@@ -85,7 +85,7 @@ enum Delayed {
 }
 
 impl<A: Application> Server<A> {
-    /// Begins to listen. `faults` are those of images on their way there and back.
+    /// Starts the server. `faults` apply to images to and from the adapter.
     pub fn start(setup: Setup, application: A, listen: Listen, faults: Option<(Faults, Faults)>) -> io::Result<Self> {
         let prepared = Prepared::new()?;
         let (sessions, discovery) = bind(listen)?;
@@ -117,17 +117,17 @@ impl<A: Application> Server<A> {
         Ok(Self { inner, address, io_port: image_address.port(), _engine: engine })
     }
 
-    /// Where it takes sessions.
+    /// Address for sessions.
     pub const fn address(&self) -> SocketAddrV4 {
         self.address
     }
 
-    /// Where it takes images.
+    /// UDP port for images.
     pub const fn io_port(&self) -> u16 {
         self.io_port
     }
 
-    /// Looks at the adapter, or changes it, and at what it is for.
+    /// Calls `look` with the adapter.
     pub fn with<T>(&self, look: impl FnOnce(&mut Adapter<A>, Now) -> T) -> T {
         let result = look(&mut self.inner.state().adapter, self.inner.start.elapsed());
         self.inner.alarm.set(Some(Now::ZERO));
@@ -140,7 +140,7 @@ impl<A: Application> Inner<A> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets something happen to the adapter, and all that follows from it.
+    /// Calls `change` with the state, then executes the resulting actions.
     fn with(&self, change: impl FnOnce(&mut State<A>, Now)) {
         let mut state = self.state();
         let now = self.start.elapsed();
@@ -149,7 +149,7 @@ impl<A: Application> Inner<A> {
         self.alarm.set(wake);
     }
 
-    /// Does what is due by the clock, and says when to do so again.
+    /// Does what is due. Returns the time of the next call.
     fn turn(&self) -> Option<Now> {
         let mut state = self.state();
         let now = self.start.elapsed();
@@ -171,7 +171,7 @@ impl<A: Application> Inner<A> {
             match output {
                 Output::Send(client, bytes) => {
                     if let Some(line) = state.lines.get(&client) {
-                        // A line that has ended says so by itself.
+                        // If the line is closed, its own task reports it.
                         let _ = line.send(bytes);
                     }
                 }
@@ -207,12 +207,12 @@ impl<A: Application> Inner<A> {
     }
 }
 
-/// Devices do not care whether their datagrams arrive; nor does this one.
+/// UDP is unreliable, so a send error is ignored, as in a real device.
 fn send(socket: &UdpSocket, to: SocketAddrV4, bytes: &[u8]) {
     let _ = socket.send_to(bytes, to);
 }
 
-/// TCP and UDP on the same port.
+/// Binds TCP and UDP to the same port.
 fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
     let mut tries = if listen.port == 0 { TRIES } else { 1 };
     loop {
@@ -226,7 +226,7 @@ fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
 
 async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpListener, handle: Handle) {
     loop {
-        // An error is about one who came and went, or about too many open files; both pass.
+        // The peer disconnected already, or there are too many open files. Both are temporary.
         let Ok((stream, SocketAddr::V4(from))) = sessions.accept().await else {
             tokio::time::sleep(PAUSE).await;
             continue;
@@ -253,7 +253,7 @@ async fn serve<A: Application>(
     mut stream: TcpStream,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // Without it an answer may wait for the acknowledgement of the one before; it works all the same.
+    // Optional: without it, an answer can wait for the acknowledgement of the previous one.
     let _ = stream.set_nodelay(true);
     let (mut from, mut to) = stream.split();
     let mut buffer = [0; 4096];
@@ -283,7 +283,7 @@ async fn receive<A: Application>(
 ) {
     let mut buffer = vec![0; BUFFER];
     loop {
-        // An error is about one who is gone (Windows: port unreachable), and nothing to the others.
+        // The error concerns one peer (Windows: port unreachable). The others are not affected.
         if let Ok((len, SocketAddr::V4(from))) = socket.recv_from(&mut buffer).await {
             take(&inner, from, &buffer[..len]);
         }

@@ -1,11 +1,11 @@
-//! Numbers that tell connections apart.
+//! Allocator for connection serial numbers and ids.
 
 use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 
 use super::super::UNREGISTERED_VENDOR;
 use super::super::wire::Triad;
 
-/// Numbers that are unique in a process, and very likely elsewhere.
+/// Numbers that are unique in this process, and very likely in the network.
 #[derive(Debug)]
 pub struct Numbers {
     originator: u32,
@@ -14,12 +14,12 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Begins anywhere, so that what an earlier process left open is not hit.
+    /// Random start values, so that connections left open by an earlier process are not hit.
     pub fn random() -> Self {
         Self::new(fastrand::u32(..), fastrand::u16(..), fastrand::u32(..))
     }
 
-    /// Serial number of the originator, and where the numbers of connections and their ids begin.
+    /// Fixed start values: serial number of the originator, first connection serial number, first connection id.
     pub const fn new(originator: u32, serial: u16, id: u32) -> Self {
         Self { originator, serial: AtomicU16::new(serial), id: AtomicU32::new(id) }
     }
@@ -30,7 +30,7 @@ impl Numbers {
     }
 
     pub(super) fn id(&self) -> u32 {
-        // 0 is no id.
+        // 0 is not a valid id.
         match self.id.fetch_add(1, Ordering::Relaxed) {
             0 => self.id.fetch_add(1, Ordering::Relaxed),
             id => id,

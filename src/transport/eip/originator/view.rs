@@ -1,4 +1,4 @@
-//! What can be seen of a connection.
+//! State of a connection for callers.
 
 use std::time::Duration;
 
@@ -7,27 +7,27 @@ use super::super::error::EipError;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// What can be seen of a connection.
+/// State of a connection.
 pub type View = view::View<EipError, Statistics, Details>;
-/// The same as it changes.
+/// Receiver of state changes.
 pub type Views = view::Views<EipError, Statistics, Details>;
 
-/// What was counted.
+/// Counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Datagrams sent.
     pub sent: u64,
-    /// Moments to send that were missed by a whole interval, as by a machine that is too busy.
+    /// Send times omitted because a whole interval was missed, for example on a busy computer.
     pub skipped: u64,
-    /// Datagrams that were good.
+    /// Valid datagrams received.
     pub received: u64,
-    /// Numbers that never came.
+    /// Missing sequence numbers.
     pub lost: u64,
-    /// Datagrams that came more than half an interval late.
+    /// Datagrams more than half an interval late.
     pub late: u64,
-    /// Datagrams that were old or came again, and were passed over.
+    /// Old and duplicate datagrams, which are dropped.
     pub stale: u64,
-    /// Datagrams of a wrong size, which were passed over.
+    /// Datagrams of a wrong size, which are dropped.
     pub misfit: u64,
 }
 
@@ -43,11 +43,11 @@ impl Statistics {
     }
 }
 
-/// What only EtherNet/IP has to see.
+/// Details that only EtherNet/IP has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Details {
-    /// Whether the device is told to run.
+    /// Run/idle bit to the device.
     pub run: bool,
-    /// The intervals that the device keeps: to it, from it.
+    /// Actual intervals: to the device, from the device.
     pub intervals: Option<(Duration, Duration)>,
 }

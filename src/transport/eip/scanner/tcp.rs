@@ -1,4 +1,4 @@
-//! The TCP connection of a slot.
+//! TCP connection of a slot.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -11,13 +11,13 @@ use tokio::sync::mpsc::UnboundedReceiver;
 
 use super::{EipError, Inner, Slot, Tap, mpsc};
 
-/// Room for what is read at once.
+/// Bytes per read.
 const BUFFER: usize = 4096;
 
-/// The near end: dropping it closes the connection, once all has been written.
+/// Local end. Dropping it closes the connection after all bytes were written.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// Tells a connection from the one before it.
+    /// Sequence number, to identify events of an older connection.
     pub(super) number: u64,
     orders: mpsc::UnboundedSender<Vec<u8>>,
 }
@@ -30,12 +30,12 @@ impl Line {
     }
 
     pub(super) fn send(&self, bytes: Vec<u8>) {
-        // A line that has ended says so by itself.
+        // If the connection is closed, its own task reports it.
         let _ = self.orders.send(bytes);
     }
 }
 
-/// Connects, writes what is ordered, hands over what comes.
+/// Task: connects, writes queued bytes, delivers received bytes.
 pub(super) async fn run(
     inner: Arc<Inner>,
     id: u64,
@@ -44,7 +44,7 @@ pub(super) async fn run(
     tap: Tap,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // A slot that has another line by now does not want to hear of this one.
+    // Ignore events if the slot already has another connection.
     let tell = |event: &mut dyn FnMut(&mut Slot, super::Now)| {
         inner.with(id, |slot, now| {
             if slot.line.as_ref().is_some_and(|line| line.number == number) {
@@ -52,7 +52,7 @@ pub(super) async fn run(
             }
         });
     };
-    // Nothing is ordered before there is a connection; an end of the orders is an end of the wait.
+    // Nothing is queued before the connection is open. The end of the queue cancels the attempt.
     let connected = tokio::select! {
         connected = connect(*inner.local.ip(), target) => connected,
         _ = orders.recv() => return,
@@ -61,7 +61,7 @@ pub(super) async fn run(
         Ok(stream) => stream,
         Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&EipError::unreachable(&error))),
     };
-    // Without it a request may wait for the acknowledgement of the one before; it works all the same.
+    // Optional: without it, a request can wait for the acknowledgement of the previous one.
     let _ = stream.set_nodelay(true);
     let Ok(SocketAddr::V4(here)) = stream.local_addr() else { return };
     tell(&mut |slot, now| {
@@ -90,11 +90,11 @@ pub(super) async fn run(
             },
         }
     }
-    // Whoever waits for the session hears what became of it; once it is up, each request tells for itself.
+    // Reported to a caller that waits for the session. After registration, each pending request reports its own error.
     tell(&mut |slot, _| slot.core.hung_up(&EipError::Hangup { what: "RegisterSession" }));
 }
 
-/// From the address that images are heard on: the device sends them to where the request came from.
+/// Connects from the local address of the image socket, because the device sends images to the sender of the request.
 async fn connect(here: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
     if !here.is_unspecified() {

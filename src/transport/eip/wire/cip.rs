@@ -1,40 +1,40 @@
-//! CIP requests and replies (volume 1, 2-4).
+//! Codec for CIP requests and replies (volume 1, 2-4).
 
 use std::fmt;
 
 use super::{Path, Reader, WireError, words8};
 
-/// Services of objects.
+/// Service codes.
 pub mod service {
-    /// Every attribute of an instance.
+    /// Get_Attributes_All.
     pub const ATTRIBUTES_ALL: u8 = 0x01;
-    /// One attribute.
+    /// Get_Attribute_Single.
     pub const ATTRIBUTE_SINGLE: u8 = 0x0E;
-    /// Changes one attribute.
+    /// Set_Attribute_Single.
     pub const SET_ATTRIBUTE_SINGLE: u8 = 0x10;
-    /// Closes a connection.
+    /// ForwardClose.
     pub const FORWARD_CLOSE: u8 = 0x4E;
-    /// Opens a connection with up to 511 bytes each way.
+    /// ForwardOpen, up to 511 bytes in each direction.
     pub const FORWARD_OPEN: u8 = 0x54;
-    /// Opens a connection with up to 65,535 bytes each way.
+    /// LargeForwardOpen, up to 65,535 bytes in each direction.
     pub const LARGE_FORWARD_OPEN: u8 = 0x5B;
-    /// Added in a reply.
+    /// Bit of the service code in replies.
     pub const REPLY: u8 = 0x80;
 }
 
 /// A request to an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request<'a> {
-    /// What is to be done; see [`service`].
+    /// Service code; see [`service`].
     pub service: u8,
-    /// The object.
+    /// Path of the object.
     pub path: Path,
-    /// What the service takes.
+    /// Service data.
     pub data: &'a [u8],
 }
 
 impl<'a> Request<'a> {
-    /// Reads a message.
+    /// Decodes a request.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let service = reader.u8("service")?;
@@ -44,7 +44,7 @@ impl<'a> Request<'a> {
         Ok(Self { service, path, data: reader.rest() })
     }
 
-    /// The message.
+    /// Encodes the request.
     pub fn emit(&self) -> Vec<u8> {
         let path = self.path.emit();
         let mut out = vec![self.service, words8(path.len())];
@@ -54,37 +54,37 @@ impl<'a> Request<'a> {
     }
 }
 
-/// How a request went.
+/// CIP status.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Status {
-    /// 0 is success.
+    /// General status; 0 is success.
     pub general: u8,
-    /// What there is to add; empty mostly.
+    /// Extended status words; usually empty.
     pub extended: Vec<u16>,
 }
 
 impl Status {
-    /// Done.
+    /// Success.
     pub const OK: Self = Self { general: 0, extended: Vec::new() };
 
-    /// A refusal without more.
+    /// A general status without extended words.
     pub const fn general(general: u8) -> Self {
         Self { general, extended: Vec::new() }
     }
 
-    /// A refusal of the connection manager (general status 1), with words after its code.
+    /// An extended status of the connection manager (general status 1), followed by more words.
     pub fn connection(extended: u16, more: &[u16]) -> Self {
         Self { general: 1, extended: [&[extended], more].concat() }
     }
 
-    /// Whether the request was carried out.
+    /// Whether the request succeeded.
     pub const fn is_ok(&self) -> bool {
         self.general == 0
     }
 }
 
 impl fmt::Display for Status {
-    /// "0x01/0x0109 54": general status, extended status, what follows it in decimal.
+    /// Format: "0x01/0x0109 54", which is general status, extended status, further words in decimal.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:#04x}", self.general)?;
         if let Some((code, more)) = self.extended.split_first() {
@@ -95,19 +95,19 @@ impl fmt::Display for Status {
     }
 }
 
-/// The reply to a request.
+/// Reply to a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply<'a> {
-    /// The service of the request.
+    /// Service code of the request.
     pub service: u8,
-    /// How it went.
+    /// CIP status.
     pub status: Status,
-    /// What the service gives, or more about a refusal.
+    /// Response data, or details of a refusal.
     pub data: &'a [u8],
 }
 
 impl<'a> Reply<'a> {
-    /// Reads a message.
+    /// Decodes a reply.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let service = reader.u8("reply service")?;
@@ -122,7 +122,7 @@ impl<'a> Reply<'a> {
         Ok(Self { service: service & !service::REPLY, status: Status { general, extended }, data: reader.rest() })
     }
 
-    /// The message.
+    /// Encodes the reply.
     pub fn emit(&self) -> Vec<u8> {
         let extended = &self.status.extended;
         let mut out = vec![self.service | service::REPLY, 0, self.status.general, words8(extended.len() * 2)];
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(Request::parse(&bytes), Ok(request));
     }
 
-    /// The failure of a ForwardClose as ControlLogix sends it (cpppo, enip_test.py, `fwd_clo_reply_just_sts`).
+    /// A failed ForwardClose of a ControlLogix (cpppo, enip_test.py, `fwd_clo_reply_just_sts`).
     #[test]
     fn a_refusal_with_an_extended_status() {
         let bytes = hex("CE 00 01 01 00 01");

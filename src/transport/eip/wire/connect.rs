@@ -1,22 +1,22 @@
-//! What the connection manager is asked and answers (volume 1, 3-5.5).
+//! Codec for the connection manager: ForwardOpen and ForwardClose (volume 1, 3-5.5).
 
 use super::{Path, Reader, Request, WireError, service, words8};
 
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
-/// How long a router on the way may take for an open: 249 ticks of 128 ms, the most there is but one.
+/// Time limit for routers on the path: 249 ticks of 128 ms, the second largest value.
 const PATIENCE: [u8; 2] = [7, 249];
-/// Most bytes that the short form can ask for.
+/// Largest connection size of the short ForwardOpen.
 const MOST_SHORT: u16 = 511;
 
-/// What makes a connection one of a kind.
+/// Connection triad, which identifies a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Triad {
-    /// Its number, unique for the originator.
+    /// Connection serial number, unique for the originator.
     pub serial: u16,
-    /// The maker of the originator.
+    /// Vendor id of the originator.
     pub vendor: u16,
-    /// The serial number of the originator.
+    /// Serial number of the originator.
     pub originator: u32,
 }
 
@@ -37,35 +37,35 @@ impl Triad {
     }
 }
 
-/// How one direction of a connection travels.
+/// Connection type of one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Net {
-    /// Not at all.
+    /// No connection.
     Null,
-    /// To a group.
+    /// Multicast.
     Multicast,
-    /// To the other end.
+    /// Point to point.
     PointToPoint,
-    /// The fourth value, which has no meaning.
+    /// Reserved value.
     Reserved,
 }
 
 const NETS: [Net; 4] = [Net::Null, Net::Multicast, Net::PointToPoint, Net::Reserved];
 
-/// One direction of a connection as it is asked for (volume 1, 3-5.5.1.1).
+/// Network connection parameters of one direction (volume 1, 3-5.5.1.1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Flow {
-    /// Microseconds from packet to packet.
+    /// Requested packet interval in microseconds.
     pub rpi_us: u32,
-    /// How it travels.
+    /// Connection type.
     pub net: Net,
-    /// Bytes of a packet: sequence count, header and data. Up to 511 in the short form of the request.
+    /// Packet size in bytes: sequence count, header and data. At most 511 in the short form.
     pub size: u16,
-    /// Whether smaller packets are good, too.
+    /// Whether smaller packets are also valid.
     pub variable: bool,
-    /// 0 low, 1 high, 2 scheduled, 3 urgent.
+    /// Priority: 0 low, 1 high, 2 scheduled, 3 urgent.
     pub priority: u8,
-    /// Whether more than one originator may own it.
+    /// Whether more than one originator can own the connection.
     pub redundant: bool,
 }
 
@@ -105,29 +105,29 @@ impl Flow {
     }
 }
 
-/// A request to open a connection.
+/// ForwardOpen request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Open {
-    /// Ignored by the target, which chooses.
+    /// O->T connection id. The target ignores it and chooses its own.
     pub o_t_id: u32,
-    /// The id that the originator chooses; ignored for multicast.
+    /// T->O connection id, chosen by the originator; ignored for multicast.
     pub t_o_id: u32,
-    /// Which connection it is.
+    /// Connection triad.
     pub triad: Triad,
-    /// The time-out is the interval times 4, 8, … 512, for 0 to 7.
+    /// Timeout multiplier code 0 to 7: 4, 8, … 512 intervals.
     pub multiplier: u8,
-    /// From the originator to the target.
+    /// Parameters from originator to target.
     pub o_t: Flow,
-    /// From the target to the originator.
+    /// Parameters from target to originator.
     pub t_o: Flow,
-    /// Class in bits 3 to 0, trigger in bits 6 to 4; 1 is class 1, cyclic.
+    /// Class in bits 3 to 0, trigger in bits 6 to 4; 1 means class 1, cyclic.
     pub transport: u8,
-    /// Key, class, configuration, connection points, configuration data.
+    /// Path: key, class, configuration, connection points, configuration data.
     pub path: Path,
 }
 
 impl Open {
-    /// The request; in the large form where a size needs it.
+    /// Encodes the request, in the large form if a size needs it.
     pub fn emit(&self) -> Vec<u8> {
         let large = self.is_large();
         let mut data = PATIENCE.to_vec();
@@ -148,7 +148,7 @@ impl Open {
         self.o_t.size.max(self.t_o.size) > MOST_SHORT
     }
 
-    /// Reads the data of a request.
+    /// Decodes the request data.
     pub fn parse(data: &[u8], large: bool) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
         reader.take(PATIENCE.len(), "time-out of the request")?;
@@ -169,25 +169,25 @@ impl Open {
     }
 }
 
-/// The data of a reply that a connection is open.
+/// Data of a successful ForwardOpen reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Opened {
-    /// The id of what goes to the target.
+    /// O->T connection id.
     pub o_t_id: u32,
-    /// The id of what comes from it.
+    /// T->O connection id.
     pub t_o_id: u32,
-    /// Which connection it is.
+    /// Connection triad.
     pub triad: Triad,
-    /// Microseconds from packet to packet to the target.
+    /// Actual packet interval to the target, in microseconds.
     pub o_t_api_us: u32,
-    /// Microseconds from packet to packet from the target.
+    /// Actual packet interval from the target, in microseconds.
     pub t_o_api_us: u32,
-    /// What the device adds.
+    /// Application reply data.
     pub application: Vec<u8>,
 }
 
 impl Opened {
-    /// Reads the data of a reply.
+    /// Decodes the reply data.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
         let o_t_id = reader.u32("O->T connection id")?;
@@ -201,7 +201,7 @@ impl Opened {
         Ok(Self { o_t_id, t_o_id, triad, o_t_api_us, t_o_api_us, application })
     }
 
-    /// The data of a reply.
+    /// Encodes the reply data.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(26 + self.application.len());
         out.extend(self.o_t_id.to_le_bytes());
@@ -215,23 +215,23 @@ impl Opened {
     }
 }
 
-/// The data of a reply that a connection is not opened, or not closed.
+/// Data of an unsuccessful ForwardOpen or ForwardClose reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Refused {
-    /// Which connection it would be.
+    /// Connection triad.
     pub triad: Triad,
-    /// Words of the path from where it was not understood; devices leave it out.
+    /// Remaining path size in words. Some devices omit it.
     pub remaining: Option<u8>,
 }
 
 impl Refused {
-    /// Reads the data of a reply.
+    /// Decodes the reply data.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
         Ok(Self { triad: Triad::read(&mut reader)?, remaining: reader.u8("remaining path").ok() })
     }
 
-    /// The data of a reply.
+    /// Encodes the reply data.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.triad.bytes().to_vec();
         if let Some(remaining) = self.remaining {
@@ -241,17 +241,17 @@ impl Refused {
     }
 }
 
-/// A request to close a connection.
+/// ForwardClose request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Close {
-    /// Which one.
+    /// Connection triad.
     pub triad: Triad,
-    /// The path it was opened with.
+    /// Path of the ForwardOpen.
     pub path: Path,
 }
 
 impl Close {
-    /// The request.
+    /// Encodes the request.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = PATIENCE.to_vec();
         data.extend(self.triad.bytes());
@@ -261,7 +261,7 @@ impl Close {
         manager(service::FORWARD_CLOSE, &data)
     }
 
-    /// Reads the data of a request.
+    /// Decodes the request data.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
         reader.take(PATIENCE.len(), "time-out of the request")?;
@@ -276,20 +276,20 @@ impl Close {
     }
 }
 
-/// The data of a reply that a connection is closed.
+/// Data of a successful ForwardClose reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Closed {
-    /// Which one.
+    /// Connection triad.
     pub triad: Triad,
 }
 
 impl Closed {
-    /// Reads the data of a reply.
+    /// Decodes the reply data.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         Ok(Self { triad: Triad::read(&mut Reader::little(data))? })
     }
 
-    /// The data of a reply: nothing is added.
+    /// Encodes the reply data, without application data.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.triad.bytes().to_vec();
         out.extend([0, 0]);
@@ -324,8 +324,8 @@ mod tests {
         }
     }
 
-    /// Field by field after volume 1, table 3-5.17. Parameters 4836 and 4832 are point to point, scheduled, fixed, 54
-    /// and 50 bytes; tshark reads the same from them (tests/eip).
+    /// Field by field from volume 1, table 3-5.17. Parameters 4836 and 4832 mean point to point, scheduled, fixed, 54
+    /// and 50 bytes. tshark decodes the same (tests/eip).
     #[test]
     fn an_open_has_the_printed_layout() {
         let bytes = hex(
@@ -347,7 +347,7 @@ mod tests {
         assert!(!open(511, 511).is_large());
     }
 
-    /// A class 1 request of a tool for servo drives: key, configuration data, 10 bytes out, 6 in, multiplier 12, 10 ms.
+    /// Class 1 request of a servo drive tool: key, configuration data, 10 bytes out, 6 bytes in, multiplier 12, 10 ms.
     #[test]
     fn an_open_with_a_key_and_configuration_data() {
         let bytes = hex("05 9B 00000000 08401100 0100 0100 9964D200 02 000000 10270000 0A48 10270000 0648 01 0E \
@@ -364,11 +364,11 @@ mod tests {
             Segment::Data(vec![0; 8]),
         ];
         assert_eq!(open.path.0, path);
-        // All but how long routers may take is written as it was read.
+        // Everything except the time limit for routers is encoded as it was decoded.
         assert_eq!(open.emit()[8..], bytes[2..]);
     }
 
-    /// A whole exchange from cpppo's tests (enip_test.py, `fwd_o01_request`, `fwd_o01_reply`).
+    /// A complete exchange from cpppo's tests (enip_test.py, `fwd_o01_request`, `fwd_o01_reply`).
     #[test]
     fn a_recorded_open_and_its_reply() {
         let request =
@@ -396,7 +396,7 @@ mod tests {
         assert_eq!(opened.emit(), reply.data);
     }
 
-    /// From there, too (`fwd_f01_reply`, and without the rest of the path `fwd_f01_reply_no_remain`).
+    /// From the same tests (`fwd_f01_reply`, and without the remaining path `fwd_f01_reply_no_remain`).
     #[test]
     fn recorded_refusals() {
         let triad = Triad { serial: 0, vendor: 0xFFFF, originator: 0x1234_5678 };
@@ -410,7 +410,7 @@ mod tests {
         }
     }
 
-    /// From there, too (`fwd_c01_request`).
+    /// From the same tests (`fwd_c01_request`).
     #[test]
     fn a_recorded_close() {
         let bytes = hex("4E 02 20 06 24 01 07 F9 0100 4D00 0F7F3D1E 03 00 0100 2002 2401");

@@ -1,58 +1,58 @@
-//! The encapsulation: a header of 24 bytes before every message but the cyclic ones (volume 2, 2-3).
+//! Codec for the encapsulation header: 24 bytes before every message, except cyclic data (volume 2, 2-3).
 
 use super::{Reader, WireError, len16};
 
-/// Bytes of the header.
+/// Length of the header in bytes.
 pub const HEADER_LEN: usize = 24;
 
-/// What a message is for.
+/// Encapsulation command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Command(
-    /// The number.
+    /// The code.
     pub u16,
 );
 
 impl Command {
-    /// Nothing; never answered.
+    /// NOP; never answered.
     pub const NOP: Self = Self(0x00);
-    /// Which services the device has.
+    /// List the services of the device.
     pub const LIST_SERVICES: Self = Self(0x04);
-    /// Who is there.
+    /// List the identity of the device.
     pub const LIST_IDENTITY: Self = Self(0x63);
-    /// Which other interfaces the device has.
+    /// List other interfaces of the device.
     pub const LIST_INTERFACES: Self = Self(0x64);
-    /// Begins a session.
+    /// Open a session.
     pub const REGISTER_SESSION: Self = Self(0x65);
-    /// Ends one; never answered.
+    /// Close a session; never answered.
     pub const UNREGISTER_SESSION: Self = Self(0x66);
-    /// An unconnected CIP message and its answer.
+    /// An unconnected CIP message or its reply.
     pub const SEND_RR_DATA: Self = Self(0x6F);
-    /// A message on a connection.
+    /// A connected CIP message.
     pub const SEND_UNIT_DATA: Self = Self(0x70);
 }
 
 /// A message with its header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// What it is for.
+    /// Encapsulation command.
     pub command: Command,
-    /// The session it belongs to; 0 for none.
+    /// Session handle; 0 means no session.
     pub session: u32,
-    /// 0 in requests and in what went well.
+    /// Status; 0 in requests and successful replies.
     pub status: u32,
-    /// Copied into the answer.
+    /// Sender context, which the reply repeats.
     pub context: [u8; 8],
-    /// At most 65,535 bytes.
+    /// Command data, at most 65,535 bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
-    /// A request without data outside a session.
+    /// A request without data or session.
     pub const fn new(command: Command) -> Self {
         Self { command, session: 0, status: 0, context: [0; 8], data: &[] }
     }
 
-    /// Reads a message that is all there, as [`Frames`] cuts them or a datagram holds one.
+    /// Decodes a complete message, from [`Frames`] or a datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let command = Command(reader.u16("command")?);
@@ -66,7 +66,7 @@ impl<'a> Frame<'a> {
         Ok(Self { command, session, status, context, data })
     }
 
-    /// The bytes.
+    /// Encodes the message.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(HEADER_LEN + self.data.len());
         out.extend(self.command.0.to_le_bytes());
@@ -79,35 +79,35 @@ impl<'a> Frame<'a> {
         out
     }
 
-    /// Begins a session: protocol version 1, no options.
+    /// RegisterSession: protocol version 1, no options.
     pub const fn register(context: [u8; 8]) -> Frame<'static> {
         Frame { command: Command::REGISTER_SESSION, session: 0, status: 0, context, data: &[1, 0, 0, 0] }
     }
 
-    /// Ends a session.
+    /// UnregisterSession.
     pub const fn unregister(session: u32) -> Frame<'static> {
         Frame { command: Command::UNREGISTER_SESSION, session, status: 0, context: [0; 8], data: &[] }
     }
 }
 
-/// Cuts what arrives on a TCP connection into messages. The length field bounds what is kept.
+/// Splits a TCP stream into messages. The length field limits the memory.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     bytes: Vec<u8>,
-    /// How many of them were handed out already.
+    /// Number of bytes already returned.
     done: usize,
 }
 
 impl Frames {
-    /// Takes what arrived.
+    /// Adds received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
-        // Only now, so that each byte moves once however many messages came together.
+        // Removed here and not in `pop`, so that each byte moves only once.
         self.bytes.drain(..self.done);
         self.done = 0;
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next message that is all there, header and data.
+    /// Returns the next complete message, header and data.
     pub fn pop(&mut self) -> Option<Vec<u8>> {
         let rest = self.bytes.get(self.done..)?;
         let header = rest.get(..HEADER_LEN)?;
@@ -117,7 +117,7 @@ impl Frames {
         Some(message)
     }
 
-    /// Forgets what is there, as for a new connection.
+    /// Drops all bytes, for a new connection.
     pub fn clear(&mut self) {
         self.bytes.clear();
         self.done = 0;
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// Volume 2, 2-4.4; the same bytes are in the captures that come with cpppo.
+    /// Volume 2, 2-4.4. The captures of cpppo contain the same bytes.
     #[test]
     fn a_session_begins_as_printed() {
         let bytes = hex("6500 0400 00000000 00000000 0000000000000000 00000000 01000000");

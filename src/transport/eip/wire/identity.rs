@@ -1,4 +1,4 @@
-//! Who a device is, and what it can do: the answers to ListIdentity and ListServices (volume 2, 2-4.2 and 2-4.6).
+//! Codec for ListIdentity and ListServices answers (volume 2, 2-4.2 and 2-4.6).
 
 use std::fmt;
 use std::net::SocketAddrV4;
@@ -6,21 +6,21 @@ use std::net::SocketAddrV4;
 use super::items::{sockaddr, sockaddr_bytes};
 use super::{Item, Reader, WireError};
 
-/// The kind of the item that holds an identity.
+/// Item type of an identity.
 pub const IDENTITY_ITEM: u16 = 0x000C;
-/// The kind of the item that holds the services.
+/// Item type of the services.
 pub const SERVICES_ITEM: u16 = 0x0100;
 /// Version of the encapsulation protocol.
 const VERSION: u16 = 1;
 /// Longest product name (volume 1, 5-2.2).
 const LONGEST_NAME: usize = 32;
 
-/// A revision.
+/// Revision of a product.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct Revision {
-    /// Before the dot.
+    /// Number before the dot.
     pub major: u8,
-    /// After it.
+    /// Number after the dot.
     pub minor: u8,
 }
 
@@ -30,31 +30,31 @@ impl fmt::Display for Revision {
     }
 }
 
-/// Who a device is.
+/// Identity of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// Where it says it listens; not always where it does.
+    /// Reported socket address. It can differ from the real one.
     pub address: SocketAddrV4,
-    /// Its maker.
+    /// Vendor id.
     pub vendor: u16,
-    /// What kind of device it is.
+    /// Device type.
     pub device_type: u16,
-    /// Which product.
+    /// Product code.
     pub product: u16,
-    /// Of the product.
+    /// Revision of the product.
     pub revision: Revision,
-    /// Owned (bit 0), configured (2), extended status (7 to 4), faults (11 to 8).
+    /// Status bits: owned (0), configured (2), extended status (7 to 4), faults (11 to 8).
     pub status: u16,
-    /// Unique for the maker.
+    /// Serial number, unique for the vendor.
     pub serial: u32,
-    /// As the device has it, cut of blanks and zeros at its end; bytes that are no ASCII are replaced. Untrusted.
+    /// Product name without trailing blanks and zeros; bytes that are not ASCII are replaced. Untrusted.
     pub name: String,
-    /// 0 nonexistent, 1 self test, 2 standby, 3 operational, 4 and 5 faults, 255 unknown; `None` where it is left out.
+    /// State: 0 nonexistent, 1 self test, 2 standby, 3 operational, 4 and 5 faults, 255 unknown; `None` if omitted.
     pub state: Option<u8>,
 }
 
 impl Identity {
-    /// Finds it in the data of an answer to ListIdentity; `None` if the device says nothing about itself.
+    /// Decodes the data of a ListIdentity answer; `None` if it has no identity item.
     pub fn parse(data: &[u8]) -> Result<Option<Self>, WireError> {
         let items = Item::parse_all(data)?;
         items.iter().find(|item| item.kind == IDENTITY_ITEM).map(|item| Self::parse_item(item.data)).transpose()
@@ -70,7 +70,7 @@ impl Identity {
         Ok(identity)
     }
 
-    /// Reads what the identity object gives for all its attributes, which has no address and here no state.
+    /// Decodes all attributes of the identity object. They contain no address, and here no state.
     pub fn parse_attributes(bytes: &[u8], address: SocketAddrV4) -> Result<Self, WireError> {
         Ok(Self { address, ..Self::read(&mut Reader::little(bytes))? })
     }
@@ -88,7 +88,7 @@ impl Identity {
         Ok(Self { address, vendor, device_type, product, revision, status, serial, name: text(name), state: None })
     }
 
-    /// The data of an answer to ListIdentity.
+    /// Encodes the data of a ListIdentity answer.
     pub fn emit(&self) -> Vec<u8> {
         let mut item = VERSION.to_le_bytes().to_vec();
         item.extend(sockaddr_bytes(self.address));
@@ -97,7 +97,7 @@ impl Identity {
         Item::emit_all(&[Item::new(IDENTITY_ITEM, &item)])
     }
 
-    /// What the identity object gives for all its attributes: 1 to 7, one after the other.
+    /// Encodes attributes 1 to 7 of the identity object.
     pub fn attributes(&self) -> Vec<u8> {
         let mut out = Vec::new();
         out.extend(self.vendor.to_le_bytes());
@@ -110,29 +110,29 @@ impl Identity {
         out
     }
 
-    /// The product name as an attribute: its length in a byte, and its characters.
+    /// Encodes the product name attribute: length byte and characters.
     pub fn name_attribute(&self) -> Vec<u8> {
         let name: Vec<u8> = self.name.bytes().take(LONGEST_NAME).collect();
         [vec![u8::try_from(name.len()).unwrap_or_default()], name].concat()
     }
 }
 
-/// What a device can do.
+/// Communication services of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Services {
     /// Bit 5: CIP over TCP; bit 8: cyclic data over UDP.
     pub flags: u16,
-    /// "Communications". Untrusted.
+    /// Name of the service: "Communications". Untrusted.
     pub name: String,
 }
 
 impl Services {
-    /// What every device with cyclic data says.
+    /// Services of a device with cyclic data.
     pub fn cyclic() -> Self {
         Self { flags: 1 << 5 | 1 << 8, name: "Communications".to_owned() }
     }
 
-    /// Finds them in the data of an answer to ListServices.
+    /// Decodes the data of a ListServices answer.
     pub fn parse(data: &[u8]) -> Result<Option<Self>, WireError> {
         let items = Item::parse_all(data)?;
         let Some(item) = items.iter().find(|item| item.kind == SERVICES_ITEM) else { return Ok(None) };
@@ -142,7 +142,7 @@ impl Services {
         Ok(Some(Self { flags, name: text(reader.rest()) }))
     }
 
-    /// The data of an answer to ListServices.
+    /// Encodes the data of a ListServices answer.
     pub fn emit(&self) -> Vec<u8> {
         let mut name: Vec<u8> = self.name.bytes().take(15).collect();
         name.resize(16, 0);
@@ -151,7 +151,7 @@ impl Services {
     }
 }
 
-/// Printable ASCII; the rest is replaced.
+/// Text of printable ASCII; other bytes are replaced.
 fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().rposition(|byte| !matches!(byte, 0 | b' ')).map_or(0, |last| last + 1);
     let shown = |byte: &u8| if (0x20..0x7F).contains(byte) { char::from(*byte) } else { char::REPLACEMENT_CHARACTER };
@@ -164,8 +164,8 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// A PowerFlex 753, from cpppo's tests (enip_test.py, `listident_1_rpy`; two lengths that the device has wrong are
-    /// corrected there).
+    /// A PowerFlex 753, from cpppo's tests (enip_test.py, `listident_1_rpy`; the test corrects two lengths that the
+    /// device has wrong).
     #[test]
     fn a_recorded_identity() {
         let bytes =
@@ -180,19 +180,19 @@ mod tests {
         assert_eq!(identity.revision.to_string(), "11.001");
         assert_eq!((identity.status, identity.serial), (0x0561, 0x8049_1D15));
         assert_eq!((identity.name.as_str(), identity.state), ("PowerFlex 753", Some(255)));
-        // The blanks that the device adds to its name are all that is lost.
+        // Only the blanks after the name are lost.
         let padded = Identity { name: format!("{:32}", identity.name), ..identity };
         assert_eq!(padded.emit(), frame.data);
     }
 
-    /// A PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp), without the second item of the same content.
+    /// A PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp), without the second, equal item.
     #[test]
     fn another_recorded_identity() {
         let bytes =
             hex("0100 0C00 4200 0100 0002 AF12 C0A8010F 0000000000000000 0100 9600 0900 05 01 3000 92E18D80 1D \
              506F776572466C6578203532352031502031313056202020 2E35304850 000000 FF");
         let identity = Identity::parse(&bytes);
-        // Its name has three bytes more than its length says; they are no part of it, and the state is among them.
+        // The name is three bytes longer than its length field. These bytes and the state are skipped.
         let identity = identity.unwrap().unwrap();
         assert_eq!(identity.name, "PowerFlex 525 1P 110V   .50HP");
         assert_eq!(identity.serial, 0x808D_E192);

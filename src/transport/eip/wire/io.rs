@@ -1,28 +1,28 @@
-//! Cyclic datagrams of class 1: a sequenced address, a sequence count, and data (volume 2, 3-2.2.1; volume 1, 3-4.5).
+//! Codec for class 1 datagrams: sequenced address, sequence count, data (volume 2, 3-2.2.1; volume 1, 3-4.5).
 
 use super::{Item, Reader, WireError, kind};
 
-/// The run bit of the 32-bit header before what goes to a target (volume 1, 3-6.1.4).
+/// Run bit of the 32-bit run/idle header (volume 1, 3-6.1.4).
 pub const RUN: u32 = 1;
 
-/// A datagram.
+/// A class 1 datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cyclic<'a> {
-    /// The connection.
+    /// Connection id.
     pub id: u32,
-    /// Goes up with every datagram.
+    /// Sequence number; increases with every datagram.
     pub sequence: u32,
-    /// Goes up with what is new, and here with every datagram.
+    /// Sequence count. By the standard it increases with new data, here with every datagram.
     pub count: u16,
-    /// The header where the connection has one, and the data.
+    /// Run/idle header, if the connection has one, and data.
     pub body: &'a [u8],
 }
 
 impl<'a> Cyclic<'a> {
-    /// Reads a datagram.
+    /// Decodes a datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let items = Item::parse_all(bytes)?;
-        // In this order: 2 bytes of count, then type and length of each.
+        // Layout: 2 bytes of count, then type and length of each item.
         let [address, data] = items[..] else {
             let mut reader = Reader::little(bytes);
             let count = reader.u16("item count")?;
@@ -46,7 +46,7 @@ impl<'a> Cyclic<'a> {
         Ok(Self { id, sequence, count, body: reader.rest() })
     }
 
-    /// A datagram with a run/idle header before its data, if there is one.
+    /// Encodes a datagram, with or without a run/idle header.
     pub fn emit(&self, header: Option<u32>) -> Vec<u8> {
         let mut address = [0; 8];
         address[..4].copy_from_slice(&self.id.to_le_bytes());
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// The sizes that a 48-byte image makes on the wire: 72 to the target, 68 back.
+    /// A 48-byte image has 72 bytes to the target, 68 bytes to the originator.
     #[test]
     fn a_datagram_each_way() {
         let image = [0xA5; 48];

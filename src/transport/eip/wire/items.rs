@@ -1,28 +1,28 @@
-//! The common packet format: typed items with lengths (volume 2, 2-6).
+//! Codec for the common packet format: typed items with lengths (volume 2, 2-6).
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 
 use super::{Reader, WireError, len16};
 
-/// Kinds of items.
+/// Item types.
 pub mod kind {
-    /// No address: the message is unconnected.
+    /// Null address, for unconnected messages.
     pub const NULL: u16 = 0x0000;
-    /// The id of a connection.
+    /// Connection id.
     pub const CONNECTED_ADDRESS: u16 = 0x00A1;
-    /// A message on a connection.
+    /// Connected message.
     pub const CONNECTED_DATA: u16 = 0x00B1;
-    /// An unconnected message.
+    /// Unconnected message.
     pub const UNCONNECTED_DATA: u16 = 0x00B2;
-    /// Where cyclic data to the target goes.
+    /// Socket address for cyclic data to the target.
     pub const SOCKADDR_O_T: u16 = 0x8000;
-    /// Where cyclic data to the originator goes.
+    /// Socket address for cyclic data to the originator.
     pub const SOCKADDR_T_O: u16 = 0x8001;
-    /// The id of a connection and a sequence number.
+    /// Connection id and sequence number.
     pub const SEQUENCED_ADDRESS: u16 = 0x8002;
 }
 
-/// Most items in a packet; no message has more than four.
+/// Limit of items in a packet. No message has more than four.
 const MOST_ITEMS: u16 = 16;
 /// Address family of IPv4 in a socket address.
 const AF_INET: u16 = 2;
@@ -30,19 +30,19 @@ const AF_INET: u16 = 2;
 /// An item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item<'a> {
-    /// What it is; see [`kind`].
+    /// Item type; see [`kind`].
     pub kind: u16,
-    /// At most 65,535 bytes.
+    /// Item data, at most 65,535 bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> Item<'a> {
-    /// An item.
+    /// Creates an item.
     pub const fn new(kind: u16, data: &'a [u8]) -> Self {
         Self { kind, data }
     }
 
-    /// Reads the count and the items; nothing may follow.
+    /// Decodes the count and the items. Fails if bytes follow.
     pub fn parse_all(bytes: &'a [u8]) -> Result<Vec<Self>, WireError> {
         Self::read_all(&mut Reader::little(bytes))
     }
@@ -53,7 +53,7 @@ impl<'a> Item<'a> {
         Ok(items)
     }
 
-    /// Reads the count and so many items; what follows is left.
+    /// Decodes the count and the items. More bytes can follow.
     fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
         if count > MOST_ITEMS {
@@ -72,7 +72,7 @@ impl<'a> Item<'a> {
         Ok(Self { kind, data: reader.take(usize::from(len), "item")? })
     }
 
-    /// The count and the items.
+    /// Encodes the count and the items.
     pub fn emit_all(items: &[Self]) -> Vec<u8> {
         let mut out = Vec::with_capacity(2 + items.iter().map(|item| 4 + item.data.len()).sum::<usize>());
         out.extend(len16(items.len()));
@@ -85,16 +85,16 @@ impl<'a> Item<'a> {
     }
 }
 
-/// The data of SendRRData: an unconnected message, and where cyclic data is to go.
+/// Data of SendRRData: an unconnected message, with optional socket addresses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RrData<'a> {
-    /// How long the device may take, in seconds; 0 leaves it to the message.
+    /// Timeout in seconds; 0 means that the message has its own.
     pub timeout: u16,
     /// The CIP message.
     pub message: &'a [u8],
-    /// Where cyclic data to the target goes.
+    /// Socket address for cyclic data to the target.
     pub o_t: Option<SocketAddrV4>,
-    /// Where cyclic data to the originator goes.
+    /// Socket address for cyclic data to the originator.
     pub t_o: Option<SocketAddrV4>,
 }
 
@@ -104,7 +104,7 @@ impl<'a> RrData<'a> {
         Self { timeout: 0, message, o_t: None, t_o: None }
     }
 
-    /// Reads the data of a frame; nothing may follow the items that are counted.
+    /// Decodes the data of a frame. Fails if bytes follow the counted items.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
@@ -114,8 +114,8 @@ impl<'a> RrData<'a> {
         Ok(Self { timeout, message: Self::message(&items, &reader)?, o_t, t_o })
     }
 
-    /// Reads the data of an answer, as devices send it: some put items behind those that they count, such as a socket
-    /// address behind a refusal. Those count as well where they can be read, and are no fault where they cannot.
+    /// Decodes the data of an answer. Some devices append items that they do not count, such as a socket address after
+    /// a refusal. Such items are used if they can be decoded, and ignored if not.
     pub fn parse_answer(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
@@ -127,7 +127,7 @@ impl<'a> RrData<'a> {
         Ok(Self { timeout, message: Self::message(&items, &reader)?, o_t, t_o })
     }
 
-    /// What stands before the items: the time-out.
+    /// Decodes the fields before the items. Returns the timeout.
     fn head(reader: &mut Reader<'a>) -> Result<u16, WireError> {
         let interface = reader.u32("interface handle")?;
         if interface != 0 {
@@ -141,7 +141,7 @@ impl<'a> RrData<'a> {
         Ok(message.ok_or_else(|| reader.wrong("unconnected data item", 0, 0u8))?.data)
     }
 
-    /// The data of a frame.
+    /// Encodes the data of a frame.
     pub fn emit(&self) -> Vec<u8> {
         let addresses = [(kind::SOCKADDR_O_T, self.o_t), (kind::SOCKADDR_T_O, self.t_o)];
         let addresses: Vec<(u16, [u8; 16])> =
@@ -155,7 +155,7 @@ impl<'a> RrData<'a> {
     }
 }
 
-/// Reads a socket address, which is big-endian (volume 2, 2-6.3.3).
+/// Decodes a socket address, which is big-endian (volume 2, 2-6.3.3).
 pub(super) fn sockaddr(bytes: &[u8]) -> Result<SocketAddrV4, WireError> {
     let mut reader = Reader::little(bytes);
     let family = u16::from_be_bytes(reader.array("address family")?);
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(RrData::parse(&bytes), Ok(data));
     }
 
-    /// A refusal with two items by its count, and a socket address behind them; then with what is no item.
+    /// A refusal with two counted items and a socket address after them; then with bytes that are no item.
     #[test]
     fn what_stands_behind_an_answer_is_no_fault() {
         let counted = "00000000 0000 0200 0000 0000 B200 0600 D400 0101 0601";

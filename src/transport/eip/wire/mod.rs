@@ -1,8 +1,8 @@
-//! The bytes of EtherNet/IP: encapsulation, common packet format, CIP messages, connections, cyclic datagrams.
+//! EtherNet/IP codec: encapsulation, common packet format, CIP messages, connections, class 1 datagrams.
 //!
-//! Little-endian but for socket addresses. Parsing takes what devices send (reserved bytes are not looked at); emitting
-//! writes what the ODVA's layouts say. Volume 1 below is "The CIP Networks Library, Common Industrial Protocol", volume
-//! 2 its EtherNet/IP adaptation.
+//! Numbers are little-endian, except in socket addresses. The decoder accepts what devices send and ignores reserved
+//! bytes. The encoder follows the layouts of ODVA. In the comments, volume 1 is "The CIP Networks Library, Common
+//! Industrial Protocol", volume 2 is its EtherNet/IP adaptation.
 
 use crate::bytes::Reader;
 pub use crate::bytes::{Problem, WireError};
@@ -23,15 +23,15 @@ pub use io::{Cyclic, RUN};
 pub use items::{Item, RrData, kind};
 pub use path::{Key, Path, Segment};
 
-/// A length as the two bytes of its field.
+/// Encodes a 16-bit length field.
 ///
 /// # Panics
-/// Above 65535; whoever builds messages bounds what goes into them.
+/// Above 65535. Callers limit the size of messages.
 fn len16(len: usize) -> [u8; 2] {
     u16::try_from(len).expect("lengths of messages are bounded where they are built").to_le_bytes()
 }
 
-/// A length in 16-bit words as its byte; likewise.
+/// Encodes an 8-bit length field that counts 16-bit words; panics above 255 words.
 fn words8(len: usize) -> u8 {
     u8::try_from(len.div_ceil(2)).expect("lengths of messages are bounded where they are built")
 }

@@ -1,82 +1,82 @@
-//! Padded paths of segments: which object, which connection points, which device is expected (volume 1, appendix C-1).
+//! Codec for padded paths: objects, connection points, electronic keys (volume 1, appendix C-1).
 
 use super::{Reader, WireError, words8};
 
-/// A step of a path.
+/// Segment of a path.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Segment {
-    /// A class of objects.
+    /// Class.
     Class(u32),
-    /// One of them; in a connection path of the assembly class, the configuration.
+    /// Instance; in a connection path with the assembly class, the configuration.
     Instance(u32),
-    /// An attribute.
+    /// Attribute.
     Attribute(u32),
-    /// A connection point: an assembly.
+    /// Connection point: an assembly.
     Point(u32),
-    /// The device that is expected.
+    /// Electronic key.
     Key(Key),
     /// Configuration data.
     Data(Vec<u8>),
-    /// A port to leave by, and the address there.
+    /// Port segment: a route to the next network.
     Port {
-        /// The port; 1 is the backplane.
+        /// Port number; 1 is the backplane.
         port: u16,
-        /// The address, such as a slot.
+        /// Link address, such as a slot.
         link: Vec<u8>,
     },
 }
 
-/// An electronic key: what a device must be for a connection to be accepted; 0 is "any".
+/// Electronic key: the device that a connection expects. 0 means any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Key {
-    /// The maker.
+    /// Vendor id.
     pub vendor: u16,
-    /// The kind of device.
+    /// Device type.
     pub device_type: u16,
-    /// The product.
+    /// Product code.
     pub product: u16,
     /// Major revision.
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
-    /// Whether a later revision that can stand in is accepted.
+    /// Whether a compatible later revision is accepted.
     pub compatible: bool,
 }
 
 const KEY_FORMAT: u8 = 4;
 const COMPATIBLE: u8 = 0x80;
 
-/// First bytes of segments with an 8-bit value; 1 and 2 more for 16 and 32 bits, after a padding byte.
+/// First bytes of segments with an 8-bit value. Add 1 for 16 bits, 2 for 32 bits; then a padding byte follows.
 const CLASS: u8 = 0x20;
 const INSTANCE: u8 = 0x24;
 const POINT: u8 = 0x2C;
 const ATTRIBUTE: u8 = 0x30;
 const KEY: u8 = 0x34;
 const DATA: u8 = 0x80;
-/// In a port segment: the link address has a length of its own.
+/// Port segment flag: a length byte for the link address follows.
 const LONG_LINK: u8 = 0x10;
-/// In a port segment: the port follows in 16 bits.
+/// Port segment value: a 16-bit port number follows.
 const LONG_PORT: u8 = 0x0F;
 
-/// Segments, one after the other.
+/// A sequence of segments.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Path(
-    /// In order.
+    /// The segments.
     pub Vec<Segment>,
 );
 
 impl Path {
-    /// An instance of a class; instance 0 is the class itself.
+    /// Path of an instance; instance 0 is the class itself.
     pub fn object(class: u32, instance: u32) -> Self {
         Self(vec![Segment::Class(class), Segment::Instance(instance)])
     }
 
-    /// An attribute of an instance.
+    /// Path of an attribute.
     pub fn attribute(class: u32, instance: u32, attribute: u32) -> Self {
         Self(vec![Segment::Class(class), Segment::Instance(instance), Segment::Attribute(attribute)])
     }
 
-    /// Class, instance and attribute that it names.
+    /// Class, instance and attribute of the path, if it has only these.
     pub fn object_named(&self) -> Option<(u32, u32, Option<u32>)> {
         match self.0[..] {
             [Segment::Class(class)] => Some((class, 0, None)),
@@ -89,7 +89,7 @@ impl Path {
         }
     }
 
-    /// Reads all of the bytes.
+    /// Decodes a path from all bytes.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let mut segments = Vec::new();
@@ -99,7 +99,7 @@ impl Path {
         Ok(Self(segments))
     }
 
-    /// The bytes, an even number.
+    /// Encodes the path; the length is even.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::new();
         for segment in &self.0 {
@@ -201,7 +201,7 @@ fn emit(segment: &Segment, out: &mut Vec<u8>) {
     }
 }
 
-/// The shortest form that holds the value.
+/// Encodes a logical segment in the shortest form.
 fn logical(first: u8, value: u32, out: &mut Vec<u8>) {
     if let Ok(value) = u8::try_from(value) {
         out.extend([first, value]);
@@ -214,7 +214,7 @@ fn logical(first: u8, value: u32, out: &mut Vec<u8>) {
     }
 }
 
-/// Every segment before it is even, so evenness of all is evenness of the last.
+/// Pads to an even length. All earlier segments are even, so the total length decides.
 fn pad(out: &mut Vec<u8>) {
     if out.len() % 2 == 1 {
         out.push(0);
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// Volume 1, C-1.4.2: the forms of logical segments; C-1.4.5: the key.
+    /// Volume 1, C-1.4.2: forms of logical segments; C-1.4.5: electronic key.
     #[test]
     fn segments_have_the_printed_forms() {
         let cases = [

@@ -1,10 +1,10 @@
-//! What answers say.
+//! Checks of answers.
 
 use super::super::error::ProfibusError;
 use super::super::request::Answer;
 use super::super::wire::{Control, Frame, Status};
 
-/// Data of an answer that has some.
+/// Returns the data of an answer.
 pub(super) fn data(station: u8, asked: &'static str, answer: Answer) -> Result<(Status, Vec<u8>), ProfibusError> {
     let why = match answer {
         Answer::Short => "no more than an acknowledgement came".to_owned(),
@@ -19,7 +19,7 @@ pub(super) fn data(station: u8, asked: &'static str, answer: Answer) -> Result<(
     Err(ProfibusError::Malformed { station, asked, why })
 }
 
-/// Whether all is well.
+/// Checks that an answer is positive.
 pub(super) fn acknowledged(station: u8, asked: &'static str, answer: &Answer) -> Result<(), ProfibusError> {
     match answer {
         Answer::Frame(Frame { control: Control::Answer(_, status), .. }) => match status {

@@ -1,7 +1,7 @@
-//! The master of one slave, without a port and without a clock: diagnosis, parameters, configuration, diagnosis, data.
+//! DP master of one slave: diagnosis, parameters, configuration, diagnosis, data exchange. It has no port and no clock.
 //!
-//! There is no phase in clear: to a robot that would be an emergency stop. The first image is the resting one, and so is
-//! the first one after each loss.
+//! It never sends Clear, which would be an emergency stop for a robot. The first image after every opening is the
+//! resting image.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -22,41 +22,41 @@ mod view;
 use answer::{acknowledged, data};
 pub use view::{Details, Input, State, Statistics, View, Views};
 
-/// How long a slave may take to get ready.
+/// Time limit for a slave to become ready.
 const READY: Duration = Duration::from_secs(5);
-/// Pause between two questions whether it is.
+/// Interval of the diagnosis requests until the slave is ready.
 const PATIENCE: Duration = Duration::from_millis(10);
 /// Pause before a link is opened again.
 const AGAIN: Duration = Duration::from_secs(1);
-/// User parameters that are tried unless others are set: none, and the three bytes of slaves with acyclic services.
+/// Default user parameters, tried in order: none, then the three bytes of slaves with acyclic services (DP-V1).
 const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
 
-/// The next thing to do.
+/// State of the master.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
-    /// Does anybody else speak?
+    /// Listening for other traffic.
     Listen,
-    /// Is there a station?
+    /// Looking for the station (FDL status).
     Find,
-    /// How is it doing, and whose is it?
+    /// Reading the diagnosis: state and owner.
     Diagnose,
-    /// Which configuration does it want?
+    /// Reading the configuration (Get_Cfg).
     Ask,
-    /// Here are your parameters.
+    /// Sending the parameters (Set_Prm).
     Parameters,
-    /// Here is your configuration.
+    /// Sending the configuration (Chk_Cfg).
     Check,
-    /// Is all well, and are you ready?
+    /// Reading the diagnosis until the slave is ready.
     Confirm,
-    /// Data, over and over.
+    /// Data exchange.
     Data,
-    /// You are free.
+    /// Releasing the slave (Set_Prm with unlock).
     Release,
-    /// Nothing more.
+    /// Closed.
     Over,
 }
 
-/// What belongs to a cycle.
+/// Task in a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Job {
     Exchange,
@@ -65,7 +65,7 @@ enum Job {
     Token,
 }
 
-/// A master.
+/// A DP master.
 #[derive(Debug)]
 pub struct Master {
     settings: Settings,
@@ -73,36 +73,32 @@ pub struct Master {
     requester: Requester,
     quiet: Quiet,
     step: Step,
-    /// Nothing is asked before.
+    /// Earliest time of the next request.
     not_before: Now,
-    /// When the slave was first asked whether it is ready.
+    /// Time of the first check whether the slave is ready.
     asked_since: Option<Now>,
     ident: u16,
-    /// The configuration that the slave says it wants.
+    /// Configuration that the slave reports.
     wanted: Option<Vec<u8>>,
-    /// Which of the usual parameters are tried.
+    /// Index of the default user parameters in use.
     usual: usize,
-    /// Whether the slave may be ours.
+    /// Whether this master may have locked the slave.
     locked: bool,
     jobs: VecDeque<Job>,
-    /// Whether the last job was to ask for the diagnosis.
     is_diagnosing: bool,
     next_cycle: Now,
-    /// When all slaves were last told to operate.
+    /// Time of the last Operate telegram to all slaves.
     told: Now,
     image: Vec<u8>,
     changes: u64,
-    /// The change that has not left yet.
+    /// Change that is not sent yet.
     pending: Option<u64>,
     view: View,
     has_changed: bool,
 }
 
 impl Master {
-    /// A master that begins at `now`.
-    ///
-    /// # Errors
-    /// When no link can be as the settings want it.
+    /// Creates a master that starts at `now`.
     pub fn new(now: Now, settings: Settings) -> Result<Self, ProfibusError> {
         let timing = settings.timing()?;
         let details = Details {
@@ -136,7 +132,7 @@ impl Master {
         })
     }
 
-    /// What there is to see.
+    /// Current state.
     pub fn view(&self) -> View {
         let counted = self.requester.counted();
         let mut view = self.view.clone();
@@ -146,16 +142,16 @@ impl Master {
         view
     }
 
-    /// Whether the view has changed since the last call, counters aside.
+    /// Whether the view, except its counters, has changed since the last call.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.has_changed)
     }
 
-    /// Has this image sent from the next cycle on, in this generation. The number is that of the change: it has left once
-    /// [`View::sent`] has reached it.
+    /// Sends this image from the next cycle on, in this generation. Returns the number of the change. It was sent when
+    /// [`View::sent`] has reached that number.
     ///
     /// # Errors
-    /// [`ProfibusError::Outdated`] if the link was lost meanwhile, [`ProfibusError::Settings`] for a wrong size.
+    /// [`ProfibusError::Outdated`] if the link was lost in the meantime, [`ProfibusError::Settings`] for a wrong size.
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
         if image.len() != self.settings.output_size {
             let (len, size) = (image.len(), self.settings.output_size);
@@ -168,7 +164,7 @@ impl Master {
         Ok(self.changes)
     }
 
-    /// Sets the slave free, and ends.
+    /// Releases the slave and closes the link.
     pub fn close(&mut self, now: Now) {
         match self.view.state {
             State::Closing | State::Closed => {}
@@ -184,7 +180,7 @@ impl Master {
         }
     }
 
-    /// The port does not work, and nothing can be sent. [`Master::port_is_back`] goes on.
+    /// The port failed. [`Master::port_is_back`] continues.
     pub fn port_failed(&mut self, now: Now, error: ProfibusError) {
         match self.view.state {
             State::Closed => {}
@@ -199,14 +195,14 @@ impl Master {
         }
     }
 
-    /// Listens again, and goes on.
+    /// The port is open again. The master listens first, then continues.
     pub fn port_is_back(&mut self, now: Now) {
         if self.view.state == State::Lost {
             self.listen_until(now + self.timing.listen);
         }
     }
 
-    /// When [`Master::poll`] has something to do; `None` when all is over, or while there is no port.
+    /// Time of the next [`Master::poll`]; `None` after the close, or without a port.
     pub fn due(&self) -> Option<Now> {
         match self.step {
             Step::Over => None,
@@ -217,7 +213,7 @@ impl Master {
         }
     }
 
-    /// What is to be sent now.
+    /// Returns the bytes to send at `now`.
     pub fn poll(&mut self, now: Now) -> Option<Vec<u8>> {
         match self.requester.poll(now) {
             Some(Ok(bytes)) => return Some(bytes),
@@ -256,7 +252,7 @@ impl Master {
         Some(self.requester.ask(now, frame))
     }
 
-    /// Takes what has arrived.
+    /// Handles received bytes.
     pub fn handle(&mut self, now: Now, bytes: &[u8]) {
         match self.step {
             Step::Over => {}
@@ -274,11 +270,11 @@ impl Master {
         }
     }
 
-    /// The next job of a cycle.
+    /// Executes the next job of a cycle.
     fn work(&mut self, now: Now) -> Option<Vec<u8>> {
         if self.jobs.is_empty() {
             self.jobs.push_back(Job::Exchange);
-            // A machine that was busy does not make up for it: no bursts.
+            // Missed cycles are not repeated, so there are no bursts.
             let late = now.saturating_sub(self.next_cycle);
             self.next_cycle += self.timing.cycle;
             if late > self.timing.cycle {
@@ -317,7 +313,7 @@ impl Master {
                 let frame = self.requester.request(Service::SendHigh, broadcast, Some(sap::GLOBAL_CONTROL), data);
                 Some(self.requester.tell(now, &Telegram::Frame(frame)))
             }
-            // To oneself: the ring has one master.
+            // The token goes to this master itself: the ring has one master.
             Job::Token => {
                 let here = self.settings.master;
                 Some(self.requester.tell(now, &Telegram::Token { to: here, from: here }))
@@ -357,7 +353,7 @@ impl Master {
         }
     }
 
-    /// What the last request was.
+    /// Name of the current request.
     fn asked(&self) -> &'static str {
         match self.step {
             Step::Find => "the question for its state",
@@ -393,7 +389,7 @@ impl Master {
                 self.go(now, Step::Check);
             }
             Step::Check => {
-                // A slave that takes no parameters may already refuse the configuration; the diagnosis tells why.
+                // A slave that rejects the parameters can refuse the configuration. The diagnosis has the reason.
                 if !matches!(&answer, Answer::Frame(Frame { control: Control::Answer(_, Status::NoService), .. })) {
                     acknowledged(station, asked, &answer)?;
                 }
@@ -411,7 +407,7 @@ impl Master {
         Ok(())
     }
 
-    /// The diagnosis in an answer, which is kept.
+    /// Decodes and stores the diagnosis of an answer.
     fn diagnosis(&mut self, answer: Answer) -> Result<Diagnosis, ProfibusError> {
         let station = self.settings.station;
         let asked = sap::name(Some(sap::SLAVE_DIAG));
@@ -428,7 +424,7 @@ impl Master {
         Ok(diagnosis)
     }
 
-    /// Whether it is the slave that is meant, and free.
+    /// Checks that it is the expected slave and that no other master has locked it.
     fn compare(&mut self, diagnosis: &Diagnosis) -> Result<(), ProfibusError> {
         let station = self.settings.station;
         if let Some(expected) = self.settings.ident.filter(|expected| *expected != diagnosis.ident) {
@@ -442,14 +438,14 @@ impl Master {
         Ok(())
     }
 
-    /// Takes the configuration that the slave wants, unless the settings have one.
+    /// Selects the configuration: that of the settings, or else that of the slave.
     fn configure(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let station = self.settings.station;
         let asked = sap::name(Some(sap::GET_CFG));
         let wanted = data(station, asked, answer);
         self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
         self.view.details.configuration = match (&self.settings.configuration, wanted) {
-            // A slave may have its default configuration until it is given another.
+            // Before its first configuration, a slave can report a default one.
             (Some(set), _) => Some(set.clone()),
             (None, wanted) => {
                 let bytes = wanted?.1;
@@ -466,7 +462,7 @@ impl Master {
         Ok(())
     }
 
-    /// Data may flow, or what else is to be tried.
+    /// Checks whether the slave is ready for data. If not, decides the next attempt.
     fn confirm(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let diagnosis = self.diagnosis(answer)?;
         let station = self.settings.station;
@@ -543,7 +539,7 @@ impl Master {
         Ok(())
     }
 
-    /// Something went wrong: the end of an opening, or the loss of an open link.
+    /// Handles an error: the end of an opening, or the loss of an open link.
     fn failed(&mut self, now: Now, error: ProfibusError) {
         self.requester.forget(self.settings.station);
         self.requester.wait(now + self.settings.rate.bits(super::rates::SYNC));
@@ -552,16 +548,17 @@ impl Master {
         self.asked_since = None;
         let was_closing = self.view.state == State::Closing;
         let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
-        // Who has just left may come back at once; who leaves again and again is given time.
+        // After a single loss, retry at once. After repeated losses, wait first.
         let has_left = self.view.state == State::Open
             && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
-        // The reason of a loss is worth more than why it lasts.
+        // The first cause of a loss is more useful than the error of a retry.
         let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.trouble.is_some();
         if !is_known || must_be_quiet {
             self.view.trouble = Some(error);
         }
         if self.view.state == State::Opening || was_closing {
-            // A slave that may be ours is set free, unless that is what failed, or others speak.
+            // Release a slave that this master may have locked, unless the release itself failed or other masters are
+            // on the bus.
             if self.locked && !was_closing && !must_be_quiet {
                 self.set_state(State::Closing);
                 return self.go(now, Step::Release);

@@ -1,4 +1,4 @@
-//! What can be seen of a link.
+//! State of a link for callers.
 
 use std::time::Duration;
 
@@ -7,39 +7,39 @@ use super::super::wire::Diagnosis;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// What can be seen of a link.
+/// State of a link.
 pub type View = view::View<ProfibusError, Statistics, Details>;
-/// The same as it changes.
+/// Receiver of state changes.
 pub type Views = view::Views<ProfibusError, Statistics, Details>;
 
-/// What was counted.
+/// Counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
-    /// Exchanges that were asked for, without repetitions.
+    /// Data exchanges requested, without repetitions.
     pub sent: u64,
-    /// Exchanges that were answered.
+    /// Data exchanges answered.
     pub received: u64,
-    /// Requests that were sent again.
+    /// Repeated requests.
     pub repeated: u64,
-    /// Bytes that were no telegram.
+    /// Bytes that are no telegram.
     pub noise: u64,
-    /// Answers to nothing that was asked.
+    /// Answers without a request.
     pub unexpected: u64,
-    /// Cycles that were missed, as by a machine that is too busy.
+    /// Cycles missed, for example on a busy computer.
     pub skipped: u64,
 }
 
-/// What only PROFIBUS has to see.
+/// Details that only PROFIBUS has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Details {
-    /// What the slave said of itself the last time.
+    /// Last diagnosis of the slave.
     pub diagnosis: Option<Diagnosis>,
-    /// The configuration that is in force, or that the slave wants.
+    /// Configuration in use, or reported by the slave.
     pub configuration: Option<Vec<u8>>,
-    /// Whether the adapter hands back what is sent.
+    /// Whether the adapter echoes what is sent.
     pub echoes: bool,
     /// Time between two exchanges.
     pub cycle: Duration,
-    /// How long the slave waits for us.
+    /// Watchdog time of the slave.
     pub watchdog: Duration,
 }

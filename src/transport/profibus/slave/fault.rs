@@ -1,40 +1,40 @@
-//! What a slave can be made to do wrong, for tests of the other end.
+//! Deliberate faults of a simulated slave, for tests of masters.
 
-/// A thing to do wrong.
+/// A fault of the slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SlaveFault {
-    /// Answers nothing.
+    /// Does not answer.
     Mute,
-    /// Loses every fourth answer.
+    /// Omits every fourth answer.
     Lose,
-    /// Damages the check sum of every fourth answer.
+    /// Sends every fourth answer with a wrong checksum.
     BadFcs,
-    /// Says that it belongs to another master.
+    /// Reports that another master has locked it.
     Locked,
-    /// Says that it is of another kind.
+    /// Reports another ident number.
     OtherIdent,
-    /// Wants another configuration, with images of another size.
+    /// Requires a configuration with other image sizes.
     OtherSize,
-    /// Takes no configuration.
+    /// Rejects every configuration.
     NoConfiguration,
-    /// Takes no parameters.
+    /// Rejects all parameters.
     NoParameters,
-    /// Never gets ready.
+    /// Never becomes ready.
     NotReady,
-    /// Sends images that are a byte short.
+    /// Sends images that are one byte short.
     WrongSize,
-    /// Answers that the service is not active, whatever is asked.
+    /// Refuses every request: service not active.
     Inactive,
-    /// Says that it is a master.
+    /// Reports that it is a master.
     Master,
-    /// Has always something new in the diagnosis.
+    /// Always reports a new diagnosis.
     Diagnosis,
-    /// Passes a token of its own.
+    /// Sends a token.
     Token,
 }
 
 impl SlaveFault {
-    /// All there are, with the names they are asked for by.
+    /// All faults with their names.
     pub const ALL: [(&'static str, Self); 14] = [
         ("mute", Self::Mute),
         ("lose", Self::Lose),

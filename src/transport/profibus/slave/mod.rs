@@ -1,5 +1,5 @@
-//! The other end: a slave without a line and without a clock. It is stricter than slaves are: in frame counts, lengths,
-//! ident number, configuration, parameters, owner and watchdog.
+//! Simulated DP slave without line and clock. It is stricter than real slaves with frame counts, lengths, ident number,
+//! configuration, parameters, owner and watchdog.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -17,34 +17,35 @@ mod fault;
 
 pub use fault::SlaveFault;
 
-/// A pause after which no telegram goes on.
+/// A pause that always ends a telegram.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Shortest time before an answer, in bits.
+/// Shortest delay of an answer, in bits.
 const MIN_TSDR: u32 = 11;
-/// Whose a slave says it is when it is made to say so.
+/// Owner that the slave reports with [`SlaveFault::Locked`].
 const OTHER_MASTER: u8 = 9;
 
-/// What a slave is.
+/// Configuration of a slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Its address.
+    /// Address.
     pub station: u8,
-    /// Which kind it is.
+    /// Ident number.
     pub ident: u16,
-    /// The identifier bytes that it takes, and no others.
+    /// The only accepted configuration (identifier bytes).
     pub configuration: Vec<u8>,
-    /// Bytes that it sends.
+    /// Bytes from the slave.
     pub input: usize,
-    /// Bytes that it takes.
+    /// Bytes to the slave.
     pub output: usize,
-    /// The user parameters that it takes.
+    /// Accepted user parameters.
     pub parameters: Vec<Vec<u8>>,
-    /// Speed of its line, for the time before answers.
+    /// Bit rate, for the delay of answers.
     pub rate: Rate,
 }
 
 impl Setup {
-    /// 24 words each way at station 5. The ident number is a stand-in: that of the YRCX board is not public.
+    /// 24 words in each direction, station 5. The ident number is a placeholder, because that of the YRCX board is not
+    /// public.
     pub fn stand_in(rate: Rate) -> Self {
         Self {
             station: 5,
@@ -65,23 +66,23 @@ enum State {
     Exchange,
 }
 
-/// A slave in front of something that shows and is shown images.
+/// A simulated slave with an image peer behind it.
 #[derive(Debug)]
 pub struct Slave<P> {
     setup: Setup,
     peer: P,
     state: State,
     owner: Option<u8>,
-    /// How long it waits for its owner.
+    /// Watchdog time.
     patience: Option<Duration>,
-    /// When its patience is over.
+    /// Time when the watchdog expires.
     expiry: Option<Now>,
     faults: Vec<Flag>,
     outputs: Vec<u8>,
     is_clear: bool,
-    /// Whether the news of the fault is still to be fetched.
+    /// Whether the diagnosis must report the fault as new.
     has_news: bool,
-    /// For each master, the count of its last request and the answer to it.
+    /// Per master: the frame count bit of its last request, and the answer.
     last: BTreeMap<u8, (bool, Option<Telegram>)>,
     stream: Stream,
     heard: Now,
@@ -92,7 +93,7 @@ pub struct Slave<P> {
 }
 
 impl<P: ImagePeer> Slave<P> {
-    /// A slave that belongs to nobody.
+    /// Creates a slave without an owner.
     pub fn new(setup: Setup, peer: P) -> Self {
         let outputs = vec![0; setup.output];
         Self {
@@ -116,32 +117,32 @@ impl<P: ImagePeer> Slave<P> {
         }
     }
 
-    /// What is behind it.
+    /// The image peer.
     pub const fn peer(&self) -> &P {
         &self.peer
     }
 
-    /// What is behind it.
+    /// The image peer.
     pub const fn peer_mut(&mut self) -> &mut P {
         &mut self.peer
     }
 
-    /// Whom it belongs to.
+    /// Address of the owner.
     pub const fn owner(&self) -> Option<u8> {
         self.owner
     }
 
-    /// How many exchanges of data it has done, without repeated ones.
+    /// Number of data exchanges, without repeated requests.
     pub const fn exchanges(&self) -> u64 {
         self.exchanges
     }
 
-    /// Has it do something wrong, or nothing any more.
+    /// Activates a fault, or none.
     pub const fn misbehave(&mut self, fault: Option<SlaveFault>) {
         self.fault = fault;
     }
 
-    /// It was off, and is on again.
+    /// Restarts the slave (power cycle).
     pub fn restart(&mut self, now: Now) {
         self.leave(now);
         self.last.clear();
@@ -150,7 +151,7 @@ impl<P: ImagePeer> Slave<P> {
         self.faults.clear();
     }
 
-    /// Back to where it waits for parameters.
+    /// Returns to the state that waits for parameters.
     fn leave(&mut self, now: Now) {
         if self.state == State::Exchange {
             self.peer.input(now, None);
@@ -197,7 +198,7 @@ impl<P: ImagePeer> Slave<P> {
                     answer
                 }
             }
-            // Not counted as it must be, or a service that slaves do not have.
+            // A request with an invalid frame count, or a service that slaves do not have.
             _ => Some(self.frame(frame, Status::NoService, Vec::new())),
         };
         if self.owner == Some(frame.from) {
@@ -307,7 +308,7 @@ impl<P: ImagePeer> Slave<P> {
         self.state = State::Exchange;
     }
 
-    /// `None` when the slave leaves because of it.
+    /// Handles a data exchange; `None` if the slave leaves data exchange because of it.
     fn exchange(&mut self, now: Now, frame: &Frame) -> Option<Telegram> {
         if frame.data.len() != self.setup.output {
             self.leave(now);
@@ -380,7 +381,7 @@ impl<P: ImagePeer> Peer for Slave<P> {
             self.stream.clear();
         }
         self.heard = now;
-        // Who hears others while it has an answer to send has been spoken over.
+        // Other traffic cancels a pending answer.
         self.answers.retain(|answer| answer.0 <= now);
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
@@ -391,7 +392,7 @@ impl<P: ImagePeer> Peer for Slave<P> {
     }
 
     fn damaged(&mut self, now: Now, channel: usize) {
-        // A character with the wrong parity reads as NUL, as from a driver.
+        // A character with a parity error reads as NUL, as from a driver.
         self.receive(now, channel, &[0]);
     }
 

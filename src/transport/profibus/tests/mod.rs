@@ -1,4 +1,4 @@
-//! Master and slave on a line in virtual time that is as slow and as faulty as asked for.
+//! Tests of master and slave on a line in virtual time, with its character timing and faults.
 
 mod peers;
 mod survey;
@@ -26,7 +26,7 @@ const MS: Duration = Duration::from_millis(1);
 const SEC: Duration = Duration::from_secs(1);
 const SIZE: usize = 48;
 
-/// What SI(00) and SI(06) are in.
+/// Resting image: SI(00) and SI(06) are on.
 fn resting() -> Vec<u8> {
     let mut image = vec![0; SIZE];
     image[32] = 0x41;
@@ -39,7 +39,7 @@ fn image(number: u8) -> Vec<u8> {
     image
 }
 
-/// Shows what it is shown, and keeps every change of it.
+/// Echo peer that records every change.
 #[derive(Debug, Default)]
 struct Echo {
     image: Option<Vec<u8>>,
@@ -91,7 +91,7 @@ impl World {
         }
     }
 
-    /// Goes on for so long, or until the view is so.
+    /// Runs for `time`, or until the condition is true.
     fn run(&mut self, time: Duration, mut until: impl FnMut(&View) -> bool) -> View {
         let end = self.now + time;
         loop {
@@ -136,7 +136,7 @@ fn a_start_is_the_one_that_others_have_seen_working() {
     let mut world = World::new("500k", "");
     world.slave.misbehave(None);
     world.open();
-    // With Get_Cfg in it, so the frame count is one on from there.
+    // Get_Cfg is included, so from there on the frame count bit is inverted.
     let expected = [
         "10 05 02 49 50 16",
         "68 05 05 68 85 82 6D 3C 3E EE 16",
@@ -192,7 +192,7 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
         let error = world.fails();
         assert!(error.contains(message), "{fault:?}: {error}");
         assert_eq!(world.slave.peer().history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
-        // Nobody stays locked by a link that did not come about.
+        // A failed opening must not leave the slave locked.
         if !matches!(fault, SlaveFault::Token | SlaveFault::Mute) {
             assert_eq!(world.slave.owner(), None, "{fault:?}");
         }
@@ -211,7 +211,7 @@ fn faults_that_repetitions_heal_do_no_harm() {
         let view = world.run(SEC, |now| now.statistics.sent >= view.statistics.sent + 20);
         assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.trouble);
         assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
-        // A repeated request is answered, and not done again.
+        // The slave answers a repeated request without executing it again.
         assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
         assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(1))], "{fault:?}");
     }
@@ -239,7 +239,7 @@ fn a_slave_lets_go_when_its_master_dies() {
     let mut world = World::new("500k", "");
     world.open();
     let died = world.now;
-    // Time passes for the line and the slave alone.
+    // Time passes only for the line and the slave.
     world.wire.run(died + 490 * MS, &mut world.slave);
     assert_eq!(world.slave.owner(), Some(2));
     world.wire.run(died + 520 * MS, &mut world.slave);
@@ -272,7 +272,7 @@ fn a_master_says_nothing_where_another_one_speaks() {
         assert_eq!(world.fails(), message);
         assert!(world.sent.is_empty(), "{heard}");
     }
-    // Opening a port may make a character.
+    // Opening a port can produce a character.
     let mut world = World::new("500k", "");
     world.master.handle(MS, &[0]);
     world.open();
@@ -303,7 +303,7 @@ fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     assert!(view.details.echoes);
     let view = world.run(SEC, |view| view.statistics.sent >= 20);
     assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
-    // Crossed wires or a dead slave behind such an adapter are not taken for answers.
+    // With crossed wires or a dead slave, the echo is not taken for an answer.
     let mut world = World::new("500k", "echo");
     world.slave.misbehave(Some(SlaveFault::Mute));
     assert!(world.fails().contains("only the echo of the adapter was heard"));
@@ -316,7 +316,7 @@ fn cycles_are_kept_without_drift_and_without_bursts() {
     let view = world.run(20 * SEC, |_| false);
     assert!((999..=1001).contains(&view.statistics.sent), "{}", view.statistics.sent);
     assert_eq!(view.statistics.skipped, 0);
-    // The machine is busy elsewhere for a while: what was missed is not made up for.
+    // The computer is busy for a while. Missed cycles are not repeated.
     world.now += 110 * MS;
     world.wire.run(world.now, &mut world.slave);
     let after = world.run(100 * MS, |_| false);
@@ -335,15 +335,15 @@ fn a_full_line_is_within_a_tenth_of_its_bits() {
         let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
         assert_eq!(view.statistics.received, before + 100, "{:?}", view.trouble);
         let cycle = world.now.saturating_sub(start) / 100;
-        // Two telegrams of 57 characters, the pause before a request, and the time before an answer.
+        // Two telegrams of 57 characters, the pause before a request, and the delay of the answer.
         let bits = rate.pace().time(2 * 57) + rate.bits(33 + 11);
         assert!(cycle <= bits * 11 / 10, "{name}: {cycle:?} for {bits:?}");
         assert!(cycle >= bits, "{name}: {cycle:?} is faster than the line");
     }
 }
 
-/// Gives one command after the other as a controller of images takes them: a number, and 0 between two. What the slave saw
-/// of it.
+/// Sends commands as an image controller expects them: a number, then 0 before the next. Returns which were confirmed
+/// and which the slave saw.
 fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
     let settings = Settings { retries: 6, slot: Some(10 * MS), ..Settings::new(5, RATES[5], resting()) };
     let mut world = World::with(settings, &format!("{faults},seed={seed}"));
@@ -362,7 +362,7 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
                 is_done = false;
                 break;
             };
-            // What is seen comes from the slave, in this generation.
+            // The input must come from the slave and from this generation.
             let view = world.run(5 * SEC, |view| {
                 let is_shown =
                     |input: &super::master::Input| input.generation == generation && input.image[0] == number;
@@ -404,7 +404,7 @@ fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
 
 #[test]
 fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
-    // Longer than the slot time: answers come when their request has been repeated already.
+    // Longer than the slot time, so answers arrive after the repetition of their request.
     let (done, executed, view) = commands(3, "delay=0..14ms");
     assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "{executed:?}");
     assert!(done.iter().all(|number| executed.contains(number)), "{done:?} of {executed:?}");

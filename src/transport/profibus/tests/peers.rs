@@ -1,4 +1,4 @@
-//! The master of the crate `profirust`, which shares nothing with ours, drives our slave.
+//! Test with an independent implementation: the master of the crate `profirust` with our slave.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use super::super::slave::{Setup, Slave, SlaveFault};
 use super::{Echo, MS, SIZE};
 use crate::line::Wire;
 
-/// A port of theirs on a line of ours.
+/// The port of `profirust` on our simulated line.
 struct Phy {
     now: Duration,
     sent_until: Duration,
@@ -60,7 +60,7 @@ fn rate() -> Rate {
     Rate::from_name("500k").unwrap()
 }
 
-/// Runs their master for so long; bytes that it got from our slave at the end, if it is in data exchange.
+/// Runs the `profirust` master for `time`. Returns the last input image if it is in data exchange.
 fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u8>>, Slave<Echo>) {
     let (mut inputs, mut outputs, mut diagnosis) = ([0; SIZE], [0; SIZE], [0; 16]);
     outputs[0] = 0x5A;

@@ -1,11 +1,11 @@
-//! Who is on the line, and what is heard of others.
+//! Tests of the survey and of other traffic on the line.
 
 use super::super::request::Requester;
 use super::super::survey::{Found, Survey, Unknown};
 use super::super::wire::{Station, Status};
 use super::*;
 
-/// Asks all stations of a line with one slave.
+/// Surveys a line with one slave.
 fn survey(world: &mut World, stations: std::ops::RangeInclusive<u8>) -> Result<Vec<Found>, ProfibusError> {
     let settings = Settings::new(5, RATES[5], resting());
     let timing = settings.timing().unwrap();
@@ -39,7 +39,7 @@ fn a_slave_is_found_and_nothing_about_it_changes() {
     assert_eq!(slave.configuration.as_deref().unwrap(), [0xC0, 0xD7, 0xD7]);
     assert_eq!(slave.inputs, Err(Unknown::Refused(Status::NoService)));
     assert_eq!((world.slave.owner(), world.slave.peer().history.len()), (None, 0));
-    // Two attempts for each address that is free, and no more.
+    // Two attempts per free address, and no more.
     assert_eq!(world.sent.len(), 125 * 2 + 5);
 }
 
@@ -58,7 +58,7 @@ fn a_slave_that_has_a_master_keeps_it_and_shows_its_images() {
 fn nobody_is_asked_beside_another_master() {
     let mut world = World::new("500k", "");
     world.slave.misbehave(Some(SlaveFault::Token));
-    // The token of somebody else is heard with the first answers.
+    // The token of another master arrives with the first answers.
     let error = survey(&mut world, 0..=125).unwrap_err();
     assert!(matches!(error, ProfibusError::OtherMaster { master: 9, .. }), "{error}");
     let asked = world.sent.len();

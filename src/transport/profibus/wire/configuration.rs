@@ -1,28 +1,28 @@
-//! Identifier bytes of a configuration (part 8, section 8.3.5.2): how many bytes go each way, in which modules.
+//! Codec for configuration identifier bytes (part 8, section 8.3.5.2): modules and bytes per direction.
 
 use super::{MAX_DATA, WireError};
 
-/// The bytes as they are sent, with the modules that they stand for.
+/// Identifier bytes with the modules that they describe.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Configuration {
     bytes: Vec<u8>,
     modules: Vec<Module>,
 }
 
-/// What one identifier stands for.
+/// The module of one identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Module {
-    /// Bytes that the slave sends.
+    /// Bytes from the slave.
     pub input: usize,
-    /// Bytes that the slave takes.
+    /// Bytes to the slave.
     pub output: usize,
 }
 
 impl Configuration {
-    /// Takes identifiers apart, in the general and the special form.
+    /// Decodes identifiers in the general and the special format.
     ///
     /// # Errors
-    /// When an identifier is not complete, or adds up to more than a telegram carries.
+    /// An identifier is incomplete, or the total does not fit a telegram.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         let mut modules = Vec::new();
         let (mut at, mut input, mut output) = (0, 0, 0);
@@ -39,28 +39,28 @@ impl Configuration {
         Ok(Self { bytes: bytes.to_vec(), modules })
     }
 
-    /// The bytes.
+    /// Identifier bytes.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// What the identifiers stand for, in order; an empty slot has no bytes.
+    /// Modules in order; an empty slot has no bytes.
     pub fn modules(&self) -> &[Module] {
         &self.modules
     }
 
-    /// Bytes that the slave sends.
+    /// Total bytes from the slave.
     pub fn input(&self) -> usize {
         self.modules.iter().map(|module| module.input).sum()
     }
 
-    /// Bytes that the slave takes.
+    /// Total bytes to the slave.
     pub fn output(&self) -> usize {
         self.modules.iter().map(|module| module.output).sum()
     }
 }
 
-/// Bytes of units of one or two bytes, from a length byte.
+/// Size in bytes from a length byte; units have one or two bytes.
 const fn units(byte: u8, mask: u8) -> usize {
     let count = (byte & mask) as usize + 1;
     if byte & 0x40 != 0 { count * 2 } else { count }
@@ -72,7 +72,7 @@ fn general(identifier: u8) -> Module {
     Module { input: if ways & 0x10 == 0 { 0 } else { bytes }, output: if ways & 0x20 == 0 { 0 } else { bytes } }
 }
 
-/// The special form: a length byte for each way, output first, then bytes of the maker.
+/// Decodes the special format: a length byte per direction, output first, then manufacturer bytes.
 fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     let identifier = bytes[at];
     let mut len = 1;
@@ -86,7 +86,7 @@ fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     };
     let output = way(identifier & 0x80 != 0)?;
     let input = way(identifier & 0x40 != 0)?;
-    // 15: there are no bytes of the maker, not even an empty lot.
+    // 15 means that there are no manufacturer bytes.
     let makers = match identifier & 0x0F {
         15 => 0,
         count => usize::from(count),

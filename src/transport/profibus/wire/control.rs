@@ -1,41 +1,41 @@
-//! The function code of a telegram (part 4, section 4.7.3).
+//! Codec for the function code of a telegram (part 4, section 4.7.3).
 
 use super::WireError;
 
-/// Set in the codes of requests.
+/// Bit of requests.
 const REQUEST: u8 = 0x40;
 const FCB: u8 = 0x20;
 const FCV: u8 = 0x10;
 
-/// What a telegram is for.
+/// Decoded function code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Control {
-    /// Somebody asks or tells.
+    /// A request.
     Request(Service, FrameCount),
-    /// Somebody answers.
+    /// An answer.
     Answer(Station, Status),
 }
 
-/// What a request asks for.
+/// Service of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Service {
-    /// Data with an acknowledgement (SDA), low priority.
+    /// Send data with acknowledge (SDA), low priority.
     SendAcknowledgedLow,
-    /// Data that nobody answers (SDN), low priority.
+    /// Send data without acknowledge (SDN), low priority.
     SendLow,
-    /// Data with an acknowledgement (SDA), high priority.
+    /// Send data with acknowledge (SDA), high priority.
     SendAcknowledgedHigh,
-    /// Data that nobody answers (SDN), high priority.
+    /// Send data without acknowledge (SDN), high priority.
     SendHigh,
-    /// What kind of station there is.
+    /// FDL status: type of the station.
     FdlStatus,
-    /// Data, and data back (SRD), low priority.
+    /// Send and request data (SRD), low priority.
     SendRequestLow,
-    /// Data, and data back (SRD), high priority.
+    /// Send and request data (SRD), high priority.
     SendRequestHigh,
-    /// Who the station is.
+    /// Identity of the station.
     Ident,
-    /// Which services are behind a service access point.
+    /// Services of a service access point.
     LsapStatus,
 }
 
@@ -52,12 +52,12 @@ const SERVICES: [(u8, Service); 9] = [
 ];
 
 impl Service {
-    /// Whether somebody answers it.
+    /// Whether the service has an answer.
     pub const fn is_answered(self) -> bool {
         !matches!(self, Self::SendLow | Self::SendHigh)
     }
 
-    /// Whether its requests are counted, so that a repeated one is known.
+    /// Whether the service uses the frame count bit, which identifies repeated requests.
     pub const fn is_counted(self) -> bool {
         matches!(
             self,
@@ -66,19 +66,19 @@ impl Service {
     }
 }
 
-/// The bits that tell a new request from a repeated one (FCB and FCV).
+/// Frame count bits (FCB and FCV), which identify a repeated request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FrameCount {
-    /// Not counted.
+    /// Not used.
     None,
-    /// The first request of a count.
+    /// First request after a reset.
     First,
-    /// A counted request; the bit changes with each new one.
+    /// Later request; the bit changes with each new one.
     Counted(bool),
 }
 
 impl FrameCount {
-    /// What the request after this one has.
+    /// Frame count of the next request.
     #[must_use]
     pub const fn next(self) -> Self {
         match self {
@@ -87,7 +87,7 @@ impl FrameCount {
         }
     }
 
-    /// The value of the bit; of what is not counted as it is sent.
+    /// Value of FCB; `false` if it is not used.
     pub const fn bit(self) -> bool {
         match self {
             Self::None => false,
@@ -97,41 +97,41 @@ impl FrameCount {
     }
 }
 
-/// What kind of station answers.
+/// Station type in an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Station {
     /// A slave.
     Slave,
-    /// A master that is not ready for the ring.
+    /// A master that is not ready for the token ring.
     MasterNotReady,
     /// A master that waits for the token.
     MasterReady,
-    /// A master in the ring.
+    /// A master in the token ring.
     MasterInRing,
 }
 
 const STATIONS: [Station; 4] = [Station::Slave, Station::MasterNotReady, Station::MasterReady, Station::MasterInRing];
 
-/// What an answer says.
+/// Status of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// Done.
+    /// Success.
     Ok,
-    /// An error of the application.
+    /// Application error.
     UserError,
-    /// No room.
+    /// No resource.
     NoResource,
     /// The service access point is not active.
     NoService,
     /// Data, low priority.
     Data,
-    /// Nothing to send back.
+    /// No data available.
     NoData,
-    /// Data, and something new in the diagnosis.
+    /// Data, and the diagnosis is new.
     DataHigh,
-    /// Data, but what came was not taken.
+    /// Data, but the request data was not accepted.
     DataNoResource,
-    /// Data with something new in the diagnosis, but what came was not taken.
+    /// Data, and the diagnosis is new, but the request data was not accepted.
     DataHighNoResource,
 }
 
@@ -148,22 +148,19 @@ const STATUSES: [(u8, Status, &str); 9] = [
 ];
 
 impl Status {
-    /// Its short name and meaning.
+    /// Short name and meaning.
     pub fn text(self) -> &'static str {
         STATUSES.iter().find(|row| row.1 == self).map_or("", |row| row.2)
     }
 }
 
 impl Control {
-    /// A counted or uncounted request.
+    /// Control of a request.
     pub const fn request(service: Service, count: FrameCount) -> Self {
         Self::Request(service, count)
     }
 
-    /// From its byte.
-    ///
-    /// # Errors
-    /// When no telegram has that.
+    /// Decodes the byte.
     pub fn parse(byte: u8, offset: usize) -> Result<Self, WireError> {
         let wrong = WireError::value("function code", offset, byte);
         if byte & 0x80 != 0 {
@@ -182,7 +179,7 @@ impl Control {
         Ok(Self::Request(service, count))
     }
 
-    /// Its byte.
+    /// Encodes the byte.
     pub fn byte(self) -> u8 {
         match self {
             Self::Request(service, count) => {

@@ -1,4 +1,4 @@
-//! What a slave says of itself (part 8, section 8.3.1).
+//! Codec for the slave diagnosis (part 8, section 8.3.1).
 
 use std::fmt;
 
@@ -6,58 +6,58 @@ use super::WireError;
 
 /// Bytes before the blocks.
 const FIXED: usize = 6;
-/// The master of a slave that has none.
+/// Master address of a slave without a master.
 const NOBODY: u8 = 255;
 
-/// The answer to Slave_Diag.
+/// Answer to Slave_Diag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnosis {
-    /// The flags of the first three bytes.
+    /// The three status bytes.
     pub flags: [u8; 3],
-    /// Whom the slave belongs to.
+    /// Address of the master that has locked the slave.
     pub master: Option<u8>,
-    /// Which kind of slave it is.
+    /// Ident number.
     pub ident: u16,
-    /// What it says beyond that.
+    /// Extended diagnosis.
     pub blocks: Vec<Block>,
 }
 
-/// A flag of the first three bytes.
+/// A flag of the three status bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Flag {
     /// Set by a master: the slave does not answer.
     NotExistent,
     /// Not ready for data.
     NotReady,
-    /// It wants another configuration.
+    /// Configuration fault.
     ConfigurationFault,
-    /// Blocks follow.
+    /// Extended diagnosis follows.
     Extended,
-    /// It was asked for what it cannot do.
+    /// A requested function is not supported.
     NotSupported,
-    /// Set by a master: an answer made no sense.
+    /// Set by a master: an answer was invalid.
     InvalidAnswer,
-    /// It wants other parameters.
+    /// Parameter fault.
     ParameterFault,
-    /// It belongs to another master.
+    /// Another master has locked the slave.
     Locked,
-    /// It has no parameters.
+    /// The slave needs parameters.
     ParametersWanted,
-    /// It has no valid data; the diagnosis is to be asked for again.
+    /// No valid data; the master must read the diagnosis again.
     Static,
-    /// Its watchdog runs.
+    /// The watchdog is active.
     Watchdog,
-    /// Its inputs are held.
+    /// Freeze: the inputs are held.
     Freeze,
-    /// Its outputs are held.
+    /// Sync: the outputs are held.
     Sync,
-    /// Set by a master: the slave is switched off.
+    /// Set by a master: the slave is deactivated.
     Deactivated,
-    /// It has more to say than fits.
+    /// More diagnosis than fits.
     Overflow,
 }
 
-/// The flags with byte, bit and text.
+/// Flags with byte, bit and text.
 const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::NotExistent, 0, 0x01, "does not exist"),
     (Flag::NotReady, 0, 0x02, "not ready for data"),
@@ -76,41 +76,41 @@ const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::Overflow, 2, 0x80, "more diagnosis than fits"),
 ];
 
-/// The bit that is always set.
+/// A bit that is always set.
 pub(super) const ALWAYS: u8 = 0x04;
 
 impl Flag {
-    /// In words.
+    /// Text of the flag.
     pub fn text(self) -> &'static str {
         FLAGS.iter().find(|row| row.0 == self).map_or("", |row| row.3)
     }
 }
 
-/// What a slave says beyond the first bytes.
+/// A block of the extended diagnosis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Block {
-    /// Bytes of the maker.
+    /// Device-related: manufacturer bytes.
     Device(Vec<u8>),
-    /// Numbers of the modules that have something to say.
+    /// Identifier-related: numbers of the modules with a diagnosis.
     Modules(Vec<u16>),
-    /// Something about a channel.
+    /// Channel-related.
     Channel {
-        /// Module.
+        /// Module number.
         module: u8,
-        /// Channel of the module.
+        /// Channel number in the module.
         channel: u8,
-        /// Input, output, or both: 1, 2, 3.
+        /// Direction: 1 input, 2 output, 3 both.
         way: u8,
-        /// Bits, bytes, words, as the standard numbers them.
+        /// Channel type (bit, byte, word), as numbered by the standard.
         size: u8,
-        /// What is wrong.
+        /// Error code.
         error: u8,
     },
-    /// The revision of a slave with acyclic services.
+    /// Revision of a slave with acyclic services.
     Revision(u8),
 }
 
-/// Errors of channels that the standard names.
+/// Error codes of channels with texts of the standard.
 const CHANNEL_ERRORS: [(u8, &str); 9] = [
     (1, "short circuit"),
     (2, "undervoltage"),
@@ -124,10 +124,7 @@ const CHANNEL_ERRORS: [(u8, &str); 9] = [
 ];
 
 impl Diagnosis {
-    /// Reads one.
-    ///
-    /// # Errors
-    /// When it is too short, or a block is.
+    /// Decodes a diagnosis.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let Some((&[first, second, third, master, high, low], rest)) = data.split_first_chunk::<FIXED>() else {
             return Err(WireError::short("diagnosis", 0, FIXED, data.len()));
@@ -153,7 +150,7 @@ impl Diagnosis {
         Ok(Self { flags: [first, second, third], master, ident: u16::from_be_bytes([high, low]), blocks })
     }
 
-    /// Its bytes.
+    /// Encodes the diagnosis.
     pub fn emit(&self) -> Vec<u8> {
         let [high, low] = self.ident.to_be_bytes();
         let [first, second, third] = self.flags;
@@ -169,13 +166,13 @@ impl Diagnosis {
         FLAGS.iter().any(|row| row.0 == flag && self.flags[row.1] & row.2 != 0)
     }
 
-    /// The flags that are set, in words, but for the one that only tells of blocks.
+    /// Texts of the flags that are set, without the flag for extended diagnosis.
     pub fn words(&self) -> impl Iterator<Item = &'static str> {
         let told = FLAGS.iter().filter(|row| row.0 != Flag::Extended && self.has(row.0));
         told.map(|row| row.3)
     }
 
-    /// With these flags, and the bit that is always set.
+    /// Status bytes with these flags and the bit that is always set.
     pub fn flags(flags: &[Flag]) -> [u8; 3] {
         let mut bytes = [0, ALWAYS, 0];
         for row in FLAGS.iter().filter(|row| flags.contains(&row.0)) {
@@ -186,7 +183,7 @@ impl Diagnosis {
 }
 
 impl fmt::Display for Diagnosis {
-    /// In words: `not ready for data, wants parameters, no master, ident 0x1234`.
+    /// Format: `not ready for data, wants parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for text in self.words() {
             write!(f, "{text}, ")?;
@@ -204,7 +201,7 @@ impl fmt::Display for Diagnosis {
 }
 
 impl Block {
-    /// From its bytes, of which there is one at least.
+    /// Decodes a block of at least one byte.
     fn new(block: &[u8]) -> Self {
         match (block[0] >> 6, block) {
             (0, _) => Self::Device(block[1..].to_vec()),

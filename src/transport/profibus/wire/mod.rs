@@ -1,7 +1,7 @@
-//! The bytes of PROFIBUS DP: telegrams with their function codes, and what the services of a slave carry.
+//! PROFIBUS DP codec: telegrams with function codes, and the data of the slave's services.
 //!
-//! Parsing takes what stations send: eight bytes of data come in either of two forms. Emitting writes one form of each.
-//! Sections below are those of EN 50170, volume 2.
+//! The decoder accepts both forms of eight data bytes; the encoder writes one. Sections are those of EN 50170, volume
+//! 2.
 
 pub use crate::bytes::{Problem, WireError};
 
@@ -19,28 +19,28 @@ pub use parameters::{GlobalControl, Lock, Parameters, Watchdog};
 pub use stream::{Piece, Stream};
 pub use telegram::{CHECKSUM, Frame, MAX_DATA, Parsed, START, Telegram};
 
-/// Service access points of a slave.
+/// Service access points (SAP) of a slave.
 pub mod sap {
-    /// The one that a master asks from.
+    /// SAP of the master.
     pub const MASTER: u8 = 62;
-    /// A new address for the slave.
+    /// Change the address of the slave.
     pub const SET_SLAVE_ADDRESS: u8 = 55;
-    /// What the slave shows.
+    /// Read the input image.
     pub const READ_INPUTS: u8 = 56;
-    /// What the slave is shown.
+    /// Read the output image.
     pub const READ_OUTPUTS: u8 = 57;
     /// Clear, operate, freeze, sync.
     pub const GLOBAL_CONTROL: u8 = 58;
-    /// The identifier bytes that the slave wants.
+    /// Read the configuration of the slave.
     pub const GET_CFG: u8 = 59;
-    /// How the slave is doing.
+    /// Read the diagnosis.
     pub const SLAVE_DIAG: u8 = 60;
-    /// Watchdog, ident number, user parameters.
+    /// Set the parameters: watchdog, ident number, user parameters.
     pub const SET_PRM: u8 = 61;
-    /// The identifier bytes that the master has.
+    /// Check the configuration.
     pub const CHK_CFG: u8 = 62;
 
-    /// The name of the service behind a service access point; data exchange has none.
+    /// Name of the service of a SAP; data exchange has no SAP.
     pub const fn name(sap: Option<u8>) -> &'static str {
         match sap {
             None => "Data_Exchange",
@@ -59,9 +59,9 @@ pub mod sap {
     }
 }
 
-/// The address that all stations hear.
+/// Broadcast address.
 pub const BROADCAST: u8 = 127;
-/// The highest address that a station can have.
+/// Highest address of a station.
 pub const MAX_STATION: u8 = 125;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What a master sends to have a slave ready: parameters (part 8, section 8.3.4), and control of all slaves (8.3.9).
+//! Codec for Set_Prm (part 8, section 8.3.4) and Global_Control (8.3.9).
 
 use std::fmt;
 use std::time::Duration;
@@ -7,65 +7,65 @@ use super::{MAX_DATA, WireError};
 
 /// Bytes before the user parameters.
 const FIXED: usize = 7;
-/// What a step of the watchdog takes.
+/// Time base of the watchdog.
 const STEP: Duration = Duration::from_millis(10);
 
-/// Whether a slave is to belong to the master that asks.
+/// Lock request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Lock {
-    /// Only the shortest answer time is set.
+    /// No change; only the shortest answer delay is set.
     Unchanged,
-    /// It belongs to the one that asks.
+    /// Lock the slave for this master.
     Lock,
-    /// It belongs to nobody.
+    /// Unlock the slave.
     Unlock,
 }
 
-/// How long a slave waits for its master: 10 ms times two factors.
+/// Watchdog time of a slave: 10 ms times two factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Watchdog {
     factors: [u8; 2],
 }
 
 impl Watchdog {
-    /// One that waits at least as long, and hardly longer; `None` beyond 650 s.
+    /// The shortest watchdog time that is at least `time`; `None` above 650 s.
     pub fn at_least(time: Duration) -> Option<Self> {
         let steps = time.as_nanos().div_ceil(STEP.as_nanos()).max(1);
-        // Small first factors have coarse steps: the first pair is the finest.
+        // The smallest second factor gives the finest steps.
         let second = u8::try_from(steps.div_ceil(255)).ok()?;
         let first = u8::try_from(steps.div_ceil(u128::from(second))).ok()?;
         Some(Self { factors: [first, second] })
     }
 
-    /// From its factors; 0 is none.
+    /// From the factors; 0 means no watchdog.
     pub const fn from_factors(factors: [u8; 2]) -> Option<Self> {
         if factors[0] == 0 || factors[1] == 0 { None } else { Some(Self { factors }) }
     }
 
-    /// How long it waits, if its steps are the usual ones.
+    /// Watchdog time with the time base of 10 ms.
     pub fn time(self) -> Duration {
         STEP * u32::from(self.factors[0]) * u32::from(self.factors[1])
     }
 }
 
-/// What Set_Prm carries.
+/// Data of Set_Prm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameters {
-    /// Whether the slave is to belong to the master.
+    /// Lock request.
     pub lock: Lock,
-    /// Whether the slave must know how to take its outputs when told to.
+    /// Whether the slave must support Sync.
     pub sync: bool,
-    /// Whether the slave must know how to hold its inputs when told to.
+    /// Whether the slave must support Freeze.
     pub freeze: bool,
-    /// How long the slave waits for its master; for ever without one.
+    /// Watchdog time; `None` switches the watchdog off.
     pub watchdog: Option<Watchdog>,
-    /// Shortest time before an answer, in bits; 0 leaves it.
+    /// Shortest delay of an answer in bits; 0 means no change.
     pub min_tsdr: u8,
-    /// Which kind of slave is expected.
+    /// Expected ident number.
     pub ident: u16,
-    /// A bit for each group that the slave belongs to.
+    /// Group membership, one bit per group.
     pub groups: u8,
-    /// What the maker of the slave wants to be told.
+    /// User parameters, defined by the manufacturer.
     pub user: Vec<u8>,
 }
 
@@ -73,7 +73,7 @@ impl Parameters {
     /// Most bytes of user parameters.
     pub const MAX_USER: usize = MAX_DATA - FIXED;
 
-    /// Sets the slave of this ident number free.
+    /// Parameters that release the slave.
     pub const fn unlock(ident: u16) -> Self {
         Self {
             lock: Lock::Unlock,
@@ -87,15 +87,12 @@ impl Parameters {
         }
     }
 
-    /// Reads them.
-    ///
-    /// # Errors
-    /// When they are too short.
+    /// Decodes the parameters.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let Some((&[station, first, second, min_tsdr, high, low, groups], user)) = data.split_first_chunk() else {
             return Err(WireError::short("parameters", 0, FIXED, data.len()));
         };
-        // Unlock wins over lock.
+        // Unlock has priority over lock.
         let lock = match station & 0xC0 {
             0 => Lock::Unchanged,
             0x80 => Lock::Lock,
@@ -119,7 +116,7 @@ impl Parameters {
         })
     }
 
-    /// Their bytes.
+    /// Encodes the parameters.
     pub fn emit(&self) -> Vec<u8> {
         let lock = match self.lock {
             Lock::Unchanged => 0,
@@ -136,28 +133,25 @@ impl Parameters {
     }
 }
 
-/// What all slaves of some groups are told at once.
+/// Command to all slaves of some groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct GlobalControl {
     bits: u8,
-    /// A bit for each group; 0 for all slaves.
+    /// One bit per group; 0 means all slaves.
     pub groups: u8,
 }
 
-/// What the bits of a control are called.
+/// Names of the command bits.
 const CONTROLS: [(u8, &str); 5] =
     [(0x02, "clear"), (0x04, "unfreeze"), (0x08, "freeze"), (0x10, "unsync"), (0x20, "sync")];
 
 impl GlobalControl {
-    /// Outputs are meant.
+    /// Operate: the outputs are valid.
     pub const OPERATE: Self = Self { bits: 0, groups: 0 };
-    /// Outputs are 0.
+    /// Clear: the outputs are 0.
     pub const CLEAR: Self = Self { bits: 0x02, groups: 0 };
 
-    /// Reads one.
-    ///
-    /// # Errors
-    /// When it has not two bytes.
+    /// Decodes a command.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         match *data {
             [bits, groups] => Ok(Self { bits, groups }),
@@ -165,12 +159,12 @@ impl GlobalControl {
         }
     }
 
-    /// Its bytes.
+    /// Encodes the command.
     pub const fn emit(self) -> [u8; 2] {
         [self.bits, self.groups]
     }
 
-    /// Whether outputs become 0.
+    /// Whether it clears the outputs.
     pub const fn is_clear(self) -> bool {
         self.bits & 0x02 != 0
     }

@@ -1,32 +1,32 @@
-//! Telegrams out of a stream of characters, with noise between them.
+//! Splitter of a character stream into telegrams and noise.
 
 use super::{Parsed, Telegram, WireError};
 
-/// Most bytes that are kept: more than the longest telegram has.
+/// Buffer limit, larger than the longest telegram.
 const MOST_KEPT: usize = 512;
 
-/// What comes out of a stream.
+/// A piece of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Piece {
     /// A telegram, with its bytes.
     Telegram(Telegram, Vec<u8>),
-    /// A byte that begins none, and why.
+    /// A byte that begins no telegram, and the reason.
     Noise(u8, WireError),
 }
 
-/// Puts telegrams together. After noise it goes on with the next byte that may begin a telegram.
+/// The splitter. After noise, it continues with the next byte that can begin a telegram.
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     bytes: Vec<u8>,
 }
 
 impl Stream {
-    /// Takes what has arrived; take the pieces out before the next time.
+    /// Adds received bytes. Take all pieces out before the next call.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// The next piece, if one is complete.
+    /// Returns the next complete piece.
     pub fn next_piece(&mut self) -> Option<Piece> {
         if self.bytes.is_empty() {
             return None;
@@ -42,7 +42,7 @@ impl Stream {
         }
     }
 
-    /// How many bytes are missing of the telegram that has begun, as far as can be told; 0 when none has begun.
+    /// Number of bytes that the current telegram still needs, as far as known; 0 if none has begun.
     pub fn missing(&self) -> usize {
         if self.bytes.is_empty() {
             return 0;
@@ -53,12 +53,12 @@ impl Stream {
         }
     }
 
-    /// Whether a telegram has begun.
+    /// Whether no telegram has begun.
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// Forgets what has begun, as after a pause: no telegram has one inside.
+    /// Drops a partial telegram, for example after a pause: telegrams have no pauses.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }

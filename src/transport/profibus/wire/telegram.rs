@@ -1,4 +1,4 @@
-//! Telegrams (part 4, section 4.6).
+//! Codec for telegrams (part 4, section 4.6).
 
 use super::{Control, Problem, WireError};
 
@@ -8,68 +8,68 @@ const SD3: u8 = 0xA2;
 const SD4: u8 = 0xDC;
 const SC: u8 = 0xE5;
 const ED: u8 = 0x16;
-/// Set in an address that has a service access point behind it.
+/// Address bit: a service access point follows.
 const EXTENDED: u8 = 0x80;
-/// Address, address and function code.
+/// Destination, source and function code.
 const HEADER: usize = 3;
-/// Bytes of data in a telegram of fixed length.
+/// Data bytes of a fixed-length telegram.
 const FIXED: usize = 8;
-/// Largest and smallest length that a telegram of variable length says.
+/// Valid length fields of a variable-length telegram.
 const LENGTHS: std::ops::RangeInclusive<u8> = 4..=249;
-/// The field of an error: the first byte begins no telegram.
+/// Field name in an error: the first byte begins no telegram.
 pub const START: &str = "start delimiter";
-/// The field of an error: a telegram whose bytes do not add up.
+/// Field name in an error: the checksum is wrong.
 pub const CHECKSUM: &str = "frame check sequence";
-/// Most bytes that a telegram carries beside service access points, when it has them.
+/// Most data bytes of a telegram with service access points.
 pub const MAX_DATA: usize = 244;
 
 /// A telegram.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Telegram {
-    /// The right to send goes to a master.
+    /// A token: the right to send.
     Token {
-        /// Who has it next.
+        /// New owner of the token.
         to: u8,
-        /// Who had it.
+        /// Sender.
         from: u8,
     },
-    /// An answer that says no more than that all is well.
+    /// Short acknowledgement: a positive answer without content.
     ShortAcknowledge,
-    /// All others.
+    /// A frame with a function code.
     Frame(Frame),
 }
 
 /// A telegram with a function code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Where it goes: 0 to 125, or 127 for all.
+    /// Destination: 0 to 125, or 127 for all.
     pub to: u8,
-    /// Who sends it.
+    /// Source.
     pub from: u8,
-    /// What it is for.
+    /// Function code.
     pub control: Control,
-    /// Service access point there.
+    /// Destination service access point.
     pub to_sap: Option<u8>,
-    /// Service access point here.
+    /// Source service access point.
     pub from_sap: Option<u8>,
-    /// What it carries.
+    /// Data.
     pub data: Vec<u8>,
 }
 
-/// What bytes begin with.
+/// Result of decoding the start of a buffer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Parsed {
-    /// A telegram, with its length.
+    /// A telegram and its length.
     Whole(Telegram, usize),
-    /// The beginning of one, which has this many bytes at least.
+    /// A partial telegram and its minimum length.
     Part(usize),
 }
 
 impl Frame {
-    /// Its bytes; eight bytes of data go in the form of variable length, too.
+    /// Encodes the frame. Eight data bytes also use the variable-length form.
     ///
     /// # Panics
-    /// When there is more data than [`MAX_DATA`]; whoever builds frames bounds it.
+    /// If the data is longer than [`MAX_DATA`]. Callers limit it.
     pub fn emit(&self) -> Vec<u8> {
         assert!(self.data.len() <= MAX_DATA, "data of telegrams is bounded where they are built");
         let extended = |address: u8, sap: Option<u8>| address | if sap.is_some() { EXTENDED } else { 0 };
@@ -91,7 +91,7 @@ impl Frame {
 }
 
 impl Telegram {
-    /// Its bytes.
+    /// Encodes the telegram.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Self::Token { to, from } => vec![SD4, *to, *from],
@@ -100,10 +100,10 @@ impl Telegram {
         }
     }
 
-    /// The telegram that bytes begin with.
+    /// Decodes the telegram at the start of a buffer.
     ///
     /// # Errors
-    /// When they do not begin with one.
+    /// The buffer does not start with a telegram.
     pub fn parse(bytes: &[u8]) -> Result<Parsed, WireError> {
         let Some(start) = bytes.first() else { return Ok(Parsed::Part(1)) };
         match *start {
@@ -134,7 +134,7 @@ impl Telegram {
     }
 }
 
-/// A telegram with a body of this length at this place.
+/// Decodes a frame with a body of `len` bytes at `at`.
 fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
     let whole = at + len + 2;
     let Some(&[fcs, end]) = bytes.get(at + len..whole) else { return Ok(Parsed::Part(whole)) };

@@ -1,4 +1,4 @@
-//! Bytes that two independent codecs have read, a third codec beside ours, and bytes that are nothing at all.
+//! Tests with bytes that two independent codecs decoded, with a third codec, and with random bytes.
 
 use std::time::Duration;
 
@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::testing::hex;
 
-/// A start of master 2 with slave 5, whose ident number is made up: who sends, bytes, service access point, data. Each
-/// line was read by two independent codecs.
+/// Start of master 2 with slave 5: sender, bytes, service access point, data. The ident number is invented. Two
+/// independent codecs decoded each line.
 const START: [(u8, &str, Option<u8>, &str); 21] = [
     (2, "10 05 02 49 50 16", None, ""),
     (5, "10 02 05 00 07 16", None, ""),
@@ -70,7 +70,7 @@ fn control_codes_are_those_of_the_standard() {
     assert_eq!(Control::Answer(Station::MasterInRing, Status::Ok).byte(), 0x30);
     for byte in 0..=255 {
         if let Ok(control) = Control::parse(byte, 0) {
-            // FCB without FCV comes back as it is; nothing else is lost.
+            // FCB without FCV is kept as well.
             assert_eq!(control.byte(), byte);
         }
     }
@@ -118,7 +118,7 @@ fn a_diagnosis_reads_in_words() {
 
 #[test]
 fn identifiers_add_up_to_the_image_in_every_form() {
-    // Two modules each way, both ways at once, one special identifier of words, and of bytes.
+    // Two modules per direction, both directions in one, one special identifier of words, one of bytes.
     for (text, modules) in [
         ("5F 57 6F 67", 4),
         ("DF D7 EF E7", 4),
@@ -154,7 +154,7 @@ fn watchdogs_are_products() {
 #[test]
 fn noise_does_not_hide_a_telegram() {
     let telegram = hex("68 05 05 68 85 82 6D 3C 3E EE 16");
-    // A start that goes on wrongly, then one that has a wrong check sum.
+    // A start byte without a telegram, then a telegram with a wrong checksum.
     let mut bytes = hex("68 68 10 05 02 49 51 16 00 DC FF");
     bytes.extend(&telegram);
     let mut stream = Stream::default();

@@ -1,26 +1,27 @@
-//! The controller's side of alarms: takes each once, acknowledges it twice (the frame, and the alarm), repeats its own.
+//! Alarm state machine of the controller. It delivers each alarm once, acknowledges twice (the frame and the alarm),
+//! and repeats its own frames.
 
 use std::time::Duration;
 
 use super::super::Now;
 use super::super::wire::alarm::{self, Notification, Pdu, Priority, Rta};
 
-/// How long to wait for an acknowledgement.
+/// Time limit for an acknowledgement.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// How often to repeat.
+/// Number of repetitions.
 const RETRIES: u32 = 3;
-/// Acknowledgements that wait for their turn; a device has one alarm on its way in each channel.
+/// Limit of queued acknowledgements. A device has one unacknowledged alarm per channel.
 const MOST: usize = 8;
 
-/// One channel.
+/// One alarm channel.
 #[derive(Debug)]
 struct Channel {
     priority: Priority,
-    /// The number of the last frame of ours; before the first one [`alarm::NONE`].
+    /// Sequence number of our last frame; [`alarm::NONE`] before the first.
     sent: u16,
-    /// The number of the device's last frame; likewise.
+    /// Sequence number of the device's last frame; [`alarm::NONE`] before the first.
     received: u16,
-    /// What is not acknowledged yet.
+    /// Frame that waits for its acknowledgement.
     pending: Option<Pending>,
     waiting: Vec<Vec<u8>>,
 }
@@ -32,7 +33,7 @@ struct Pending {
     repeats: u32,
 }
 
-/// Both channels of a connection.
+/// Both alarm channels of a connection.
 #[derive(Debug)]
 pub struct Alarms {
     ours: u16,
@@ -40,19 +41,19 @@ pub struct Alarms {
     channels: [Channel; 2],
 }
 
-/// What came of a frame.
+/// Result of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Heard {
-    /// Nothing that concerns others.
+    /// Nothing to report.
     Nothing,
     /// A new alarm.
     Alarm(Notification),
-    /// The end of the connection.
+    /// The device has closed the connection.
     Error(u32),
 }
 
 impl Alarms {
-    /// The channels of a connection, by the numbers that both ends gave it.
+    /// Creates the channels with the alarm references of both sides.
     pub fn new(ours: u16, theirs: u16) -> Self {
         let channel = |priority| Channel {
             priority,
@@ -64,7 +65,7 @@ impl Alarms {
         Self { ours, theirs, channels: Priority::ALL.map(channel) }
     }
 
-    /// A frame came. What is to be sent is put behind `out`, each with its channel.
+    /// Handles a frame. Frames to send are appended to `out` with their channel.
     pub fn handle(
         &mut self,
         now: Now,
@@ -110,7 +111,7 @@ impl Alarms {
         }
     }
 
-    /// What is due by the clock; whether an acknowledgement of ours was given up.
+    /// Repeats frames that timed out. Returns whether an acknowledgement was given up.
     pub fn poll(&mut self, now: Now, out: &mut Vec<(Priority, Vec<u8>)>) -> bool {
         let (ours, theirs) = (self.ours, self.theirs);
         let mut is_lost = false;
@@ -129,12 +130,12 @@ impl Alarms {
         is_lost
     }
 
-    /// When something is due by the clock.
+    /// Time of the next [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         self.channels.iter().filter_map(|channel| channel.pending.as_ref()).map(|pending| pending.deadline).min()
     }
 
-    /// The frame that ends the connection.
+    /// Frame that closes the connection.
     pub fn error(&self, status: u32) -> (Priority, Vec<u8>) {
         let low = &self.channels[1];
         (low.priority, low.frame(self.ours, self.theirs, Pdu::Error(status)))
@@ -153,7 +154,7 @@ impl Channel {
         }
     }
 
-    /// Sends what waits, if nothing is on its way.
+    /// Sends the next queued frame if none is in transit.
     fn next(&mut self, now: Now, ours: u16, theirs: u16, out: &mut Vec<(Priority, Vec<u8>)>) {
         if self.pending.is_some() || self.waiting.is_empty() {
             return;
@@ -184,7 +185,7 @@ mod tests {
         (heard, out.into_iter().map(|(_, bytes)| bytes).collect())
     }
 
-    /// notes, alarms: what was sent to a device, byte for byte.
+    /// notes, alarms: bytes that were sent to a device.
     #[test]
     fn an_alarm_is_acknowledged_as_seen_and_told_once() {
         let mut alarms = Alarms::new(1, 0);

@@ -1,4 +1,4 @@
-//! What a device answers to the calls of a connection, and what it calls itself.
+//! Answers of the device to the calls of a connection, and calls of the device.
 
 use std::net::SocketAddrV4;
 
@@ -23,12 +23,12 @@ const PRM_END: &str = "PrmEnd";
 const RELEASE: &str = "Release";
 
 impl Controller {
-    /// A call is over.
+    /// Handles the outcome of a call.
     pub(super) fn answered(&mut self, now: Now, outcome: Outcome) {
         if let Phase::Releasing(trouble) = &self.phase {
             let trouble = trouble.clone();
             let failed = match outcome.blocks(RELEASE) {
-                // It had ended before.
+                // The connection was closed before.
                 Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
             };
@@ -43,7 +43,7 @@ impl Controller {
         };
         match done {
             Ok(()) => {}
-            // The device has no connection that could be released.
+            // The device has no connection to release.
             Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
                 if step == Step::Connect =>
             {
@@ -105,7 +105,7 @@ impl Controller {
             consumer: Consumer::new(&self.settings),
             alarms: Alarms::new(ar.reference, alarm),
         });
-        // The first frame goes before anything else: some devices are in a hurry.
+        // The first cyclic frame has priority, because some devices have short time limits.
         self.produce(now);
         self.write_parameters(now);
         Ok(())
@@ -139,7 +139,7 @@ impl Controller {
         Ok(())
     }
 
-    /// The device calls: it is ready.
+    /// Handles a call of the device: ApplicationReady.
     pub(super) fn called(&mut self, now: Now, from: SocketAddrV4, datagram: &Datagram<'_>) {
         let header = &datagram.header;
         if header.interface != rpc::CONTROLLER || header.operation != operation::CONTROL {
@@ -149,7 +149,7 @@ impl Controller {
         let Ok(blocks) = block::walk(call.blocks) else { return };
         let Some(Ok(control)) = blocks.first().map(Control::parse) else { return };
         let Some(ar) = &mut self.ar else { return };
-        // Only in a connection that has got so far.
+        // Only valid after Connect.
         let is_ready = matches!(control.kind, BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY);
         let fits = control.ar == ar.uuid && control.session_key == ar.session_key;
         if !is_ready || !fits || ar.io.is_none() {
@@ -171,7 +171,7 @@ impl Controller {
         if !mismatches.is_empty() {
             return self.release(now, Some(ProfinetError::Modules(mismatches)));
         }
-        // It may come before the answer to PrmEnd, which then is not waited for.
+        // It can arrive before the answer to PrmEnd, which is then ignored.
         if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {
             self.await_data(now);
         }

@@ -1,4 +1,4 @@
-//! Calls to a device: one at a time, repeated where that does no harm, answers put together from fragments.
+//! RPC client of a device: one call at a time, repeated where that is harmless, with reassembly of answers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -9,29 +9,29 @@ use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, Reply, flag};
 use super::super::wire::status::Status;
 use super::super::wire::{ByteOrder, Uuid, WireError};
 
-/// How long to wait for an answer.
+/// Time limit for an answer.
 pub const PATIENCE: Duration = Duration::from_secs(2);
-/// How often a device may say that it is still at it.
+/// Limit of "working" messages of a device during a call.
 const MOST_WORKING: u32 = 5;
 
-/// What came of a call.
+/// Outcome of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// The device answered with this status and these blocks.
+    /// Status and blocks of the answer.
     Answer(u32, Vec<u8>),
-    /// Its RPC server did not take the call.
+    /// The RPC server rejected the call.
     Rejected(u32),
-    /// What it answered cannot be read.
+    /// The answer cannot be decoded.
     Malformed(WireError),
-    /// It did not answer in all this time.
+    /// No answer within this time.
     Silent(Duration),
 }
 
 impl Outcome {
-    /// The blocks of the answer.
+    /// Blocks of a positive answer.
     ///
     /// # Errors
-    /// When it is not the answer that was hoped for.
+    /// Any other outcome.
     pub fn blocks(self, what: &'static str) -> Result<Vec<u8>, ProfinetError> {
         match self {
             Self::Answer(0, blocks) => Ok(blocks),
@@ -43,16 +43,16 @@ impl Outcome {
     }
 }
 
-/// What to send, or what came.
+/// An action for the driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
     /// Send this to the device.
     Send(Vec<u8>),
-    /// The call is over.
+    /// The call is complete.
     Done(Outcome),
 }
 
-/// The calling side.
+/// An RPC client.
 #[derive(Debug)]
 pub struct Client {
     object: Uuid,
@@ -73,12 +73,12 @@ struct Pending {
 }
 
 impl Client {
-    /// A client of the device with this object, under an activity of its own.
+    /// Creates a client for the device with this object UUID. `activity` is its own UUID.
     pub fn new(object: Uuid, activity: Uuid) -> Self {
         Self { object, activity, sequence: 0, pending: None }
     }
 
-    /// Calls; what was asked before is forgotten. The same bytes go out `tries` times at most.
+    /// Starts a call. An earlier call is dropped. The same bytes are sent at most `tries` times.
     pub fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) -> Vec<u8> {
         let body = Call { room: rpc::ROOM, blocks }.emit(ByteOrder::Big);
         let header = Header {
@@ -107,17 +107,17 @@ impl Client {
         bytes
     }
 
-    /// Whether an answer is awaited.
+    /// Whether a call waits for its answer.
     pub const fn is_busy(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// When something is due by the clock.
+    /// Time of the next [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         self.pending.as_ref().map(|pending| pending.deadline)
     }
 
-    /// What is due by the clock.
+    /// Returns what is due: a repetition, or the failure of the call.
     pub fn poll(&mut self, now: Now) -> Option<Step> {
         let pending = self.pending.as_mut().filter(|pending| pending.deadline <= now)?;
         if pending.tries == 0 {
@@ -130,7 +130,7 @@ impl Client {
         Some(Step::Send(pending.bytes.clone()))
     }
 
-    /// A datagram came from the device that is no call. What is not the answer that is awaited is nothing.
+    /// Handles a datagram of the device that is not a call. Anything but the pending answer is ignored.
     pub fn handle(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let is_awaited = header.activity == self.activity && header.sequence == self.sequence.wrapping_sub(1);
@@ -155,7 +155,7 @@ impl Client {
         step.or_else(|| self.whole())
     }
 
-    /// The answer, once all its fragments are there.
+    /// Returns the answer if all fragments have arrived.
     fn whole(&mut self) -> Option<Step> {
         let pending = self.pending.as_ref()?;
         let last = pending.last?;
@@ -179,14 +179,14 @@ impl Client {
 }
 
 impl Pending {
-    /// Keeps a fragment, and acknowledges it where that is wanted.
+    /// Stores a fragment, and acknowledges it if the device requires that.
     fn collect(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let there: usize = self.fragments.values().map(Vec::len).sum();
         if there + datagram.body.len() > rpc::MOST {
             return None;
         }
-        // Its order stands before it: all fragments of an answer have the same.
+        // The byte order goes first. It is the same in all fragments of an answer.
         let mut bytes = vec![u8::from(header.order == ByteOrder::Little)];
         bytes.extend_from_slice(datagram.body);
         self.fragments.insert(header.fragment, bytes);

@@ -1,4 +1,4 @@
-//! Cyclic frames: what goes out on time, and what of what comes is an image.
+//! Producer and consumer of cyclic frames.
 
 use super::super::Now;
 use super::super::error::Unusable;
@@ -6,7 +6,7 @@ use super::super::layout::{Direction, FrameLayout, Layout};
 use super::super::settings::{SEND_CLOCK, Settings, swap};
 use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
 
-/// Sends.
+/// Sender of cyclic frames.
 #[derive(Debug, Clone)]
 pub struct Producer {
     frame: FrameLayout,
@@ -15,14 +15,14 @@ pub struct Producer {
     counter: u16,
     due: Now,
     swapped: usize,
-    /// Frames that left.
+    /// Frames sent.
     pub sent: u64,
-    /// Frames that should have left while nobody looked at the clock.
+    /// Frames omitted because their time was missed.
     pub skipped: u64,
 }
 
 impl Producer {
-    /// Sends from `now` on.
+    /// Starts at `now`.
     pub fn new(settings: &Settings, now: Now) -> Self {
         let step = SEND_CLOCK * settings.ratio().unwrap_or(1);
         Self {
@@ -37,12 +37,12 @@ impl Producer {
         }
     }
 
-    /// When the next frame is due.
+    /// Time of the next frame.
     pub const fn wake(&self) -> Now {
         self.due
     }
 
-    /// What a frame carries, if one is due. What was missed is left out, and counted: frames never come in a burst.
+    /// Returns the payload of a frame, if one is due. Missed frames are omitted and counted, so there is no burst.
     pub fn poll(&mut self, now: Now, image: &[u8]) -> Option<Vec<u8>> {
         if now < self.due {
             return None;
@@ -51,7 +51,7 @@ impl Producer {
         let periods = u32::try_from(periods).unwrap_or(u32::MAX - 1);
         self.skipped += u64::from(periods);
         self.due += self.period.saturating_mul(periods + 1);
-        // The lower half is what counts of it.
+        // The cycle counter has 16 bits.
         let [.., high, low] = periods.to_be_bytes();
         let steps = u16::from_be_bytes([high, low]).wrapping_add(1);
         self.counter = self.counter.wrapping_add(self.step.wrapping_mul(steps));
@@ -79,42 +79,42 @@ impl Producer {
     }
 }
 
-/// What a frame was.
+/// Result of a received frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is not one that is expected, or older than the last.
+    /// Unexpected, or older than the last one.
     Stale,
-    /// It says that the device is there, but its data cannot be used.
+    /// The device is alive, but its data is not usable.
     Unusable(Unusable),
     /// An image.
     Image(Vec<u8>),
 }
 
-/// Takes.
+/// Receiver of cyclic frames.
 #[derive(Debug, Clone)]
 pub struct Consumer {
     frame: FrameLayout,
-    /// Which submodules must take what they are sent: those with data.
+    /// Submodules whose consumer status must be good: those with output data.
     fed: Vec<bool>,
     last: Option<u16>,
     swapped: usize,
-    /// When the last frame came.
+    /// Time of the last frame.
     pub heard: Option<Now>,
-    /// Frames that were taken.
+    /// Frames accepted.
     pub received: u64,
-    /// Frames that were not.
+    /// Frames rejected.
     pub stale: u64,
 }
 
 impl Consumer {
-    /// Takes frames of the device.
+    /// Creates a consumer without a frame yet.
     pub fn new(settings: &Settings) -> Self {
         let frame = settings.layout.frame(Direction::Input);
         let fed = frame.consumers.iter().map(|place| is_fed(&settings.layout, place.slot, place.subslot)).collect();
         Self { frame, fed, last: None, swapped: settings.swapped, heard: None, received: 0, stale: 0 }
     }
 
-    /// A frame with the right id came from the device.
+    /// Handles a frame with the correct frame id.
     pub fn handle(&mut self, now: Now, payload: &[u8]) -> Verdict {
         let cyclic = Cyclic::parse(payload, usize::from(self.frame.length));
         let Some(cyclic) = cyclic.ok().filter(|cyclic| self.last.is_none_or(|last| cyclic.is_after(last))) else {
@@ -139,7 +139,7 @@ impl Consumer {
         for (place, length) in &self.frame.objects {
             let (at, length) = (usize::from(place.offset), usize::from(*length));
             if !is_good(at + length) {
-                // A head without data may say what it likes.
+                // The status of a submodule without data does not matter.
                 if length == 0 {
                     continue;
                 }

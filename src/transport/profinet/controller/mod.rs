@@ -1,9 +1,9 @@
-//! The controller's end of a connection: finds the device, connects, sends and takes images, notices its loss, opens it
-//! again. Without sockets and without a clock.
+//! PROFINET controller of one connection: finds the device, connects, exchanges images, detects a loss, connects again.
+//! It has no sockets and no clock.
 //!
-//! Every time that data can be used for the first time is a generation. What is to be sent names the generation it is
-//! meant for: after a loss the device gets the resting image until somebody who knows of the loss says otherwise. So
-//! nothing that was meant for the time before can happen a second time.
+//! Each time that the data becomes usable, a new generation starts, and every image to send names its generation. After
+//! a loss, the device gets the resting image until a caller that has seen the loss sets another. Therefore no image
+//! from before a loss is sent again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -34,25 +34,25 @@ mod open;
 mod resolve;
 pub mod view;
 
-/// Waits before another try, one after the other; the last one again and again.
+/// Pauses before another attempt. The last one repeats.
 const BACKOFF: [Duration; 4] =
     [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(4), Duration::from_secs(8)];
-/// How long the connection of a process that died may live on in a device.
+/// Lifetime of a connection in the device after its process died.
 const OLD_CONNECTION: Duration = Duration::from_secs(2);
-/// How often to wait for that.
+/// Number of waits for such a connection.
 const OLD_TRIES: usize = 3;
-/// How long a device may take for its start, and for its first usable data.
+/// Time limit for the start of a device, and for its first usable data.
 const START: Duration = Duration::from_secs(20);
-/// Reasons of errors that are sent.
+/// Reason codes of abort messages.
 const WATCHDOG: u8 = 0x05;
 const ALARM_LOST: u8 = 0x08;
 const ABORTED: u8 = 0x0D;
-/// Reason of an error that a device ends a release with.
+/// Reason code with which a device confirms a release.
 const RELEASED: u8 = 0x0F;
-/// Alarms that nobody took.
+/// Limit of alarms in the queue.
 const MOST_ALARMS: usize = 64;
 
-/// What is to be done.
+/// An action for the driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Action {
     /// Send this Ethernet frame.
@@ -61,12 +61,12 @@ pub enum Action {
     Datagram(SocketAddrV4, Vec<u8>),
 }
 
-/// Where the controller is.
+/// Local addresses of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Here {
-    /// Its card.
+    /// MAC address.
     pub mac: Mac,
-    /// Its address and network.
+    /// IP address and network.
     pub ip: IpSuite,
 }
 
@@ -76,19 +76,19 @@ enum Phase {
     New,
     Resolve(resolve::Search),
     Address(resolve::Address),
-    /// A call of the opening is on its way, or the device is to call.
+    /// A call of the opening is in progress, or the device must call.
     Opening,
-    /// Usable data is to come until then.
+    /// Waiting for usable data until this time.
     WaitingForData(Now),
     Data,
-    /// Release is on its way; then all ends, or it is opened again because of the trouble.
+    /// Release was called. Then the connection ends, or opens again after the error.
     Releasing(Option<ProfinetError>),
-    /// Until the next try.
+    /// Waiting until the next attempt.
     Waiting(Now),
     Ended,
 }
 
-/// What belongs to one try of a connection.
+/// Application relation (AR): one attempt of a connection.
 #[derive(Debug)]
 struct Ar {
     uuid: Uuid,
@@ -97,10 +97,10 @@ struct Ar {
     input_id: u16,
     client: Client,
     step: Step,
-    /// When the device must have called ApplicationReady.
+    /// Time limit for ApplicationReady.
     ready_until: Now,
     is_ready: bool,
-    /// From the answer to Connect on.
+    /// Set by the answer to Connect.
     io: Option<Io>,
 }
 
@@ -112,7 +112,7 @@ struct Io {
     alarms: Alarms,
 }
 
-/// A connection.
+/// A connection to a device.
 #[derive(Debug)]
 pub struct Controller {
     settings: Settings,
@@ -123,9 +123,9 @@ pub struct Controller {
     device: Option<Device>,
     image: Vec<u8>,
     revision: u64,
-    /// Whether it is to end as soon as it can.
+    /// The caller has closed the connection.
     is_over: bool,
-    /// Tries since data was last good.
+    /// Attempts since the data was last good.
     tries: usize,
     before: Statistics,
     view: View,
@@ -135,10 +135,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A connection from `here`.
-    ///
-    /// # Errors
-    /// If no connection can be as `settings` say.
+    /// Creates a connection.
     pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
         settings.check()?;
         Ok(Self {
@@ -160,7 +157,7 @@ impl Controller {
         })
     }
 
-    /// What there is to see now.
+    /// Current state.
     pub fn view(&self) -> View {
         let mut view = self.view.clone();
         view.details.device.clone_from(&self.device);
@@ -168,7 +165,7 @@ impl Controller {
         view
     }
 
-    /// What was counted until now.
+    /// Current counters.
     pub fn statistics(&self) -> Statistics {
         let mut all = self.before;
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
@@ -180,31 +177,31 @@ impl Controller {
         all
     }
 
-    /// What the connection is to be.
+    /// Settings of the connection.
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Whether there is something new to see since this was last asked.
+    /// Whether the view changed since the last call.
     pub const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.has_changed, false)
     }
 
-    /// An alarm that came, each once. Those that nobody takes are forgotten, the oldest first.
+    /// Returns the next alarm. If nobody takes them, the oldest ones are dropped.
     pub fn take_alarm(&mut self) -> Option<Notification> {
         self.alarms.pop_front()
     }
 
-    /// Whether all has ended and nothing is left to do.
+    /// Whether the connection has ended and no action is left.
     pub fn is_finished(&self) -> bool {
         matches!(self.phase, Phase::Ended) && self.actions.is_empty()
     }
 
-    /// Sends this image from the next cycle on, and says which change it was: it has gone out when the view's `sent` is
-    /// as high.
+    /// Sends this image from the next cycle on. Returns the number of the change. It was sent when `sent` of the view
+    /// has reached that number.
     ///
     /// # Errors
-    /// If the connection is not up in this generation, or the image has another size.
+    /// The connection is not open in this generation, or the image has another size.
     pub fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
         self.view.check(generation)?;
         if image.len() != self.image.len() {
@@ -216,7 +213,7 @@ impl Controller {
         Ok(self.revision)
     }
 
-    /// Ends the connection: the resting image, and a release while frames go on until it is answered.
+    /// Closes the connection: the resting image, then a release. Cyclic frames continue until its answer.
     pub fn close(&mut self, now: Now) {
         if std::mem::replace(&mut self.is_over, true) {
             return;
@@ -229,13 +226,13 @@ impl Controller {
         }
     }
 
-    /// Something that was to be done on a local socket did not work. The connection lives on as long as it can.
+    /// An action on a local socket failed. The connection continues until it times out.
     pub fn failed(&mut self, trouble: ProfinetError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
     }
 
-    /// When something is due by the clock.
+    /// Time of the next [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         if !self.actions.is_empty() {
             return Some(Now::ZERO);
@@ -261,13 +258,13 @@ impl Controller {
         [ready, io, ar.client.wake()].into_iter().flatten().min()
     }
 
-    /// When the device will have been silent for too long; it need not send before it is ready.
+    /// Time when the watchdog expires. A device does not have to send before it is ready.
     fn watchdog(&self, io: &Io) -> Option<Now> {
         let is_on = matches!(self.phase, Phase::Data | Phase::WaitingForData(_));
         io.consumer.heard.filter(|_| is_on).map(|heard| heard + self.settings.watchdog_time())
     }
 
-    /// What is to be done now.
+    /// Returns the next action at `now`.
     pub fn poll(&mut self, now: Now) -> Option<Action> {
         if self.actions.is_empty() {
             self.tick(now);
@@ -311,7 +308,6 @@ impl Controller {
         }
     }
 
-    /// Sends a cyclic frame if one is due.
     fn produce(&mut self, now: Now) {
         let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
         let Some(payload) = io.producer.poll(now, &self.image) else { return };
@@ -350,7 +346,7 @@ impl Controller {
         self.actions.push_back(Action::Datagram(SocketAddrV4::new(device.address, PORT), bytes));
     }
 
-    /// A frame came.
+    /// Handles a received frame.
     pub fn frame(&mut self, now: Now, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
         match frame.id {
@@ -366,7 +362,7 @@ impl Controller {
         }
     }
 
-    /// Whether a frame that came is one of this connection's.
+    /// Whether a frame belongs to this connection.
     pub fn concerns(&self, bytes: &[u8]) -> bool {
         let Ok(frame) = Frame::parse(bytes) else { return false };
         match &self.device {
@@ -392,7 +388,7 @@ impl Controller {
                 self.alarms.push_back(alarm);
                 self.before.alarms += 1;
                 self.has_changed = true;
-                // The device waits for its parameters anew: a new connection brings them.
+                // The device needs its parameters again. A new connection sends them.
                 if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
                     self.release(now, Some(ProfinetError::Plugged { slot }));
                 }
@@ -400,11 +396,11 @@ impl Controller {
         }
     }
 
-    /// The device ended the connection.
+    /// The device has closed the connection.
     fn aborted(&mut self, now: Now, status: Status) {
         let is_answer = status == Status::abort(RELEASED);
         if let Phase::Releasing(trouble) = &self.phase {
-            // Some devices say so before they answer.
+            // Some devices send this before they answer.
             let trouble = trouble.clone();
             let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
             self.released(now, trouble);
@@ -436,7 +432,7 @@ impl Controller {
                 self.view.input = Some(Input { image, at: now, generation: self.view.generation });
             }
             (Phase::Data, Verdict::Unusable(why)) => {
-                // What was meant for before must not go on by itself when data is good again.
+                // An image from before the fault must not become active by itself when the data is good again.
                 self.rest();
                 self.before.losses += 1;
                 self.phase = Phase::WaitingForData(now + START);
@@ -450,13 +446,13 @@ impl Controller {
         }
     }
 
-    /// From now on the device is sent the resting image, and shows nothing.
+    /// Switches to the resting image, and drops the input image.
     fn rest(&mut self) {
         self.image.clone_from(&self.settings.resting);
         self.view.input = None;
     }
 
-    /// A datagram came to UDP port 34964. Only the device's own are looked at.
+    /// Handles a datagram for UDP port 34964. Only datagrams of the device are accepted.
     pub fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
         let is_device = self.device.as_ref().is_some_and(|device| device.address == *from.ip());
         let Some(datagram) = Datagram::parse(bytes).ok().filter(|_| is_device) else { return };
@@ -472,7 +468,7 @@ impl Controller {
         }
     }
 
-    /// Ends the connection without a word of the device: it is told why.
+    /// Closes the connection with an abort message, without an answer.
     fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             let error = io.alarms.error(Status::abort(reason).0);
@@ -481,13 +477,13 @@ impl Controller {
         self.lost(now, trouble);
     }
 
-    /// The connection has ended. It is opened again, unless it is to end or never was up.
+    /// The connection has ended. It is opened again, except after a close or a failed first opening.
     fn lost(&mut self, now: Now, trouble: ProfinetError) {
         self.drop_ar();
         let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
         let wait = match self.view.generation {
             _ if self.is_over => return self.finish(Some(trouble)),
-            // The connection of a process of ours that died runs out by itself.
+            // The connection of a dead process of ours ends by its own timeout.
             0 if is_old && self.tries < OLD_TRIES => OLD_CONNECTION,
             0 => return self.finish(Some(trouble)),
             _ if is_old => OLD_CONNECTION,
@@ -499,7 +495,7 @@ impl Controller {
         self.show(if self.view.generation == 0 { State::Opening } else { State::Lost });
     }
 
-    /// Forgets the try, and keeps what it counted.
+    /// Drops the AR and keeps its counters.
     fn drop_ar(&mut self) {
         if self.view.state == State::Open {
             self.before.losses += 1;
@@ -530,17 +526,17 @@ impl Controller {
         }
     }
 
-    /// Words for the device in messages.
+    /// Name of the device in messages.
     fn station(&self) -> String {
         self.settings.station.to_string()
     }
 
-    /// The address of the device, if it is known.
+    /// IP address of the device, if known.
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.device.as_ref().map(|device| device.address)
     }
 
-    /// Its card.
+    /// MAC address of the device, if known.
     pub fn card(&self) -> Option<Mac> {
         self.device.as_ref().map(|device| device.mac)
     }

@@ -1,4 +1,4 @@
-//! Connect, and what follows it until data goes both ways; and the release.
+//! Opening of a connection: Connect, parameters, PrmEnd, ApplicationReady. Also its release.
 
 use super::super::Now;
 use super::super::error::ProfinetError;
@@ -15,13 +15,13 @@ use super::client::Client;
 use super::view::{State, Step};
 use super::{Ar, Controller, Phase, START};
 
-/// How long a device waits for the next step, in steps of 100 ms.
+/// Time limit of the device for the next step, in units of 100 ms.
 const ACTIVITY_TIMEOUT: u16 = 200;
-/// Calls other than Connect go out so often.
+/// Attempts of calls other than Connect.
 pub(super) const TRIES: u32 = 3;
 
 impl Controller {
-    /// Calls Connect, once: a second copy makes some devices begin anew.
+    /// Calls Connect only once, because a second copy makes some devices start again.
     pub(super) fn connect(&mut self, now: Now, instance: u16) {
         let Some(device) = &self.device else { return };
         let (vendor, kind) = device.id;
@@ -48,7 +48,6 @@ impl Controller {
         self.call(now, operation::CONNECT, &blocks, 1);
     }
 
-    /// The blocks of Connect.
     fn requests(&self) -> Vec<Request> {
         let Some(ar) = &self.ar else { return Vec::new() };
         let (properties, class) = match self.settings.startup {
@@ -106,7 +105,7 @@ impl Controller {
         self.send(bytes);
     }
 
-    /// Writes what is to be written, if anything.
+    /// Writes the parameter records, if there are any.
     pub(super) fn write_parameters(&mut self, now: Now) {
         if self.settings.parameters.is_empty() {
             return self.end_parameters(now);
@@ -116,7 +115,7 @@ impl Controller {
         self.call(now, operation::WRITE, &blocks, TRIES);
     }
 
-    /// Says that all is written; the device is to call back.
+    /// Calls PrmEnd. Then the device must call back.
     pub(super) fn end_parameters(&mut self, now: Now) {
         self.set_step(Step::PrmEnd);
         self.control(now, BlockType::PRM_END, operation::CONTROL);
@@ -128,7 +127,7 @@ impl Controller {
         self.call(now, operation, &block.emit(), TRIES);
     }
 
-    /// PrmEnd was answered: the device gets ready, unless it was already.
+    /// PrmEnd was answered. Waits for ApplicationReady, unless it has already arrived.
     pub(super) fn await_ready(&mut self, now: Now) {
         self.set_step(Step::Ready);
         if let Some(ar) = &mut self.ar {
@@ -139,21 +138,21 @@ impl Controller {
         }
     }
 
-    /// The device is ready: its data is to come.
+    /// The device is ready. Waits for its data.
     pub(super) fn await_data(&mut self, now: Now) {
         self.set_step(Step::Data);
         self.phase = Phase::WaitingForData(now + START);
-        // What came while it started says nothing about silence from now on.
+        // Frames from the start phase do not count for the watchdog.
         if let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) {
             io.consumer.heard = io.consumer.heard.map(|_| now);
         }
     }
 
-    /// Releases the connection, because of something or for good.
+    /// Releases the connection, after an error or finally.
     pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.rest();
         let tries = match trouble {
-            // It most likely has gone.
+            // The device is probably gone.
             Some(ProfinetError::NoAnswer { .. }) => 1,
             _ => TRIES,
         };
@@ -175,7 +174,7 @@ impl Controller {
         self.call(now, operation::RELEASE, &block.emit(), tries);
     }
 
-    /// The release is over.
+    /// The release is complete.
     pub(super) fn released(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.drop_ar();
         match trouble {

@@ -1,4 +1,4 @@
-//! Finds the device by its name or its card, and gives it an address where that is wanted.
+//! Name resolution: finds the device by name or MAC address, and sets its IP address if requested.
 
 use std::net::Ipv4Addr;
 use std::time::Duration;
@@ -12,16 +12,16 @@ use super::super::wire::frame::{Frame, id};
 use super::view::{Device, State, Step};
 use super::{Action, Controller, Phase};
 
-/// How long to wait for an answer, and how often.
+/// Time limit per attempt, and the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// After the first answer, for another device that has the same name.
+/// Wait after the first answer, to find a second device with the same name.
 const TWIN: Duration = Duration::from_millis(250);
-/// How often to look whether an address that was set is there, and for how long.
+/// Interval and time limit of the check that an address was applied.
 const LOOK: Duration = Duration::from_millis(100);
 const SETTLE: Duration = Duration::from_secs(5);
 
-/// Looks for the station.
+/// Search for the device.
 #[derive(Debug)]
 pub(super) struct Search {
     xid: u32,
@@ -42,7 +42,7 @@ impl Search {
     }
 }
 
-/// Gives it an address.
+/// Assignment of an IP address.
 #[derive(Debug)]
 pub(super) struct Address {
     found: Found,
@@ -50,7 +50,7 @@ pub(super) struct Address {
     xid: u32,
     tries: u32,
     until: Now,
-    /// Once it is set: until when it must be there.
+    /// After the Set answer: time limit for the address to be active.
     settle: Option<Now>,
 }
 
@@ -61,7 +61,6 @@ impl Address {
 }
 
 impl Controller {
-    /// Begins from the beginning.
     pub(super) fn resolve(&mut self, now: Now) {
         self.device = None;
         if self.view.generation == 0 {
@@ -87,7 +86,7 @@ impl Controller {
         self.actions.push_back(Action::Frame(frame.emit()));
     }
 
-    /// The time of the search is over: the station was found, or is looked for again.
+    /// The search has timed out: continues with the device found, or repeats the request.
     pub(super) fn search_on(&mut self, now: Now) {
         let Phase::Resolve(search) = &mut self.phase else { return };
         if let Some(found) = search.found.take() {
@@ -131,7 +130,7 @@ impl Controller {
         self.send_dcp(mac, id::DCP_GET_SET, &dcp);
     }
 
-    /// The address was not confirmed yet, or is not there yet.
+    /// Repeats a Set without an answer, or checks whether the address is active.
     pub(super) fn address_on(&mut self, now: Now) {
         const WHAT: &str = "DCP Set IP";
         let Phase::Address(address) = &mut self.phase else { return };
@@ -160,7 +159,7 @@ impl Controller {
         }
     }
 
-    /// A frame of DCP came that may be an answer.
+    /// Handles a DCP frame that can be an answer.
     pub(super) fn heard_dcp(&mut self, now: Now, frame: &Frame<'_>) {
         if frame.destination != self.here.mac {
             return;
@@ -188,7 +187,7 @@ impl Controller {
         }
         match &mut self.phase {
             Phase::Resolve(search) if dcp.xid == search.xid => match &search.found {
-                // There is no other one with its card.
+                // A MAC address is unique.
                 None if matches!(self.settings.station, Station::Mac(_)) => self.found(now, Found { mac, station }),
                 None => {
                     search.found = Some(Found { mac, station });
@@ -232,7 +231,7 @@ impl Controller {
         }
     }
 
-    /// The device is found, and has its address.
+    /// The device is found and has its address.
     fn located(&mut self, now: Now, found: &Found, address: Ipv4Addr) {
         let station = self.station();
         if found.station.ip.is_some_and(|(_, origin)| origin.is_in_conflict()) {

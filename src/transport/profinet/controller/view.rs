@@ -1,4 +1,4 @@
-//! What there is to see of a connection.
+//! State of a connection for callers.
 
 use std::net::Ipv4Addr;
 
@@ -7,65 +7,65 @@ use super::super::wire::Mac;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// What there is to see of a connection. There is an image of the device only while it is up.
+/// State of a connection. It has an input image only while it is open.
 pub type View = view::View<ProfinetError, Statistics, Details>;
-/// The same as it changes.
+/// Receiver of state changes.
 pub type Views = view::Views<ProfinetError, Statistics, Details>;
 
-/// How far the opening of a connection is.
+/// Step of the opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Step {
-    /// Looks for the station.
+    /// Looking for the station.
     Resolve,
-    /// Gives it an address.
+    /// Setting its IP address.
     Address,
-    /// Connect is on its way.
+    /// Connect was called.
     Connect,
-    /// Parameters are on their way.
+    /// Writing parameters.
     Parameters,
-    /// PrmEnd is on its way.
+    /// PrmEnd was called.
     PrmEnd,
-    /// The device is to call ApplicationReady.
+    /// Waiting for ApplicationReady.
     Ready,
-    /// Usable data is to come.
+    /// Waiting for usable data.
     Data,
 }
 
-/// Who the device is.
+/// The device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Device {
-    /// Its card.
+    /// MAC address.
     pub mac: Mac,
-    /// Its name.
+    /// Station name.
     pub name: String,
-    /// Its address.
+    /// IP address.
     pub address: Ipv4Addr,
-    /// Vendor and device.
+    /// Vendor id and device id.
     pub id: (u16, u16),
 }
 
-/// What was counted.
+/// Counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
-    /// Frames that left.
+    /// Frames sent.
     pub sent: u64,
-    /// Frames that should have left while the clock was not looked at.
+    /// Frames omitted because their time was missed.
     pub skipped: u64,
-    /// Frames that came.
+    /// Frames received.
     pub received: u64,
-    /// Frames that came twice, late, or out of order.
+    /// Frames that were duplicate, late, or out of order.
     pub stale: u64,
-    /// Alarms.
+    /// Alarms received.
     pub alarms: u64,
-    /// How often the connection was lost.
+    /// Number of losses.
     pub losses: u64,
 }
 
-/// What only PROFINET has to see.
+/// Details that only PROFINET has.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Details {
-    /// How far its opening is.
+    /// Step of the opening.
     pub step: Step,
-    /// The device, once it was found.
+    /// The device, once found.
     pub device: Option<Device>,
 }

@@ -1,4 +1,5 @@
-//! Alarms of the device, one channel like the other: sends, repeats, and ends the connection when nobody acknowledges.
+//! Alarm state machine of the simulated device: sends, repeats, and aborts the connection without an acknowledgement.
+//! Both channels work the same.
 
 use std::time::Duration;
 
@@ -7,11 +8,11 @@ use super::super::wire::alarm::{Acknowledgement, FIRST, NONE, Notification, Pdu,
 
 #[derive(Debug, Default)]
 struct Channel {
-    /// Frames of DATA that were sent, and taken.
+    /// Number of DATA frames sent and accepted.
     sent: u16,
     taken: u16,
     on_its_way: Option<(Notification, Now, u16)>,
-    /// The frame was acknowledged; the alarm is not, yet.
+    /// The frame was acknowledged, but not yet the alarm.
     is_framed: bool,
     waiting: Vec<Notification>,
 }
@@ -26,20 +27,20 @@ pub(super) struct Alarms {
     channels: [Channel; 2],
 }
 
-/// What came of a frame.
+/// Result of a frame.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Heard {
     Nothing,
-    /// What is to be sent, and the alarm that was noted.
+    /// Frames to send, and the alarm that was acknowledged.
     Noted(Vec<Vec<u8>>, Notification),
-    /// A repeated frame, which is acknowledged again.
+    /// Acknowledgement of a repeated frame.
     Again(Vec<u8>),
     Ended(u32),
-    /// It breaks the rules.
+    /// A protocol error.
     Wrong,
 }
 
-/// The number of the frame that was sent as the `count`th.
+/// Sequence number of frame number `count`.
 const fn number(count: u16) -> u16 {
     match count {
         0 => NONE,
@@ -48,7 +49,7 @@ const fn number(count: u16) -> u16 {
     }
 }
 
-/// One more, round to where the numbers begin again.
+/// Next count; wraps at the end of the sequence numbers.
 const fn next(count: u16) -> u16 {
     if number(count) == 0x7FFF { 2 } else { count + 1 }
 }
@@ -86,7 +87,7 @@ impl Alarms {
         self.channels.iter().filter_map(|channel| channel.on_its_way.as_ref()).map(|(_, due, _)| *due).min()
     }
 
-    /// Repeats what was not acknowledged; `None` when that was often enough.
+    /// Repeats unacknowledged frames; `None` after the last repetition.
     pub(super) fn poll(&mut self, now: Now) -> Option<Vec<(Priority, Vec<u8>)>> {
         let mut out = Vec::new();
         for (at, priority) in Priority::ALL.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A connection at the device: cyclic frames both ways, alarms, and what ends it.
+//! Connection at the simulated device: cyclic frames, alarms, timeouts.
 
 use std::net::SocketAddrV4;
 use std::time::Duration;
@@ -16,34 +16,34 @@ use super::super::wire::{ByteOrder, Mac, Uuid, block};
 use super::alarms::{Alarms, Heard};
 use super::{Action, Application, Device, Event, Fault};
 
-/// How often ApplicationReady is called, and how long each time is waited.
+/// Attempts of ApplicationReady, and the time limit of each.
 const READY_TRIES: u32 = 3;
 const READY_PATIENCE: Duration = Duration::from_secs(2);
-/// A count of the cycle counter.
+/// Unit of the cycle counter.
 const UNIT: Duration = Duration::from_nanos(31_250);
-/// Reasons that it ends connections with.
+/// Reason codes of aborts.
 const WATCHDOG: u8 = 5;
 const ACTIVITY: u8 = 6;
 const ALARM_LOST: u8 = 8;
 const WRONG_FRAME: u8 = 0x0C;
 const READY_UNANSWERED: u8 = 0x18;
 const ABORTED: u8 = 0x0D;
-/// How long all is well before something goes wrong once.
+/// Time before a one-time fault.
 const TROUBLE: Duration = Duration::from_secs(1);
-/// A diagnosis of a channel: that a line is broken, of the submodule as a whole.
+/// Channel diagnosis: line break, for the whole submodule.
 const CHANNEL: u16 = 0x8000;
 const LINE_BREAK: [u8; 6] = [0x80, 0, 0x28, 0, 0, 6];
-/// The first alarm, with a diagnosis of the submodule.
+/// First alarm with a diagnosis of the submodule.
 const APPEARS: u16 = 0xA800;
 
-/// How far it is.
+/// Stage of the connection.
 #[derive(Debug)]
 pub(super) enum Stage {
-    /// Until then a call must come.
+    /// Waiting for the next call until this time.
     Parameters(Now),
-    /// ApplicationReady is on its way: the next try, and how many are left.
+    /// ApplicationReady was called: time of the next attempt, attempts left, sequence number.
     Ready { due: Now, tries: u32, sequence: u32 },
-    /// Data goes both ways.
+    /// Data is exchanged in both directions.
     Running,
 }
 
@@ -62,9 +62,9 @@ pub(super) struct Ar {
     pub(super) activity_timeout: Duration,
     pub(super) due: Now,
     pub(super) counter: u16,
-    /// When something goes wrong that goes wrong once in a connection, if something is to.
+    /// Time of a fault that happens once per connection, if one is active.
     pub(super) trouble: Option<Now>,
-    /// The count and the moment of the last frame from the controller.
+    /// Cycle counter and time of the last frame from the controller.
     pub(super) heard: Option<(u16, Now)>,
 }
 
@@ -77,7 +77,7 @@ impl Ar {
         UNIT * u32::from(iocr.send_clock) * u32::from(iocr.ratio)
     }
 
-    /// When the controller will have been silent for too long; not before it sent for the first time.
+    /// Time when the watchdog expires; it starts with the first frame of the controller.
     fn watchdog(&self) -> Option<Now> {
         let time = Self::cycle(&self.output) * u32::from(self.output.watchdog);
         self.heard.map(|(_, at)| at + time)
@@ -120,7 +120,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// What goes wrong once in a connection.
+    /// Executes a fault that happens once per connection.
     fn make_trouble(&mut self, now: Now) {
         match self.fault {
             Some(Fault::Diagnosis) => {
@@ -151,7 +151,7 @@ impl<A: Application> Device<A> {
             }
         }
         let mut data = vec![0; usize::from(ar.input.length)];
-        // It says good only once it is ready.
+        // The provider status is good only when the device is ready.
         let is_good = ar.is_running() || matches!(ar.stage, Stage::Ready { .. });
         let good = |is_good: bool| if is_good { GOOD } else { 0 };
         let mut rest = &self.image[..];
@@ -206,7 +206,7 @@ impl<A: Application> Device<A> {
             is_valid &= is_good(at + length);
             image.extend_from_slice(cyclic.data.get(at..at + length).unwrap_or_default());
         }
-        // Some devices end or never start with a controller whose own statuses are bad.
+        // Some devices reject a controller whose consumer statuses are bad.
         is_valid &= ar.output.consumers.iter().all(|place| is_good(usize::from(place.offset)));
         self.application.image_out(now, is_valid.then_some(&image[..]));
     }
@@ -227,7 +227,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Calls ApplicationReady, or calls it again with the same bytes.
+    /// Calls ApplicationReady, or repeats the call with the same bytes.
     pub(super) fn call_ready(&mut self, now: Now) {
         let Some(ar) = &mut self.ar else { return };
         let Stage::Ready { due, tries, sequence } = &mut ar.stage else { return };
@@ -252,10 +252,10 @@ impl<A: Application> Device<A> {
         self.actions.push_back(Action::Datagram(to, Datagram { header, body: &body }.emit()));
     }
 
-    /// Begins to call ApplicationReady.
+    /// Starts to call ApplicationReady.
     pub(super) fn get_ready(&mut self, now: Now) {
         if self.fault == Some(Fault::NeverReady) {
-            // The activity timeout no longer runs; it just never is ready.
+            // The activity timeout is off, so the device stays in this stage.
             if let Some(ar) = &mut self.ar {
                 ar.stage = Stage::Parameters(Now::MAX);
             }
@@ -267,7 +267,7 @@ impl<A: Application> Device<A> {
         self.call_ready(now);
     }
 
-    /// The controller answered ApplicationReady.
+    /// Handles the answer to ApplicationReady.
     pub(super) fn ready_answered(&mut self, now: Now, datagram: &Datagram<'_>) {
         let Some(ar) = &mut self.ar else { return };
         let header = &datagram.header;

@@ -1,4 +1,4 @@
-//! Calls at the device: Connect, parameters, control, release, records.
+//! RPC calls at the simulated device: Connect, parameters, control, release, records.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -15,11 +15,11 @@ use super::alarms::Alarms;
 use super::ar::{Ar, Stage};
 use super::{Action, Application, Device, Event, Fault, MOST_ANSWERS, checks};
 
-/// Its number for the alarms of a connection.
+/// Alarm reference of the device.
 const ALARM_REFERENCE: u16 = 0;
-/// The module that is there with [`Fault::WrongModule`].
+/// Module ident number of [`Fault::WrongModule`].
 pub(super) const WRONG_MODULE: u32 = 0x40;
-/// Where an answer comes from that comes from elsewhere.
+/// Sender address of [`Fault::Foreign`].
 const ELSEWHERE: Ipv4Addr = Ipv4Addr::new(192, 0, 2, 1);
 
 const CONNECT: u8 = 0xDB;
@@ -29,7 +29,7 @@ const READ: u8 = 0xDE;
 const WRITE: u8 = 0xDF;
 const CMRPC: u8 = 0x40;
 
-/// Blocks of an answer, or why there are none.
+/// Blocks of an answer, or the error status.
 type Answer = Result<Vec<u8>, Status>;
 
 impl<A: Application> Device<A> {
@@ -45,7 +45,7 @@ impl<A: Application> Device<A> {
         let is_same = |other: &Header| (other.activity, other.sequence) == (header.activity, header.sequence);
         if let Some((_, _, bytes)) = self.answers.iter().find(|(other, peer, _)| is_same(other) && *peer == from) {
             let bytes = bytes.clone();
-            // A second copy of Connect begins anew in some devices, and ends what the first began.
+            // Some devices abort the connection after a duplicate Connect.
             if header.operation == operation::CONNECT {
                 self.answers.clear();
                 return self.abort(now, 0x0E);
@@ -70,7 +70,7 @@ impl<A: Application> Device<A> {
             Ok(blocks) => (0, &blocks[..]),
             Err(status) => (status.0, &[][..]),
         };
-        // In its own order, whatever the caller's is.
+        // The answer has the device's own byte order.
         let mut body = Reply { status, room: call.room, blocks }.emit(ByteOrder::Big);
         if self.fault == Some(Fault::Garbage) {
             for byte in &mut body {
@@ -90,7 +90,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Whether answers to calls are to come from another address than the device's.
+    /// Sender address of answers, if it must differ from the device's address.
     pub fn answers_from(&self) -> Option<Ipv4Addr> {
         (self.fault == Some(Fault::Foreign)).then_some(ELSEWHERE)
     }
@@ -142,7 +142,7 @@ impl<A: Application> Device<A> {
         Ok(responses.iter().flat_map(Response::emit).collect())
     }
 
-    /// What differs from the modules that are expected.
+    /// Difference to the expected modules.
     pub(super) fn difference(&self) -> Option<Response> {
         if self.fault != Some(Fault::WrongModule) {
             return None;

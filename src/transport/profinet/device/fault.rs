@@ -1,46 +1,46 @@
-//! What a device can be made to do wrong, for tests of the other end.
+//! Deliberate faults of a simulated device, for tests of controllers.
 
-/// A thing to do wrong.
+/// A fault of the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fault {
     /// Never calls ApplicationReady.
     NeverReady,
-    /// Has another module in slot 1 than its layout says, and runs all the same.
+    /// Has another module in slot 1 than its layout, and runs anyway.
     WrongModule,
     /// Sends no cyclic frames.
     Silent,
-    /// Sends every cyclic frame with the count of the one before.
+    /// Repeats the cycle counter of the previous frame.
     Stale,
     /// Sends every cyclic frame twice.
     Double,
-    /// Marks its data as bad.
+    /// Sends a bad provider status.
     BadProvider,
-    /// Marks what it is sent as not taken.
+    /// Sends a bad consumer status.
     BadConsumer,
-    /// Is in stop.
+    /// Reports stop.
     Stop,
     /// Marks its data as invalid.
     Invalid,
     /// Answers no call.
     Mute,
-    /// Answers calls with noise.
+    /// Answers calls with garbage.
     Garbage,
     /// Answers calls from another address.
     Foreign,
-    /// Has a controller already.
+    /// Is already connected to another controller.
     Owned,
-    /// Takes no address.
+    /// Refuses an IP address.
     KeepsAddress,
-    /// Raises a diagnosis after a while, in every connection.
+    /// Raises a diagnosis some time after each connect.
     Diagnosis,
-    /// Is switched off and on after a while, in every connection.
+    /// Restarts some time after each connect.
     Restart,
-    /// Ends every connection after a while.
+    /// Aborts each connection after some time.
     Abort,
 }
 
 impl Fault {
-    /// All there are, with the names they are asked for by.
+    /// All faults with their names.
     pub const ALL: [(&'static str, Self); 17] = [
         ("never-ready", Self::NeverReady),
         ("wrong-module", Self::WrongModule),

@@ -1,4 +1,4 @@
-//! The other end: a device with modules, without sockets and without a clock. It is stricter than devices are.
+//! Simulated PROFINET device with modules. It has no sockets and no clock, and is stricter than real devices.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -27,92 +27,91 @@ mod station;
 use ar::Ar;
 pub use fault::Fault;
 
-/// What a device is.
+/// Configuration of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Its card.
+    /// MAC address.
     pub mac: Mac,
-    /// Its name; empty for none.
+    /// Station name; can be empty.
     pub name: String,
-    /// Its type, as text.
+    /// Device type, as text.
     pub kind: String,
-    /// Vendor and device.
+    /// Vendor id and device id.
     pub id: (u16, u16),
-    /// The instance in its object UUID.
+    /// Instance in the object UUID.
     pub instance: u16,
-    /// Its address, if it has one.
+    /// IP address, if it has one.
     pub ip: Option<IpSuite>,
-    /// Whether it can be given an address; one on a real card has that of the card.
+    /// Whether DCP can set the IP address. On a real interface, the address is that of the interface.
     pub takes_ip: bool,
-    /// Its modules.
+    /// Modules.
     pub layout: Layout,
     /// Shortest cycle, in units of 31.25 us.
     pub shortest: u16,
-    /// What it says of itself in I&M0.
+    /// I&M0 record.
     pub im0: Im0,
 }
 
-/// What a device is for.
+/// Behaviour behind the device.
 pub trait Application {
-    /// What the controller wants of its outputs; `None` as long as that is nothing that counts: no connection, its
-    /// provider's status bad, or stop.
+    /// Receives the output image. `None`: no connection, bad provider status, or stop.
     fn image_out(&mut self, now: Now, image: Option<&[u8]>);
-    /// Fills the image that goes to the controller; it has the bytes of the last time.
+    /// Updates the image to the controller. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
-    /// Something happened.
+    /// Receives an event.
     fn event(&mut self, now: Now, event: &Event);
 }
 
-/// What happened to a device.
+/// Event of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
     /// A controller connected.
     Connected(Ipv4Addr),
-    /// It was told that the device is ready.
+    /// The controller confirmed ApplicationReady.
     Ready,
     /// A record was written.
     Written(Parameter),
-    /// The connection ended, with the reason that was given or found; `None` for a release.
+    /// The connection ended with this reason; `None` after a release.
     Ended(Option<Status>),
     /// A controller was refused.
     Refused(Status),
     /// An alarm was acknowledged.
     AlarmNoted(Notification),
-    /// The name was set, maybe for good.
+    /// The name was set; `true` if permanent.
     Named(String, bool),
-    /// The address was set, maybe for good.
+    /// The IP address was set; `true` if permanent.
     Addressed(IpSuite, bool),
-    /// It is to blink.
+    /// A request to blink.
     Blink,
-    /// Name and address were forgotten.
+    /// Name and IP address were reset.
     Reset,
 }
 
-/// A device.
+/// A simulated device.
 #[derive(Debug)]
 pub struct Device<A> {
     setup: Setup,
     application: A,
     ar: Option<Ar>,
     fault: Option<Fault>,
-    /// Answers that were given, for calls that come again: the last few.
+    /// The last answers, for repeated calls.
     answers: VecDeque<(Header, SocketAddrV4, Vec<u8>)>,
-    /// What is to be sent at a time.
+    /// Frames to send later, with their times.
     later: Vec<(Now, Vec<u8>)>,
     image: Vec<u8>,
     actions: VecDeque<Action>,
 }
 
-/// Answers that are kept.
+/// Number of answers kept.
 const MOST_ANSWERS: usize = 8;
-/// Answers to Identify that wait for their time.
+/// Limit of delayed Identify answers.
 const MOST_LATER: usize = 32;
-/// The most that Identify spreads answers over, in steps.
+/// Largest spread of Identify answers, in steps.
 const MOST_SPREAD: u16 = 6400;
 const SPREAD: Duration = Duration::from_millis(10);
 
 impl<A: Application> Device<A> {
-    /// A device that nobody is connected to.
+    /// Creates a device without a connection.
     pub fn new(setup: Setup, application: A) -> Self {
         let image = vec![0; setup.layout.size(Direction::Input)];
         Self {
@@ -127,32 +126,32 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// What it is now.
+    /// The configuration.
     pub const fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// What it is for.
+    /// The application.
     pub const fn application(&self) -> &A {
         &self.application
     }
 
-    /// What it is for.
+    /// The application.
     pub const fn application_mut(&mut self) -> &mut A {
         &mut self.application
     }
 
-    /// Does something wrong from now on, or nothing any more.
+    /// Activates a fault, or none.
     pub const fn set_fault(&mut self, fault: Option<Fault>) {
         self.fault = fault;
     }
 
-    /// Whether data goes both ways.
+    /// Whether data is exchanged in both directions.
     pub fn is_running(&self) -> bool {
         self.ar.as_ref().is_some_and(Ar::is_running)
     }
 
-    /// Loses all that it knew, as if switched off and on.
+    /// Restarts the device (power cycle).
     pub fn restart(&mut self, now: Now) {
         self.actions.clear();
         self.later.clear();
@@ -160,7 +159,7 @@ impl<A: Application> Device<A> {
         self.drop_ar(now, Some(Status::abort(0x1A)));
     }
 
-    /// Ends the connection with this reason.
+    /// Aborts the connection with this reason.
     pub fn abort(&mut self, now: Now, reason: u8) {
         let Some(ar) = &self.ar else { return };
         let payload = ar.alarms.error(Status::abort(reason).0);
@@ -168,7 +167,7 @@ impl<A: Application> Device<A> {
         self.drop_ar(now, Some(Status::abort(reason)));
     }
 
-    /// Raises an alarm, if somebody is connected. What waits for an acknowledgement comes first.
+    /// Raises an alarm if a controller is connected. Alarms that wait for an acknowledgement come first.
     pub fn raise(&mut self, now: Now, alarm: &Notification) {
         let Some(ar) = &mut self.ar else { return };
         let payload = ar.alarms.raise(now, alarm);
@@ -194,7 +193,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// When something is due by the clock.
+    /// Time of the next [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         if !self.actions.is_empty() {
             return Some(Now::ZERO);
@@ -203,7 +202,7 @@ impl<A: Application> Device<A> {
         later.into_iter().chain(self.ar.as_ref().map(Ar::wake)).min()
     }
 
-    /// What is to be done now.
+    /// Returns the next action at `now`.
     pub fn poll(&mut self, now: Now) -> Option<Action> {
         if self.actions.is_empty() {
             self.tick(now);
@@ -223,7 +222,7 @@ impl<A: Application> Device<A> {
         self.tick_ar(now);
     }
 
-    /// A frame came.
+    /// Handles a received frame.
     pub fn frame(&mut self, now: Now, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
         if frame.destination == Mac::DCP_IDENTIFY && frame.id == id::DCP_IDENTIFY {
@@ -244,7 +243,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// A datagram came to UDP port 34964.
+    /// Handles a datagram for UDP port 34964.
     pub fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(datagram) = Datagram::parse(bytes) else { return };
         match datagram.header.kind {

@@ -1,4 +1,4 @@
-//! A device on a real interface: its frames, its calls, its clock, in a thread.
+//! Driver that runs a device on a network interface, in a thread.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,8 +14,8 @@ use super::super::sockets::{BUFFER, Sockets};
 use super::{Application, Device, Setup};
 use crate::local::LocalError;
 
-/// A device that answers on an interface until it is dropped. On a real card it hears requests to all only if the card
-/// lets them through: `ip maddress add 01:0e:cf:00:00:00 dev IFACE`.
+/// A device that runs until it is dropped. On real hardware, the interface must accept the multicast address: `ip
+/// maddress add 01:0e:cf:00:00:00 dev IFACE`.
 pub struct Server<A> {
     inner: Arc<Inner<A>>,
     thread: Option<JoinHandle<()>>,
@@ -35,11 +35,8 @@ impl<A> fmt::Debug for Server<A> {
 }
 
 impl<A: Application + Send + 'static> Server<A> {
-    /// Starts a device with the card and the address of an interface, whatever `setup` says of them; it takes no other
-    /// address, as that is the operator's to set.
-    ///
-    /// # Errors
-    /// When the interface cannot be used, or its sockets cannot be had.
+    /// Starts a device with the MAC and IP address of the interface, instead of those in `setup`. DCP cannot change the
+    /// IP address, because it belongs to the operator.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
         let (sockets, ip) = Sockets::open(interface)?;
         let setup = Setup { mac: interface.mac, ip: Some(ip), takes_ip: false, ..setup };
@@ -56,7 +53,7 @@ impl<A: Application + Send + 'static> Server<A> {
         Ok(Self { inner, thread: Some(thread) })
     }
 
-    /// Does something with the device, and what follows from it.
+    /// Calls `change` with the device, then executes the resulting actions.
     pub fn with<T>(&self, change: impl FnOnce(&mut Device<A>, Now) -> T) -> T {
         let result = change(&mut self.inner.device(), self.inner.start.elapsed());
         self.inner.sockets.ring();
@@ -69,7 +66,7 @@ impl<A> Drop for Server<A> {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so already.
+            // A panic of the thread was already printed.
             let _ = thread.join();
         }
     }
@@ -97,7 +94,7 @@ impl<A: Application> Inner<A> {
     fn turn(&self) -> Option<Now> {
         let mut device = self.device();
         while let Some(action) = device.poll(self.start.elapsed()) {
-            // What cannot be sent is lost, as on any cable.
+            // A frame that cannot be sent is lost, as on a real cable.
             let _ = match action {
                 Action::Frame(bytes) => self.sockets.send_frame(&bytes),
                 Action::Datagram(to, bytes) => self.sockets.send_datagram(to, &bytes),

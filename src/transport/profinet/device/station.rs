@@ -1,11 +1,11 @@
-//! DCP at the device: who it is, its name, its address.
+//! DCP at the simulated device: identity, name, IP address.
 
 use super::super::Now;
 use super::super::wire::dcp::{self, Block, Dcp, IpSuite, Kind, Service, Setting};
 use super::super::wire::frame::{Frame, id};
 use super::{Application, Device, Event, Fault, MOST_LATER, MOST_SPREAD, SPREAD};
 
-/// Errors of DCP.
+/// DCP error codes.
 const UNKNOWN_OPTION: u8 = 1;
 const UNKNOWN_SETTING: u8 = 2;
 const NOT_TAKEN: u8 = 3;
@@ -36,7 +36,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Whether all that a request filters by fits. 0 is no delay that may be asked for.
+    /// Whether all filters of a request match. A delay of 0 is not valid.
     fn is_meant(&self, dcp: &Dcp) -> bool {
         let setup = &self.setup;
         let id = [setup.id.0.to_be_bytes(), setup.id.1.to_be_bytes()].concat();
@@ -93,7 +93,7 @@ impl<A: Application> Device<A> {
         self.actions.push_back(super::Action::Frame(answer));
     }
 
-    /// Sets something; 0 or the error.
+    /// Sets a value. Returns 0 or the error code.
     fn set(&mut self, now: Now, block: &Block) -> u8 {
         let Some((qualifier, value)) = block.data.split_first_chunk::<2>() else { return NOT_TAKEN };
         let is_permanent = qualifier[1] & 1 == 1;

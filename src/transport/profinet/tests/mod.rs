@@ -1,4 +1,4 @@
-//! The controller against the device, in virtual time.
+//! Tests of controller and device in virtual time.
 
 #[cfg(target_os = "linux")]
 mod commission;

@@ -1,4 +1,4 @@
-//! How a connection comes about, what it sends, how it ends.
+//! Tests of opening, data exchange and closing.
 
 use super::super::controller::view::State;
 use super::super::device::{Device, Event, Fault};
@@ -19,7 +19,7 @@ fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
 
-/// What cyclic frames of the controller carry, with their times.
+/// Payloads of the controller's cyclic frames with their times.
 fn outputs(world: &World) -> Vec<(std::time::Duration, Vec<u8>)> {
     let is_data = |bytes: &[u8]| {
         let frame = Frame::parse(bytes).unwrap();

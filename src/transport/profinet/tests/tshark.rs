@@ -1,4 +1,5 @@
-//! What goes over the wire, read by `tshark` where it is installed: all of it, without a warning, and as it was meant.
+//! Comparison with `tshark`, if it is installed: all traffic is decoded without a warning and with the intended
+//! meaning.
 
 use std::fs;
 use std::process::Command;
@@ -10,11 +11,11 @@ use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::record::Parameter;
 use super::world::{MS, World, settings, setup, suite};
 
-/// A capture file of Ethernet frames.
+/// A pcap file of Ethernet frames.
 fn capture(record: &[(std::time::Duration, Vec<u8>)]) -> Vec<u8> {
     let mut out = Vec::new();
     for number in [0xA1B2_C3D4_u32, 0x0002_0004, 0, 0, 65_535, 1] {
-        // The two halves of the version are 16 bits each.
+        // The version consists of two 16-bit numbers.
         out.extend(if number == 0x0002_0004 { vec![2, 0, 4, 0] } else { number.to_le_bytes().to_vec() });
     }
     for (at, bytes) in record {
@@ -27,7 +28,7 @@ fn capture(record: &[(std::time::Duration, Vec<u8>)]) -> Vec<u8> {
     out
 }
 
-/// A whole life: an address, parameters, data, alarms, a loss, a refusal, a release.
+/// A complete connection: address, parameters, data, alarms, a loss, a refusal, a release.
 fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     let bare = Setup { ip: None, ..setup() };
     let parameter = |index, data: &[u8]| Parameter { slot: 1, subslot: 1, index, data: data.to_vec() };
@@ -62,7 +63,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.run_out();
     assert!(world.device.application().events.contains(&Event::Ended(None)));
     let mut record = world.record.take().unwrap();
-    // Another device, of which Connect knows no more than that its module differs.
+    // Another device; Connect reports that its module is different.
     let mut world = World::new(setup(), super::world::settings(), "");
     world.now += std::time::Duration::from_secs(1000);
     world.record = Some(Vec::new());
@@ -84,7 +85,7 @@ fn tshark_reads_all_of_it_without_a_warning() {
     let path = folder.path().join("life.pcap");
     fs::write(&path, capture(&life())).unwrap();
     let Some(wrong) = tshark(&path, &["-Y", "_ws.malformed || _ws.expert.severity >= 0x600000"]) else {
-        // It is not installed; `.ci/run` says so.
+        // tshark is not installed; `.ci/run` reports that.
         return;
     };
     assert_eq!(wrong, "");
@@ -126,7 +127,7 @@ fn tshark_splits_cyclic_data_as_the_layout_says() {
     fs::write(&path, capture(&world.record.take().unwrap())).unwrap();
     let arguments = ["-Y", "pn_rt && pn_io.ioxs", "-T", "fields", "-e", "pn_io.ioxs"];
     let Some(text) = tshark(&path, &arguments) else {
-        // It is not installed; `.ci/run` says so.
+        // tshark is not installed; `.ci/run` reports that.
         return;
     };
     assert!(!text.is_empty());

@@ -1,4 +1,4 @@
-//! A controller and a device on a network in virtual time, as faulty as asked for.
+//! Test bench: a controller and a device on a network in virtual time, with fault injection.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -31,11 +31,11 @@ pub const fn suite(address: [u8; 4]) -> IpSuite {
     IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: address }
 }
 
-/// Sends back what it is sent, with every bit turned.
+/// Returns the received image with all bits inverted.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Option<Vec<u8>>,
-    /// Every image that differed from the one before; `None` for one that does not count.
+    /// Every new image; `None` for an invalid one.
     pub history: Vec<Option<Vec<u8>>>,
     pub events: Vec<Event>,
 }
@@ -79,7 +79,7 @@ pub fn settings() -> Settings {
     Settings { resting: resting(), ..Settings::new(station, Layout::two_modules(0x101, 0x102)) }
 }
 
-/// An image that does nothing, and is not all zeros.
+/// A resting image that is not all zeros.
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; 48];
     image[32] = 0x41;
@@ -103,17 +103,17 @@ pub struct World {
     pub now: Now,
     pub controller: Controller,
     pub device: Device<Mirror>,
-    /// Another device in the same network, if there is one.
+    /// A second device in the same network.
     pub twin: Option<Device<Mirror>>,
-    /// Whether anything gets through at all.
+    /// Whether the cable is connected.
     pub cable: bool,
-    /// Every frame that the controller sent, and when.
+    /// Frames of the controller with their times.
     pub frames: Vec<(Now, Vec<u8>)>,
-    /// Every datagram that the controller sent.
+    /// Datagrams of the controller.
     pub calls: Vec<Vec<u8>>,
-    /// Images that were shown, one after the other.
+    /// Input images in order.
     pub shown: Vec<Arc<[u8]>>,
-    /// All that was sent, as Ethernet frames, where it is wanted.
+    /// All traffic as Ethernet frames, if recorded.
     pub record: Option<Vec<(Now, Vec<u8>)>>,
     faults: (Faults, Faults),
     wire: BinaryHeap<Reverse<(Now, u64, Packet)>>,
@@ -124,7 +124,7 @@ impl World {
     pub fn new(setup: Setup, settings: Settings, faults: &str) -> Self {
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
-            // Not 0, so that nothing relies on it.
+            // Not 0, so that no code depends on it.
             now: Duration::from_secs(1000),
             controller: Controller::new(HERE, settings, Arc::new(Numbers::random())).unwrap(),
             device: Device::new(setup, Mirror::default()),
@@ -140,14 +140,14 @@ impl World {
         }
     }
 
-    /// A world in which the connection is open and data goes both ways.
+    /// A world with an open connection and data in both directions.
     pub fn open(setup: Setup, settings: Settings, faults: &str) -> Self {
         let mut world = Self::new(setup, settings, faults);
         world.until_open();
         world
     }
 
-    /// Until the device has answered to the resting image.
+    /// Runs until the device has answered the resting image.
     pub fn until_open(&mut self) {
         self.until(60_000 * MS, |world| {
             let view = world.view();
@@ -168,7 +168,7 @@ impl World {
         self.calls.iter().filter(is_one).cloned().collect()
     }
 
-    /// Goes on until the condition holds, which must come within `most`.
+    /// Runs until the condition is true, at most for `most`.
     pub fn until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
         let end = self.now + most;
         while !condition(self) {
@@ -177,13 +177,13 @@ impl World {
         }
     }
 
-    /// Goes on for a while.
+    /// Runs for a time.
     pub fn run(&mut self, time: Duration) {
         let end = self.now + time;
         while self.step(end) {}
     }
 
-    /// Until all has ended, which it must.
+    /// Runs until the connection is closed.
     pub fn run_out(&mut self) -> View {
         self.until(120_000 * MS, |world| world.view().state == State::Closed);
         self.view()
@@ -207,7 +207,7 @@ impl World {
         true
     }
 
-    /// Lets all ends do all they have to do now.
+    /// Lets both sides do all that is due now.
     pub fn settle(&mut self) {
         loop {
             let ours = self.controller.poll(self.now);
@@ -258,7 +258,7 @@ impl World {
         for (at, bytes) in faults.pass(self.now, bytes) {
             let packet = packet(bytes);
             let is_frame = matches!(packet, Packet::FrameOut(_) | Packet::FrameIn(_));
-            // The cycle counter tells old frames up to 128 ms; no switch holds one back for longer.
+            // The cycle counter detects old frames up to 128 ms. No switch delays a frame longer.
             if is_frame && at > self.now + LONGEST_HOLD {
                 continue;
             }
@@ -287,7 +287,7 @@ impl World {
     }
 }
 
-/// A datagram in the frame that carries it, without checksums.
+/// Wraps a datagram into its frame, without checksums.
 fn ethernet(from: Ipv4Addr, to: Ipv4Addr, bytes: &[u8]) -> Vec<u8> {
     let (here, there) = if from == HERE.ip.address { (HERE.mac, THERE) } else { (THERE, HERE.mac) };
     let length = |header: usize| u16::try_from(header + bytes.len()).unwrap().to_be_bytes();

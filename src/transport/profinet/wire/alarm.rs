@@ -1,19 +1,19 @@
-//! Alarms, and the protocol RTA that carries them between two cards.
+//! Codec for alarms and their transport protocol (RTA).
 
 use super::block::{self, Block, BlockType};
 use super::frame::{TAG_HIGH, TAG_LOW, id};
 use super::{Reader, WireError, Writer, count16};
 
-/// Flag of a frame that wants an acknowledgement.
+/// Flag of a frame that needs an acknowledgement.
 const WANTS_ACK: u8 = 0x10;
-/// One frame on its way at a time.
+/// Window size: one unacknowledged frame.
 const WINDOW: u8 = 1;
-/// What a sequence number is before the first frame.
+/// Sequence number before the first frame.
 pub const FIRST: u16 = 0xFFFF;
-/// Likewise the number of what was last received.
+/// Acknowledged sequence number before the first frame.
 pub const NONE: u16 = 0xFFFE;
 
-/// Which of the two channels of a connection.
+/// Alarm channel of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Priority {
     /// Process alarms.
@@ -23,10 +23,10 @@ pub enum Priority {
 }
 
 impl Priority {
-    /// Both.
+    /// Both channels.
     pub const ALL: [Self; 2] = [Self::High, Self::Low];
 
-    /// The id of its frames.
+    /// Frame id.
     pub const fn frame_id(self) -> u16 {
         match self {
             Self::High => id::ALARM_HIGH,
@@ -34,7 +34,7 @@ impl Priority {
         }
     }
 
-    /// The tag of its frames.
+    /// VLAN tag.
     pub const fn tag(self) -> u16 {
         match self {
             Self::High => TAG_HIGH,
@@ -42,7 +42,7 @@ impl Priority {
         }
     }
 
-    /// By the id of a frame.
+    /// Channel of a frame id.
     pub const fn from_frame_id(id: u16) -> Option<Self> {
         match id {
             id::ALARM_HIGH => Some(Self::High),
@@ -52,39 +52,39 @@ impl Priority {
     }
 }
 
-/// What a frame of RTA does.
+/// Type of an RTA frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Pdu {
-    /// Carries an alarm, or that it was noted.
+    /// An alarm or its acknowledgement.
     Data(Vec<u8>),
-    /// Something was not taken.
+    /// Negative transport acknowledgement.
     Nack,
-    /// Something arrived.
+    /// Transport acknowledgement.
     Ack,
-    /// Ends the connection, with the reason.
+    /// Closes the connection with this status.
     Error(u32),
 }
 
-/// A frame of RTA, behind its id.
+/// An RTA frame without its frame id.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rta {
-    /// The number that the receiver gave for the connection.
+    /// Alarm reference of the receiver.
     pub destination: u16,
-    /// The sender's.
+    /// Alarm reference of the sender.
     pub source: u16,
-    /// Counts what is sent.
+    /// Sequence number of the frame.
     pub sequence: u16,
-    /// What was last received.
+    /// Last sequence number received.
     pub acknowledged: u16,
-    /// What it does.
+    /// Type and content.
     pub pdu: Pdu,
 }
 
 impl Rta {
-    /// Reads what a frame carries behind its id.
+    /// Decodes the payload of a frame.
     ///
     /// # Errors
-    /// When it is no RTA of version 1, or cut short.
+    /// Not an RTA frame of version 1, or too short.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         let destination = reader.u16("AlarmDstEndpoint")?;
@@ -99,14 +99,14 @@ impl Rta {
             0x11 => Pdu::Data(data.rest().to_vec()),
             0x12 => Pdu::Nack,
             0x13 => Pdu::Ack,
-            // Siemens appends more.
+            // Devices of Siemens append more bytes.
             0x14 => Pdu::Error(data.u32("PNIOStatus")?),
             other => return Err(WireError { offset: 4, ..reader.wrong("PDUType", 1, other) }),
         };
         Ok(Self { destination, source, sequence, acknowledged, pdu })
     }
 
-    /// The bytes.
+    /// Encodes the frame.
     pub fn emit(&self) -> Vec<u8> {
         let (kind, flags, data) = match &self.pdu {
             Pdu::Data(data) => (0x11, WANTS_ACK | WINDOW, data.clone()),
@@ -126,39 +126,36 @@ impl Rta {
     }
 }
 
-/// The number after this one: 0xFFFF is followed by 0, and so is 0x7FFF.
+/// Next sequence number: 0 follows both 0xFFFF and 0x7FFF.
 pub const fn next_sequence(sequence: u16) -> u16 {
     sequence.wrapping_add(1) & 0x7FFF
 }
 
-/// What happened, and where.
+/// An alarm notification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notification {
-    /// Over which channel it came.
+    /// Channel.
     pub priority: Priority,
-    /// What happened; see [`describe`].
+    /// Alarm type; see [`describe`].
     pub kind: u16,
-    /// The profile; 0.
+    /// API (profile); 0.
     pub api: u32,
-    /// The slot.
+    /// Slot.
     pub slot: u16,
-    /// The subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// The module there.
+    /// Ident number of the module.
     pub module: u32,
-    /// The submodule there.
+    /// Ident number of the submodule.
     pub submodule: u32,
-    /// Its number, and which diagnoses there are.
+    /// Sequence number and diagnosis flags.
     pub specifier: u16,
-    /// What is said of it: the layout, and the bytes.
+    /// Additional data: structure identifier and bytes.
     pub detail: Option<(u16, Vec<u8>)>,
 }
 
 impl Notification {
-    /// Reads what a DATA frame carries.
-    ///
-    /// # Errors
-    /// When it is another block, or cut short.
+    /// Decodes a DATA frame.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let block = first_block(data)?;
         let priority = match block.kind {
@@ -178,7 +175,7 @@ impl Notification {
         Ok(Self { priority, kind, api, slot, subslot, module, submodule, specifier, detail })
     }
 
-    /// The bytes.
+    /// Encodes the notification.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.kind);
@@ -195,13 +192,13 @@ impl Notification {
         block::emit(block_type(self.priority), &out.bytes)
     }
 
-    /// That it was noted.
+    /// Its acknowledgement.
     pub const fn acknowledge(&self) -> Acknowledgement {
         let Self { priority, kind, api, slot, subslot, specifier, .. } = *self;
         Acknowledgement { priority, kind, api, slot, subslot, specifier, status: 0 }
     }
 
-    /// What happened, in words.
+    /// Text of the alarm.
     pub fn describe(&self) -> String {
         let mut text = format!("{} at slot {}, subslot {:#x}", describe(self.kind), self.slot, self.subslot);
         if let Some((0x8000 | 0x8002, detail)) = &self.detail
@@ -213,30 +210,27 @@ impl Notification {
     }
 }
 
-/// That an alarm was noted.
+/// Acknowledgement of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Acknowledgement {
-    /// As in the alarm.
+    /// Channel of the alarm.
     pub priority: Priority,
-    /// As in the alarm.
+    /// Type of the alarm.
     pub kind: u16,
-    /// As in the alarm.
+    /// API of the alarm.
     pub api: u32,
-    /// As in the alarm.
+    /// Slot of the alarm.
     pub slot: u16,
-    /// As in the alarm.
+    /// Subslot of the alarm.
     pub subslot: u16,
-    /// As in the alarm.
+    /// Specifier of the alarm.
     pub specifier: u16,
-    /// 0.
+    /// Status; 0.
     pub status: u32,
 }
 
 impl Acknowledgement {
-    /// Reads what a DATA frame carries.
-    ///
-    /// # Errors
-    /// When it is another block, or cut short.
+    /// Decodes a DATA frame.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let block = first_block(data)?;
         let fits = |priority: &Priority| block_type(*priority).answer() == block.kind;
@@ -254,7 +248,7 @@ impl Acknowledgement {
         })
     }
 
-    /// The bytes.
+    /// Encodes the acknowledgement.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.kind);
@@ -278,7 +272,7 @@ const fn block_type(priority: Priority) -> BlockType {
     }
 }
 
-/// A type of alarm in words.
+/// Text of an alarm type.
 pub fn describe(kind: u16) -> &'static str {
     match kind {
         0x01 => "diagnosis",
@@ -305,7 +299,7 @@ pub fn describe(kind: u16) -> &'static str {
     }
 }
 
-/// Whether a device waits for new parameters after this alarm.
+/// Whether the device needs new parameters after this alarm.
 pub const fn wants_parameters(kind: u16) -> bool {
     matches!(kind, 0x04 | 0x0A | 0x0B)
 }
@@ -315,7 +309,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// notes, alarms: a diagnosis and what was answered to it.
+    /// notes, alarms: a diagnosis and its answer.
     #[test]
     fn an_alarm_and_its_answers_are_as_seen() {
         let bytes = hex(concat!(

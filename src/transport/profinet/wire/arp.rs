@@ -1,17 +1,17 @@
-//! ARP, as far as it tells whether somebody has an address (RFC 826, RFC 5227).
+//! Codec for ARP probes and answers (RFC 826, RFC 5227).
 
 use std::net::Ipv4Addr;
 
 use super::{Mac, Reader, Writer};
 
-/// The type of Ethernet frames that carry it.
+/// EtherType of ARP.
 pub const ETHER_TYPE: u16 = 0x0806;
 /// Ethernet, IPv4, and the lengths of both addresses.
 const KIND: [u8; 6] = [0, 1, 8, 0, 6, 4];
-/// Shortest frame, less the four bytes of its check.
+/// Minimum frame length without the checksum.
 const SHORTEST: usize = 60;
 
-/// The frame that asks who has an address, without claiming one: nobody learns anything from it.
+/// ARP probe: asks who has an address without claiming one. No host updates its ARP table from it.
 pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     let mut out = Writer::default();
     out.put(&[0xFF; 6]);
@@ -26,7 +26,7 @@ pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     out.bytes
 }
 
-/// Who a frame says has which address, if it is one of ARP: an answer, or somebody who uses the address himself.
+/// Sender MAC and IP address of an ARP frame: an answer, or a probe of a host that uses the address.
 pub fn holder(frame: &[u8]) -> Option<(Mac, Ipv4Addr)> {
     let mut reader = Reader::big(frame);
     reader.take(12, "addresses of cards").ok()?;
@@ -47,7 +47,7 @@ mod tests {
     const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
 
-    /// RFC 5227, 2.1.1: the sender's address is zeros, so that no table of another host changes.
+    /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its table.
     #[test]
     fn a_probe_claims_nothing() {
         let mut bytes = hex("FFFFFFFFFFFF 020000000001 0806 0001 0800 06 04 0001 020000000001 00000000");
@@ -57,7 +57,7 @@ mod tests {
         assert_eq!(holder(&bytes), None);
     }
 
-    /// RFC 826: the answer, and every frame that is not one.
+    /// RFC 826: an answer, and frames that are none.
     #[test]
     fn an_answer_names_its_sender() {
         let mut bytes = hex("020000000001 020000000002 0806 0001 0800 06 04 0002 020000000002 C0A84E02");

@@ -1,51 +1,51 @@
-//! Blocks: what calls and answers are made of.
+//! Codec for blocks, the parts of calls and answers.
 
 use super::{Reader, Uuid, WireError, Writer, count16};
 
-/// What a block is.
+/// Block type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BlockType(
-    /// The number.
+    /// Type number.
     pub u16,
 );
 
 impl BlockType {
-    /// An alarm of high priority.
+    /// High-priority alarm.
     pub const ALARM_HIGH: Self = Self(0x0001);
-    /// An alarm of low priority.
+    /// Low-priority alarm.
     pub const ALARM_LOW: Self = Self(0x0002);
-    /// Writes a record.
+    /// Write a record.
     pub const WRITE: Self = Self(0x0008);
-    /// Reads one.
+    /// Read a record.
     pub const READ: Self = Self(0x0009);
-    /// Which modules there are.
+    /// Real modules.
     pub const REAL_IDENTIFICATION: Self = Self(0x0013);
     /// I&M0.
     pub const IM0: Self = Self(0x0020);
-    /// A connection.
+    /// Connection (AR).
     pub const AR: Self = Self(0x0101);
-    /// Its cyclic data in one direction.
+    /// Cyclic data of one direction (IOCR).
     pub const IOCR: Self = Self(0x0102);
-    /// Its alarms.
+    /// Alarms of a connection (alarm CR).
     pub const ALARM_CR: Self = Self(0x0103);
-    /// Modules that are expected.
+    /// Expected modules.
     pub const EXPECTED: Self = Self(0x0104);
-    /// All parameters were written.
+    /// End of parameters.
     pub const PRM_END: Self = Self(0x0110);
-    /// Likewise after a module was plugged.
+    /// End of parameters after a module was plugged.
     pub const PLUG_PRM_END: Self = Self(0x0111);
     /// The device is ready for data.
     pub const APPLICATION_READY: Self = Self(0x0112);
-    /// Likewise after a module was plugged.
+    /// The device is ready after a module was plugged.
     pub const PLUG_APPLICATION_READY: Self = Self(0x0113);
-    /// Ends the connection.
+    /// Release the connection.
     pub const RELEASE: Self = Self(0x0114);
-    /// What differs from the modules that are expected.
+    /// Differences from the expected modules.
     pub const MODULE_DIFF: Self = Self(0x8104);
-    /// The name of the device.
+    /// Station name of the device.
     pub const AR_SERVER: Self = Self(0x8106);
 
-    /// The type of the answer to it.
+    /// Type of the answer block.
     #[must_use]
     pub const fn answer(self) -> Self {
         Self(self.0 | 0x8000)
@@ -55,24 +55,21 @@ impl BlockType {
 /// A block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Block<'a> {
-    /// What it is.
+    /// Block type.
     pub kind: BlockType,
-    /// Its version, 1.0 or 1.1.
+    /// Version, 1.0 or 1.1.
     pub version: (u8, u8),
-    /// What is behind the header.
+    /// Content after the header.
     pub body: &'a [u8],
 }
 
-/// Cuts what a call or an answer carries into blocks.
-///
-/// # Errors
-/// When a block is longer than what is left.
+/// Splits a call or answer into blocks.
 pub fn walk(bytes: &[u8]) -> Result<Vec<Block<'_>>, WireError> {
     let mut reader = Reader::big(bytes);
     let mut blocks = Vec::new();
     while reader.left() > 0 {
         blocks.push(read(&mut reader)?);
-        // Answers may be padded to four bytes; what follows another block never has a type that begins with a zero.
+        // Answers can be padded to four bytes. No block type starts with a zero byte there.
         let padding = reader.left().min(reader.at.next_multiple_of(4) - reader.at);
         if reader.bytes.iter().skip(reader.at).take(padding).all(|byte| *byte == 0) {
             reader.at += padding;
@@ -91,12 +88,12 @@ fn read<'a>(reader: &mut Reader<'a>) -> Result<Block<'a>, WireError> {
     Ok(Block { kind, version, body: reader.take(body, "block")? })
 }
 
-/// The bytes of a block, version 1.0.
+/// Encodes a block of version 1.0.
 pub fn emit(kind: BlockType, body: &[u8]) -> Vec<u8> {
     emit_version(kind, (1, 0), body)
 }
 
-/// The bytes of a block of another version.
+/// Encodes a block of another version.
 pub fn emit_version(kind: BlockType, version: (u8, u8), body: &[u8]) -> Vec<u8> {
     let mut out = Writer::default();
     out.u16(kind.0);
@@ -106,26 +103,26 @@ pub fn emit_version(kind: BlockType, version: (u8, u8), body: &[u8]) -> Vec<u8> 
     out.bytes
 }
 
-/// PrmEnd, ApplicationReady, Release, and their answers.
+/// Content of PrmEnd, ApplicationReady, Release, and their answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Control {
-    /// Which one.
+    /// Block type.
     pub kind: BlockType,
-    /// The connection.
+    /// UUID of the connection.
     pub ar: Uuid,
-    /// Its key.
+    /// Session key of the connection.
     pub session_key: u16,
-    /// What is to be done, or 8: done.
+    /// Command, or 8 for done.
     pub command: u16,
-    /// Of the command.
+    /// Properties of the command.
     pub properties: u16,
 }
 
 impl Control {
-    /// The command of answers.
+    /// Command of answers.
     pub const DONE: u16 = 8;
 
-    /// A call; the command is that of its type.
+    /// A call with the command of its type.
     pub const fn call(kind: BlockType, ar: Uuid, session_key: u16) -> Self {
         let command = match kind {
             BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY => 2,
@@ -135,16 +132,13 @@ impl Control {
         Self { kind, ar, session_key, command, properties: 0 }
     }
 
-    /// The answer that it is done.
+    /// The positive answer.
     #[must_use]
     pub const fn answer(&self) -> Self {
         Self { kind: self.kind.answer(), command: Self::DONE, properties: 0, ..*self }
     }
 
-    /// Reads a block that is one.
-    ///
-    /// # Errors
-    /// When it is cut short.
+    /// Decodes a block.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
         let mut reader = Reader::big(block.body);
         reader.u16("reserved")?;
@@ -156,7 +150,7 @@ impl Control {
         Ok(Self { kind: block.kind, ar, session_key, command, properties })
     }
 
-    /// The bytes.
+    /// Encodes the block.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(0);

@@ -1,4 +1,4 @@
-//! The blocks of Connect and of its answer.
+//! Codec for the blocks of Connect and its answer.
 
 use super::block::{self, Block, BlockType};
 use super::frame::{ETHER_TYPE, TAG_HIGH, TAG_LOW};
@@ -9,104 +9,104 @@ mod modules;
 pub use self::modules::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, SubmoduleDiff};
 use self::modules::{read_diff, read_expected, write_diff, write_expected};
 
-/// ARProperties of a connection that starts in advanced mode: active, with the controller as parameter server.
+/// ARProperties for advanced startup: active, controller as parameter server.
 pub const ADVANCED: u32 = 0x4000_0011;
-/// The same in legacy mode.
+/// ARProperties for legacy startup.
 pub const LEGACY: u32 = 0x0000_0011;
-/// The device is to choose the FrameID of what it is sent.
+/// Frame id that lets the device choose.
 pub const ANY_FRAME_ID: u16 = 0xFFFF;
 
 /// ARBlockReq: the connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ar {
-    /// 1 for a controller of cyclic data.
+    /// AR type; 1 for a controller of cyclic data.
     pub kind: u16,
-    /// The connection.
+    /// UUID of the connection.
     pub uuid: Uuid,
-    /// Its key, another one each time.
+    /// Session key, different for each connection.
     pub session_key: u16,
-    /// The card that calls.
+    /// MAC address of the controller.
     pub mac: Mac,
-    /// Its object.
+    /// Object UUID of the controller.
     pub object: Uuid,
-    /// See [`ADVANCED`].
+    /// ARProperties; see [`ADVANCED`].
     pub properties: u32,
-    /// How long the device waits for the next step, in steps of 100 ms.
+    /// Time limit of the device for the next step, in units of 100 ms.
     pub activity_timeout: u16,
-    /// The type of frames for alarms.
+    /// EtherType of alarm frames.
     pub port: u16,
-    /// The name of the controller.
+    /// Station name of the controller.
     pub name: String,
 }
 
-/// IOCRBlockReq: cyclic data in one direction.
+/// IOCRBlockReq: cyclic data of one direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Iocr {
-    /// 1 from the device, 2 to it.
+    /// IOCR type: 1 from the device, 2 to the device.
     pub kind: u16,
-    /// Tells it from the others of the connection.
+    /// IOCR reference, unique in the connection.
     pub reference: u16,
-    /// The type of its frames.
+    /// EtherType of the frames.
     pub ether_type: u16,
-    /// Class value 1 or 2.
+    /// RT class 1 or 2.
     pub properties: u32,
-    /// Bytes of data, statuses and filling.
+    /// Length of data, statuses and padding.
     pub length: u16,
-    /// The id of its frames.
+    /// Frame id.
     pub frame_id: u16,
-    /// In units of 31.25 us.
+    /// Send clock in units of 31.25 us.
     pub send_clock: u16,
-    /// Every so many send clocks.
+    /// Reduction ratio: cycle time in send clocks.
     pub ratio: u16,
-    /// In which of them.
+    /// Phase in the cycle.
     pub phase: u16,
-    /// Order among the frames of one phase.
+    /// Order of frames in a phase.
     pub sequence: u16,
-    /// When in the phase; all ones for as soon as possible.
+    /// Send offset in the phase; all ones means as soon as possible.
     pub offset: u32,
-    /// After so many frames without one the connection is lost.
+    /// Watchdog in cycles.
     pub watchdog: u16,
-    /// Likewise for its data.
+    /// Data hold time in cycles.
     pub hold: u16,
-    /// Priority of its frames.
+    /// VLAN tag.
     pub tag: u16,
-    /// Where it goes, for multicast.
+    /// Multicast address.
     pub group: Mac,
-    /// Where data of submodules begins.
+    /// Positions of the data objects.
     pub objects: Vec<Offset>,
-    /// Where statuses of consumers are.
+    /// Positions of the consumer statuses.
     pub consumers: Vec<Offset>,
 }
 
-/// A place in cyclic data.
+/// Position in cyclic data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Offset {
-    /// Of the submodule.
+    /// Slot of the submodule.
     pub slot: u16,
-    /// Of the submodule.
+    /// Subslot of the submodule.
     pub subslot: u16,
-    /// The byte.
+    /// Byte offset.
     pub offset: u16,
 }
 
-/// AlarmCRBlockReq: alarms.
+/// AlarmCRBlockReq: the alarm channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmCr {
-    /// 1.
+    /// Alarm CR type; 1.
     pub kind: u16,
-    /// The type of its frames.
+    /// EtherType of alarm frames.
     pub ether_type: u16,
-    /// 0.
+    /// Properties; 0.
     pub properties: u32,
-    /// How long to wait for an acknowledgement, in steps of 100 ms.
+    /// Time limit for an acknowledgement, in units of 100 ms.
     pub timeout: u16,
-    /// How often to repeat.
+    /// Number of repetitions.
     pub retries: u16,
-    /// The sender's number for it.
+    /// Alarm reference of the sender.
     pub reference: u16,
-    /// Most bytes of an alarm.
+    /// Longest alarm in bytes.
     pub most: u16,
-    /// Priorities of frames, high and low.
+    /// VLAN tags of the high and low channel.
     pub tags: (u16, u16),
 }
 
@@ -119,17 +119,14 @@ pub enum Request {
     Iocr(Iocr),
     /// Alarms.
     AlarmCr(AlarmCr),
-    /// Modules.
+    /// Expected modules.
     Expected(Vec<ExpectedModule>),
-    /// Something else.
+    /// Another block.
     Other(BlockType),
 }
 
 impl Request {
-    /// Reads what a Connect carries, in its order.
-    ///
-    /// # Errors
-    /// When a block is cut short.
+    /// Decodes the blocks of a Connect in order.
     pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
         block::walk(bytes)?.iter().map(Self::parse).collect()
     }
@@ -145,7 +142,7 @@ impl Request {
         })
     }
 
-    /// The bytes.
+    /// Encodes the block.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         let kind = match self {
@@ -282,7 +279,7 @@ fn read_offsets(reader: &mut Reader<'_>, field: &'static str) -> Result<Vec<Offs
 }
 
 impl AlarmCr {
-    /// As controllers have it: 100 ms, three repeats, 200 bytes.
+    /// Usual values: 100 ms, three repetitions, 200 bytes.
     pub const fn usual(reference: u16) -> Self {
         Self {
             kind: 1,
@@ -319,55 +316,49 @@ impl AlarmCr {
     }
 }
 
-/// A block of the answer to Connect; a ModuleDiffBlock may also come with ApplicationReady.
+/// A block of the answer to Connect. A ModuleDiffBlock can also come with ApplicationReady.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {
     /// The connection.
     Ar {
-        /// Which one.
+        /// UUID of the connection.
         uuid: Uuid,
-        /// Its key.
+        /// Session key.
         session_key: u16,
-        /// The card of the device.
+        /// MAC address of the device.
         mac: Mac,
     },
     /// Cyclic data.
     Iocr {
-        /// 1 from the device, 2 to it.
+        /// IOCR type: 1 from the device, 2 to the device.
         kind: u16,
-        /// Which one.
+        /// IOCR reference.
         reference: u16,
-        /// The id of its frames.
+        /// Frame id.
         frame_id: u16,
     },
     /// Alarms.
     AlarmCr {
-        /// The device's number for it.
+        /// Alarm reference of the device.
         reference: u16,
-        /// Most bytes of an alarm.
+        /// Longest alarm in bytes.
         most: u16,
     },
-    /// What differs from the modules that are expected.
+    /// Differences from the expected modules.
     ModuleDiff(Vec<ModuleDiff>),
-    /// The name of the device.
+    /// Station name of the device.
     Name(String),
-    /// Something else.
+    /// Another block.
     Other(BlockType),
 }
 
 impl Response {
-    /// Reads what an answer to Connect carries, in its order.
-    ///
-    /// # Errors
-    /// When a block is cut short.
+    /// Decodes the blocks of an answer in order.
     pub fn parse_all(bytes: &[u8]) -> Result<Vec<Self>, WireError> {
         block::walk(bytes)?.iter().map(Self::parse).collect()
     }
 
-    /// Reads one block.
-    ///
-    /// # Errors
-    /// When it is cut short.
+    /// Decodes one block.
     pub fn parse(block: &Block<'_>) -> Result<Self, WireError> {
         let mut reader = Reader::big(block.body);
         let reader = &mut reader;
@@ -396,7 +387,7 @@ impl Response {
         })
     }
 
-    /// The bytes.
+    /// Encodes the block.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         let kind = match self {
@@ -427,7 +418,7 @@ impl Response {
             Self::Name(name) => {
                 out.u16(count16(name.len()));
                 out.put(name.as_bytes());
-                // Answers are padded to four bytes, with the header of six.
+                // Answers are padded to four bytes, including the header of six.
                 out.zeros((4 - (6 + out.bytes.len()) % 4) % 4);
                 BlockType::AR_SERVER
             }

@@ -1,34 +1,31 @@
-//! Cyclic data: what a frame carries behind its id.
+//! Codec for the payload of cyclic frames.
 
 use super::{Reader, WireError, Writer};
 
-/// Data status of one that runs: primary, valid, run, no problem.
+/// Data status of a running provider: primary, valid, run, no problem.
 pub const RUNNING: u8 = 0x35;
-/// Bits that inputs must have to be used: primary, valid, run; and the one that they must not have: ignore.
+/// Status bits for usable data: primary, valid and run must be set; ignore must not be set.
 const USABLE: (u8, u8) = (0x15, 0x80);
-/// A provider's or a consumer's status that says good; only the highest bit counts.
+/// Good provider or consumer status; only the highest bit counts.
 pub const GOOD: u8 = 0x80;
-/// Counts of the cycle counter that are a step forward, rather than an old frame.
+/// Largest forward step of the cycle counter. A larger step means an old frame.
 const FORWARD: u16 = 61_440;
 
-/// Cyclic data.
+/// Payload of a cyclic frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cyclic<'a> {
-    /// The data of all submodules, their statuses, and filling.
+    /// Data of all submodules, statuses, padding.
     pub data: &'a [u8],
-    /// In units of 31.25 us.
+    /// Cycle counter, in units of 31.25 us.
     pub counter: u16,
-    /// What the provider says of all of it.
+    /// Data status.
     pub status: u8,
-    /// 0 unless a switch found the frame damaged.
+    /// Transfer status; not 0 if a switch detected damage.
     pub transfer: u8,
 }
 
 impl<'a> Cyclic<'a> {
-    /// Reads what a frame carries; its data has the length that the connection agreed on.
-    ///
-    /// # Errors
-    /// When there is less.
+    /// Decodes a payload with `length` bytes of data.
     pub fn parse(payload: &'a [u8], length: usize) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         Ok(Self {
@@ -39,7 +36,7 @@ impl<'a> Cyclic<'a> {
         })
     }
 
-    /// The bytes.
+    /// Encodes the payload.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.put(self.data);
@@ -49,19 +46,19 @@ impl<'a> Cyclic<'a> {
         out.bytes
     }
 
-    /// Whether the data may be used, as far as the whole of it goes.
+    /// Whether the data status allows to use the data.
     pub const fn is_usable(&self) -> bool {
         self.status & USABLE.0 == USABLE.0 && self.status & USABLE.1 == 0 && self.transfer == 0
     }
 
-    /// Whether it was sent after the one that counted `last`.
+    /// Whether the frame is newer than the one with counter `last`.
     pub const fn is_after(&self, last: u16) -> bool {
         let step = self.counter.wrapping_sub(last);
         step != 0 && step <= FORWARD
     }
 }
 
-/// What is missing of a data status for its data to be used, in words.
+/// Reason why a data status does not allow to use the data.
 pub fn describe_status(status: u8, transfer: u8) -> &'static str {
     match status {
         _ if transfer != 0 => "a switch marked it as damaged",

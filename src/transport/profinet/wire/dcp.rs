@@ -1,6 +1,6 @@
-//! DCP: who is there, what it is called, where it is.
+//! Codec for DCP: discovery, station names, IP addresses.
 //!
-//! Frames go untagged; requests to name a station are multicast, all else is from card to card.
+//! Frames have no VLAN tag. Identify requests are multicast, everything else is unicast.
 
 use std::net::Ipv4Addr;
 
@@ -9,12 +9,12 @@ use super::{Reader, WireError, Writer, count16, text};
 /// Most bytes of blocks in a frame.
 const MOST: usize = 1416;
 
-/// What is asked for.
+/// DCP service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Service {
     /// Reads settings of one station.
     Get,
-    /// Changes them.
+    /// Changes settings of one station.
     Set,
     /// Finds stations.
     Identify,
@@ -22,18 +22,18 @@ pub enum Service {
     Hello,
 }
 
-/// Which part of a service a frame is.
+/// Type of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// The question.
     Request,
     /// The answer.
     Response,
-    /// The answer of a station that does not have the service.
+    /// The station does not support the service.
     Unsupported,
 }
 
-/// A setting, by the numbers of its option and suboption.
+/// Option and suboption of a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Setting(
     /// Option.
@@ -43,7 +43,7 @@ pub struct Setting(
 );
 
 impl Setting {
-    /// The address of the card.
+    /// MAC address.
     pub const MAC: Self = Self(1, 1);
     /// IP address, mask, gateway.
     pub const IP: Self = Self(1, 2);
@@ -51,32 +51,32 @@ impl Setting {
     pub const STATION_TYPE: Self = Self(2, 1);
     /// Name of the station.
     pub const NAME: Self = Self(2, 2);
-    /// Vendor and device.
+    /// Vendor id and device id.
     pub const DEVICE_ID: Self = Self(2, 3);
-    /// Device, controller, supervisor.
+    /// Role: device, controller, supervisor.
     pub const ROLE: Self = Self(2, 4);
-    /// Settings that the station has.
+    /// Supported options.
     pub const OPTIONS: Self = Self(2, 5);
-    /// A name made of a port and the name of a neighbour.
+    /// Alias: port name and name of the neighbour.
     pub const ALIAS: Self = Self(2, 6);
-    /// The instance in its object UUID.
+    /// Instance in the object UUID.
     pub const INSTANCE: Self = Self(2, 7);
-    /// Blinks its light.
+    /// Blinking.
     pub const SIGNAL: Self = Self(5, 3);
-    /// Result of a setting that was set.
+    /// Result of a Set.
     pub const RESPONSE: Self = Self(5, 4);
-    /// Back to factory settings.
+    /// Reset to factory settings.
     pub const RESET: Self = Self(5, 6);
     /// All stations, as a filter.
     pub const ALL: Self = Self(255, 255);
 }
 
-/// A block: a setting with what stands with it. Qualifiers and block infos are the first two bytes of the data.
+/// A block: a setting and its data. The first two bytes of the data are the qualifier or block info.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Block {
-    /// Which setting.
+    /// The setting.
     pub setting: Setting,
-    /// What stands with it; nothing in the request of a Get.
+    /// Data; empty in a Get request.
     pub data: Vec<u8>,
 }
 
@@ -85,27 +85,27 @@ impl Block {
         Self { setting, data: parts.concat() }
     }
 
-    /// A name to look for.
+    /// Filter by station name.
     pub fn name_filter(name: &str) -> Self {
         Self::new(Setting::NAME, &[name.as_bytes()])
     }
 
-    /// A new name of a station, kept for good or until it is switched off.
+    /// Sets the station name, permanently or until power-off.
     pub fn set_name(name: &str, permanent: bool) -> Self {
         Self::new(Setting::NAME, &[&[0, u8::from(permanent)], name.as_bytes()])
     }
 
-    /// A new address of a station, likewise.
+    /// Sets the IP address, permanently or until power-off.
     pub fn set_ip(suite: &IpSuite, permanent: bool) -> Self {
         Self::new(Setting::IP, &[&[0, u8::from(permanent)], &suite.bytes()])
     }
 
-    /// Blink for about three seconds.
+    /// Blinks for about three seconds.
     pub fn signal() -> Self {
         Self::new(Setting::SIGNAL, &[&[0, 0, 1, 0]])
     }
 
-    /// Name and address back to none: mode 2, which all stations have.
+    /// Resets name and IP address: mode 2, which all stations support.
     pub fn reset() -> Self {
         Self::new(Setting::RESET, &[&[0, 4]])
     }
@@ -115,35 +115,35 @@ impl Block {
         Self::new(setting, &[&info.to_be_bytes(), value])
     }
 
-    /// Result of a setting that was set.
+    /// Result of a Set.
     pub fn response(setting: Setting, error: u8) -> Self {
         Self::new(Setting::RESPONSE, &[&[setting.0, setting.1, error]])
     }
 }
 
-/// A frame of DCP, behind its id.
+/// A DCP frame without its frame id.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dcp {
-    /// The service.
+    /// Service.
     pub service: Service,
-    /// Question or answer.
+    /// Type of the frame.
     pub kind: Kind,
-    /// Copied into the answer.
+    /// Transaction id; the answer repeats it.
     pub xid: u32,
-    /// Over how many steps of 10 ms stations spread their answers to Identify; 0 elsewhere.
+    /// Spread of the Identify answers, in steps of 10 ms; 0 for other services.
     pub delay: u16,
-    /// What is asked or told.
+    /// Blocks.
     pub blocks: Vec<Block>,
 }
 
 impl Dcp {
-    /// Looks for the station of this name; it answers at once.
+    /// Finds the station with this name, which answers at once.
     pub fn identify(xid: u32, name: &str) -> Self {
         let blocks = vec![Block::name_filter(name)];
         Self { service: Service::Identify, kind: Kind::Request, xid, delay: 1, blocks }
     }
 
-    /// Looks for all stations; they spread their answers over so many steps of 10 ms.
+    /// Finds all stations. They spread their answers over `delay` steps of 10 ms.
     pub fn identify_all(xid: u32, delay: u16) -> Self {
         let blocks = vec![Block { setting: Setting::ALL, data: Vec::new() }];
         Self { service: Service::Identify, kind: Kind::Request, xid, delay, blocks }
@@ -160,16 +160,13 @@ impl Dcp {
         Self { service: Service::Set, kind: Kind::Request, xid, delay: 0, blocks }
     }
 
-    /// An answer to it.
+    /// An answer to this request.
     #[must_use]
     pub fn answer(&self, blocks: Vec<Block>) -> Self {
         Self { service: self.service, kind: Kind::Response, xid: self.xid, delay: 0, blocks }
     }
 
-    /// Reads what a frame carries behind its id.
-    ///
-    /// # Errors
-    /// When it is no DCP, or ends in the middle of a block.
+    /// Decodes the payload of a frame.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         let service = match reader.u8("ServiceID")? {
@@ -196,7 +193,7 @@ impl Dcp {
         Ok(Self { service, kind, xid, delay, blocks })
     }
 
-    /// The bytes.
+    /// Encodes the payload.
     pub fn emit(&self) -> Vec<u8> {
         let is_list = self.service == Service::Get && self.kind == Kind::Request;
         let mut blocks = Writer::default();
@@ -228,10 +225,7 @@ impl Dcp {
         out.bytes
     }
 
-    /// What an answer to Identify or Get, or a Hello, says of the station.
-    ///
-    /// # Errors
-    /// When a value is cut short.
+    /// Station data of an Identify or Get answer, or of a Hello.
     pub fn station(&self) -> Result<Station, WireError> {
         let mut station = Station::default();
         for block in &self.blocks {
@@ -259,7 +253,7 @@ impl Dcp {
         Ok(station)
     }
 
-    /// Result of settings that were set, or could not be read: each with its error, 0 for none.
+    /// Results of a Set, or of settings that could not be read; error 0 means success.
     pub fn outcomes(&self) -> Vec<(Setting, u8)> {
         let responses = self.blocks.iter().filter(|block| block.setting == Setting::RESPONSE);
         responses
@@ -279,7 +273,7 @@ fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, Wir
         if !is_list {
             let length = usize::from(reader.u16("block length")?);
             data = reader.take(length, "block")?.to_vec();
-            // The last block of some stations ends without its padding.
+            // Some stations omit the padding of the last block.
             if length % 2 == 1 && reader.left() > 0 {
                 reader.u8("padding")?;
             }
@@ -289,19 +283,19 @@ fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, Wir
     Ok(blocks)
 }
 
-/// Address, mask and gateway.
+/// IP address, mask and gateway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IpSuite {
-    /// The address; 0.0.0.0 for none.
+    /// IP address; 0.0.0.0 means none.
     pub address: Ipv4Addr,
-    /// The mask.
+    /// Subnet mask.
     pub mask: Ipv4Addr,
-    /// The gateway; 0.0.0.0 or the address itself for none.
+    /// Gateway; 0.0.0.0 or the station's own address means none.
     pub gateway: Ipv4Addr,
 }
 
 impl IpSuite {
-    /// Its bytes.
+    /// Encodes the three addresses.
     pub fn bytes(&self) -> [u8; 12] {
         let mut bytes = [0; 12];
         let parts = [self.address, self.mask, self.gateway];
@@ -311,10 +305,7 @@ impl IpSuite {
         bytes
     }
 
-    /// Reads its bytes.
-    ///
-    /// # Errors
-    /// When there are fewer than 12.
+    /// Decodes the three addresses.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         Self::read(&mut Reader::big(bytes))
     }
@@ -324,17 +315,17 @@ impl IpSuite {
         Ok(Self { address: part("IP address")?, mask: part("mask")?, gateway: part("gateway")? })
     }
 
-    /// Whether both are in one network by this mask.
+    /// Whether both addresses are in one network.
     pub fn reaches(&self, other: Ipv4Addr) -> bool {
         let mask = u32::from(self.mask);
         u32::from(self.address) & mask == u32::from(other) & mask
     }
 }
 
-/// Where an address comes from, as the block info says.
+/// Origin of an IP address, from the block info.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IpOrigin(
-    /// The block info.
+    /// Block info.
     pub u16,
 );
 
@@ -344,41 +335,41 @@ impl IpOrigin {
         self.0 & 0x80 != 0
     }
 
-    /// Whether it came by DHCP.
+    /// Whether DHCP assigned it.
     pub const fn is_by_dhcp(self) -> bool {
         self.0 & 3 == 2
     }
 }
 
-/// What a station says of itself.
+/// Data that a station reports about itself.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Station {
-    /// Its name; empty if it has none.
+    /// Station name; can be empty.
     pub name: String,
-    /// Its type.
+    /// Station type.
     pub kind: String,
-    /// Vendor and device.
+    /// Vendor id and device id.
     pub id: Option<(u16, u16)>,
-    /// Bit 0 device, 1 controller, 2 several devices, 3 supervisor.
+    /// Role: bit 0 device, 1 controller, 2 multi-device, 3 supervisor.
     pub role: u8,
-    /// A name made of a port and the name of a neighbour.
+    /// Alias: port name and name of the neighbour.
     pub alias: String,
-    /// The instance in its object UUID.
+    /// Instance in the object UUID.
     pub instance: Option<u16>,
-    /// Its address.
+    /// IP address and its origin.
     pub ip: Option<(IpSuite, IpOrigin)>,
-    /// Settings that it has.
+    /// Supported options.
     pub options: Vec<Setting>,
 }
 
 impl Station {
-    /// Its address, if it has one.
+    /// IP address, if it has one.
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.ip.map(|(suite, _)| suite.address).filter(|address| !address.is_unspecified())
     }
 }
 
-/// Why a setting was not set or read, in words.
+/// Text of a DCP error code.
 pub fn describe_error(error: u8) -> &'static str {
     match error {
         0 => "done",
@@ -392,10 +383,7 @@ pub fn describe_error(error: u8) -> &'static str {
     }
 }
 
-/// Why this is not a name that a station can have; the rules are those of labels of host names, in lower case.
-///
-/// # Errors
-/// The reason.
+/// Checks a station name. The rules are those of host name labels in lower case.
 pub fn check_name(name: &str) -> Result<(), String> {
     if name.is_empty() || name.len() > 240 {
         return Err(format!("it has {} characters; 1 to 240 are allowed", name.len()));
@@ -447,7 +435,7 @@ mod tests {
         IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: address }
     }
 
-    /// notes, worked example: the first frame of a connection.
+    /// notes, worked example: first frame of a connection.
     #[test]
     fn a_station_is_looked_for_by_name() {
         let dcp = Dcp::identify(0x0100_0001, "yrcx-sim");
@@ -461,7 +449,7 @@ mod tests {
         assert_eq!(Dcp::parse(Frame::parse(&bytes).unwrap().payload), Ok(dcp));
     }
 
-    /// Likewise: the answer.
+    /// notes, worked example: the answer.
     #[test]
     fn a_station_says_who_it_is() {
         let bytes = hex(concat!(
@@ -480,7 +468,7 @@ mod tests {
         assert_eq!(Frame { payload: &dcp.emit(), ..frame }.emit(), bytes);
     }
 
-    /// Likewise: what is set and asked.
+    /// notes, worked example: Set and Get.
     #[test]
     fn settings_are_set_and_read_as_in_the_example() {
         let cases = [

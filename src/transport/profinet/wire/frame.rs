@@ -1,60 +1,57 @@
-//! Ethernet frames of PROFINET, with and without a tag, and what their ids are for.
+//! Codec for PROFINET Ethernet frames, with and without VLAN tag, and their frame ids.
 
 use super::{Mac, Reader, WireError, Writer};
 
-/// The type of Ethernet frames that carry PROFINET.
+/// EtherType of PROFINET.
 pub const ETHER_TYPE: u16 = 0x8892;
-/// The type of a tag.
+/// EtherType of a VLAN tag.
 const TAGGED: u16 = 0x8100;
-/// Priority 6 in network 0: cyclic data and alarms of high priority.
+/// VLAN tag: priority 6, VLAN 0, for cyclic data and high-priority alarms.
 pub const TAG_HIGH: u16 = 0xC000;
-/// Priority 5 in network 0: alarms of low priority.
+/// VLAN tag: priority 5, VLAN 0, for low-priority alarms.
 pub const TAG_LOW: u16 = 0xA000;
-/// Shortest frame without a tag, less the four bytes of its check.
+/// Minimum frame length without tag and checksum.
 const SHORTEST: usize = 60;
 
-/// What a frame is for.
+/// Frame ids.
 pub mod id {
     use std::ops::RangeInclusive;
 
-    /// Cyclic data from one to one, class value 2.
+    /// Unicast cyclic data, RT class 1 (class value 2).
     pub const RT_CLASS_1: RangeInclusive<u16> = 0x8000..=0xBBFF;
-    /// The same of older devices, class value 1.
+    /// Unicast cyclic data of older devices (class value 1).
     pub const RT_CLASS_1_LEGACY: RangeInclusive<u16> = 0xC000..=0xF7FF;
-    /// An alarm of high priority.
+    /// High-priority alarm.
     pub const ALARM_HIGH: u16 = 0xFC01;
-    /// An alarm of low priority.
+    /// Low-priority alarm.
     pub const ALARM_LOW: u16 = 0xFE01;
-    /// A station announces itself.
+    /// DCP Hello.
     pub const DCP_HELLO: u16 = 0xFEFC;
-    /// Get, Set, and their answers.
+    /// DCP Get and Set, and their answers.
     pub const DCP_GET_SET: u16 = 0xFEFD;
-    /// Identify.
+    /// DCP Identify request.
     pub const DCP_IDENTIFY: u16 = 0xFEFE;
-    /// The answer to Identify.
+    /// DCP Identify answer.
     pub const DCP_IDENTIFIED: u16 = 0xFEFF;
 }
 
 /// A frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Where it goes.
+    /// Destination.
     pub destination: Mac,
-    /// Where it comes from.
+    /// Source.
     pub source: Mac,
-    /// The tag's priority and network, where it has one; drivers take it off.
+    /// VLAN tag, if present. Drivers can remove it.
     pub tag: Option<u16>,
-    /// What it is for.
+    /// Frame id.
     pub id: u16,
-    /// What it carries, maybe with padding behind it.
+    /// Payload, possibly with padding.
     pub payload: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
-    /// Reads a frame.
-    ///
-    /// # Errors
-    /// When it is none of PROFINET.
+    /// Decodes a frame.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(bytes);
         let destination = reader.mac("destination")?;
@@ -72,7 +69,7 @@ impl<'a> Frame<'a> {
         Ok(Self { destination, source, tag, id, payload: reader.rest() })
     }
 
-    /// The bytes, padded to the shortest frame there is.
+    /// Encodes the frame, padded to the minimum length.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.put(&self.destination.0);

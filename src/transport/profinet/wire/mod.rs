@@ -1,8 +1,7 @@
-//! The bytes of PROFINET IO: Ethernet frames, DCP, RPC, blocks, records, cyclic data, alarms.
+//! PROFINET IO codec: Ethernet frames, DCP, RPC, blocks, records, cyclic data, alarms.
 //!
-//! Big-endian, but for the header of an RPC datagram and its five numbers of NDR, which are in the order that the
-//! datagram names. Parsing takes what devices send (reserved bytes are not looked at); emitting writes what IEC 61158-6-10
-//! says.
+//! Numbers are big-endian, except in the RPC header and its five NDR numbers, whose byte order the datagram names. The
+//! decoder accepts what devices send and ignores reserved bytes. The encoder follows IEC 61158-6-10.
 
 use std::fmt;
 use std::str::FromStr;
@@ -23,20 +22,20 @@ pub mod status;
 #[cfg(test)]
 mod tests;
 
-/// The address of a network card.
+/// MAC address.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Mac(
-    /// Its bytes in the order of the wire.
+    /// Bytes in network order.
     pub [u8; 6],
 );
 
 impl Mac {
-    /// Where requests of DCP go that any station may answer.
+    /// Multicast address of DCP Identify requests.
     pub const DCP_IDENTIFY: Self = Self([0x01, 0x0E, 0xCF, 0, 0, 0]);
-    /// Where stations announce themselves.
+    /// Multicast address of DCP Hello.
     pub const DCP_HELLO: Self = Self([0x01, 0x0E, 0xCF, 0, 0, 1]);
 
-    /// Whether it stands for several cards.
+    /// Whether it is a multicast address.
     pub const fn is_group(self) -> bool {
         self.0[0] & 1 == 1
     }
@@ -72,18 +71,18 @@ impl FromStr for Mac {
     }
 }
 
-/// A UUID, in the order of bytes that blocks have it in.
+/// UUID, in the byte order of blocks.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Uuid(
-    /// Its bytes.
+    /// The bytes.
     pub [u8; 16],
 );
 
 impl Uuid {
-    /// None.
+    /// The nil UUID.
     pub const NIL: Self = Self([0; 16]);
 
-    /// With the order of bytes in its first three fields turned round.
+    /// Reverses the bytes of its first three fields.
     fn swapped(self) -> Self {
         let mut bytes = self.0;
         bytes[..4].reverse();
@@ -92,7 +91,7 @@ impl Uuid {
         Self(bytes)
     }
 
-    /// One that nobody else has (version 4).
+    /// A random UUID (version 4).
     pub fn random() -> Self {
         let mut bytes = fastrand::u128(..).to_be_bytes();
         bytes[6] = bytes[6] & 0x0F | 0x40;
@@ -128,7 +127,6 @@ impl Reader<'_> {
     }
 }
 
-/// Writes a message field by field.
 #[derive(Debug, Default)]
 struct Writer {
     bytes: Vec<u8>,
@@ -156,26 +154,25 @@ impl Writer {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// As many zeros.
     fn zeros(&mut self, count: usize) {
         self.bytes.resize(self.bytes.len() + count, 0);
     }
 }
 
-/// A length or a count as the two bytes of its field.
+/// Encodes a 16-bit length or count.
 ///
 /// # Panics
-/// Above 65535; whoever builds messages bounds what goes into them.
+/// Above 65535. Callers limit the size of messages.
 fn count16(count: usize) -> u16 {
     u16::try_from(count).expect("lengths of messages are bounded where they are built")
 }
 
-/// Likewise in four bytes.
+/// Encodes a 32-bit length or count; panics above its range.
 fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("lengths of messages are bounded where they are built")
 }
 
-/// Text of a fixed field, without the blanks and zeros behind it.
+/// Text of a fixed-length field, without trailing blanks and zeros.
 fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     text.trim_end_matches(['\0', ' ']).chars().filter(|c| !c.is_control()).collect()

@@ -1,49 +1,45 @@
-//! Records: settings and facts of a submodule, by number.
+//! Codec for records: numbered parameters and data of a submodule.
 
 use super::block::{self, BlockType};
 use super::{Reader, Uuid, WireError, Writer, count16, count32, text};
 
-/// Numbers of records.
+/// Record indexes.
 pub mod index {
     /// I&M0: vendor, order number, serial number, versions.
     pub const IM0: u16 = 0xAFF0;
-    /// Which modules there are.
+    /// Real modules.
     pub const REAL_IDENTIFICATION: u16 = 0xF000;
-    /// Why connections ended.
+    /// Log of ended connections.
     pub const LOGBOOK: u16 = 0xF830;
-    /// Several records written at once.
+    /// Several records in one Write.
     pub const MULTIPLE_WRITE: u16 = 0xE040;
 }
 
-/// Bytes behind the header of a block before the record.
+/// Length of a record block before the data, without its header.
 const FIXED: usize = 60;
-/// Bytes of the header of a block.
 const BLOCK_HEADER: usize = 4;
 
-/// Which record, and how many bytes: of the record, or of the room for it.
+/// Record header of a Read or Write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record {
-    /// Counts the reads and writes of a connection.
+    /// Sequence number in the connection.
     pub sequence: u16,
-    /// The connection; nil outside of one.
+    /// UUID of the connection; nil outside of one.
     pub ar: Uuid,
-    /// The profile; 0.
+    /// API (profile); 0.
     pub api: u32,
-    /// The slot.
+    /// Slot.
     pub slot: u16,
-    /// The subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// Its number.
+    /// Record index.
     pub index: u16,
-    /// Bytes.
+    /// Length of the record, or of the buffer for it, in bytes.
     pub length: u32,
 }
 
 impl Record {
-    /// Reads the block that a call or its answer begins with, and gives what is behind it.
-    ///
-    /// # Errors
-    /// When it is another block, or shorter than it says.
+    /// Decodes the first block of a call or answer. Also returns the remaining bytes.
     pub fn parse(bytes: &[u8], kind: BlockType) -> Result<(Self, &[u8]), WireError> {
         let mut reader = Reader::big(bytes);
         let found = reader.u16("BlockType")?;
@@ -64,10 +60,7 @@ impl Record {
         Ok((Self { sequence, ar, api, slot, subslot, index, length }, reader.rest()))
     }
 
-    /// Reads an answer to Read, and gives the record.
-    ///
-    /// # Errors
-    /// Likewise, or when the record is cut short.
+    /// Decodes a Read answer. Also returns the record data.
     pub fn parse_answer(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::READ.answer())?;
         let length = usize::try_from(record.length).unwrap_or(usize::MAX);
@@ -75,7 +68,7 @@ impl Record {
         Ok((record, rest.get(..length).ok_or(short)?))
     }
 
-    /// The block of a call or an answer, with the status of an answer to Write, and what follows it.
+    /// Encodes the block and the data. `status` is for Write answers, otherwise 0.
     pub fn emit(&self, kind: BlockType, status: u32, data: &[u8]) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.sequence);
@@ -86,7 +79,7 @@ impl Record {
         out.u16(0);
         out.u16(self.index);
         out.u32(self.length);
-        // Two additional values, then the status where it is an answer to Write.
+        // Two additional values; the second is the status of a Write answer.
         out.u32(0);
         out.u32(status);
         out.zeros(FIXED - 2 - out.bytes.len());
@@ -95,10 +88,7 @@ impl Record {
         bytes
     }
 
-    /// The status in an answer to Write.
-    ///
-    /// # Errors
-    /// When it is another block, or cut short.
+    /// Decodes a Write answer. Also returns its status and the remaining bytes.
     pub fn write_status(bytes: &[u8]) -> Result<(Self, u32, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::WRITE.answer())?;
         let mut reader = Reader { at: 44, ..Reader::big(bytes) };
@@ -106,20 +96,20 @@ impl Record {
     }
 }
 
-/// A record with what is written to it.
+/// A parameter record to write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameter {
-    /// The slot.
+    /// Slot.
     pub slot: u16,
-    /// The subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// Its number.
+    /// Record index.
     pub index: u16,
-    /// What is written.
+    /// Record data.
     pub data: Vec<u8>,
 }
 
-/// The blocks of a Write of one record, or of several at once.
+/// Encodes a Write of one or several records.
 pub fn write(ar: Uuid, sequence: u16, parameters: &[Parameter]) -> Vec<u8> {
     let record = |at: usize, parameter: &Parameter| Record {
         sequence: sequence.wrapping_add(count16(at)),
@@ -144,10 +134,7 @@ pub fn write(ar: Uuid, sequence: u16, parameters: &[Parameter]) -> Vec<u8> {
     outer.emit(BlockType::WRITE, 0, &inner)
 }
 
-/// The records of a Write, one or several at once.
-///
-/// # Errors
-/// When a block is cut short, or is no write.
+/// Decodes a Write of one or several records.
 pub fn parse_write(bytes: &[u8]) -> Result<(Record, Vec<Parameter>), WireError> {
     let (outer, data) = Record::parse(bytes, BlockType::WRITE)?;
     if outer.index != index::MULTIPLE_WRITE {
@@ -173,7 +160,7 @@ fn parameter<'a>(record: &Record, data: &'a [u8]) -> Result<(Parameter, &'a [u8]
     Ok((Parameter { slot, subslot, index, data: data.to_vec() }, rest))
 }
 
-/// The answer to a Write: each record with what became of it.
+/// Encodes the Write answer with the status of each record.
 pub fn write_answer(outer: &Record, statuses: &[(Record, u32)]) -> Vec<u8> {
     if outer.index != index::MULTIPLE_WRITE {
         let status = statuses.first().map_or(0, |(_, status)| *status);
@@ -185,10 +172,7 @@ pub fn write_answer(outer: &Record, statuses: &[(Record, u32)]) -> Vec<u8> {
     outer.emit(BlockType::WRITE.answer(), 0, &inner)
 }
 
-/// Result of each record of a Write.
-///
-/// # Errors
-/// When a block is cut short, or is another one.
+/// Decodes the status of each record from a Write answer.
 pub fn parse_write_answer(bytes: &[u8]) -> Result<Vec<(Record, u32)>, WireError> {
     let (outer, status, mut rest) = Record::write_status(bytes)?;
     let mut all = vec![(outer, status)];
@@ -202,28 +186,25 @@ pub fn parse_write_answer(bytes: &[u8]) -> Result<Vec<(Record, u32)>, WireError>
     Ok(all)
 }
 
-/// I&M0: who a device is.
+/// I&M0: identification of a device.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Im0 {
-    /// The vendor.
+    /// Vendor id.
     pub vendor: u16,
-    /// What it is ordered as.
+    /// Order number.
     pub order_id: String,
-    /// Its serial number.
+    /// Serial number.
     pub serial: String,
-    /// The version of its hardware.
+    /// Hardware revision.
     pub hardware: u16,
-    /// The version of its software: `V` for released, and three numbers.
+    /// Software revision: prefix (`V` for a release) and three numbers.
     pub software: (char, u8, u8, u8),
-    /// How often it was changed.
+    /// Revision counter.
     pub revision: u16,
 }
 
 impl Im0 {
-    /// Reads the record.
-    ///
-    /// # Errors
-    /// When it is another block, or cut short.
+    /// Decodes the record.
     pub fn parse(record: &[u8]) -> Result<Self, WireError> {
         let blocks = block::walk(record)?;
         let found = blocks.iter().find(|block| block.kind == BlockType::IM0);
@@ -243,7 +224,7 @@ impl Im0 {
         })
     }
 
-    /// The record.
+    /// Encodes the record.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.vendor);
@@ -256,34 +237,31 @@ impl Im0 {
         let (prefix, major, minor, patch) = self.software;
         out.put(&[u8::try_from(prefix).unwrap_or(b'V'), major, minor, patch]);
         out.u16(self.revision);
-        // Profile none, version 1.1 of I&M, and none of I&M1 to I&M4.
+        // No profile, I&M version 1.1, no I&M1 to I&M4.
         out.put(&[0, 0, 0, 0, 1, 1, 0, 0]);
         block::emit(BlockType::IM0, &out.bytes)
     }
 }
 
-/// A module that is there.
+/// A real module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RealModule {
-    /// Its slot.
+    /// Slot.
     pub slot: u16,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
-    /// Its submodules: subslot and kind.
+    /// Submodules: subslot and ident number.
     pub submodules: Vec<(u16, u32)>,
 }
 
-/// Reads the record of the modules that are there.
-///
-/// # Errors
-/// When it is another block, or cut short.
+/// Decodes the record of real modules.
 pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError> {
     let blocks = block::walk(record)?;
     let found = blocks.iter().find(|block| block.kind == BlockType::REAL_IDENTIFICATION);
     let found = found.ok_or(Reader::big(record).missing("RealIdentificationData"))?;
     let mut reader = Reader::big(found.body);
     let mut modules = Vec::new();
-    // Version 1.0 has no APIs.
+    // Version 1.0 has no API numbers.
     let apis = if found.version.1 == 0 { 1 } else { reader.u16("NumberOfAPIs")? };
     for _ in 0..apis {
         if found.version.1 != 0 {
@@ -301,7 +279,7 @@ pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError>
     Ok(modules)
 }
 
-/// The record of the modules that are there.
+/// Encodes the record of real modules.
 pub fn emit_identification(modules: &[RealModule]) -> Vec<u8> {
     let mut out = Writer::default();
     out.u16(1);

@@ -1,81 +1,81 @@
-//! Connectionless RPC (DCE 1.1, version 4) on UDP port 34964, and the numbers of NDR before the blocks.
+//! Codec for connectionless RPC (DCE 1.1, version 4) on UDP port 34964, with the NDR header of the blocks.
 
 use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
 
-/// UDP port of both ends.
+/// UDP port of both sides.
 pub const PORT: u16 = 34964;
-/// Bytes of the header.
+/// Length of the RPC header.
 pub const HEADER_LEN: usize = 80;
-/// Bytes of the five numbers.
+/// Length of the five NDR numbers.
 const NDR_LEN: usize = 20;
-/// Room for an answer; fits all that is asked for.
+/// Buffer size for an answer; enough for all calls.
 pub const ROOM: u32 = 4096;
-/// Most bytes that are collected of an answer in fragments.
+/// Limit of a reassembled answer in bytes.
 pub const MOST: usize = 65_536;
 
-/// What a datagram is.
+/// Packet type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Kind(
-    /// The number.
+    /// The code.
     pub u8,
 );
 
 impl Kind {
     /// A call.
     pub const REQUEST: Self = Self(0);
-    /// Asks whether a call is still worked on.
+    /// Asks whether a call is in progress.
     pub const PING: Self = Self(1);
-    /// The answer to a call.
+    /// Answer to a call.
     pub const RESPONSE: Self = Self(2);
-    /// The call went wrong.
+    /// The call failed.
     pub const FAULT: Self = Self(3);
-    /// The call is worked on.
+    /// The call is in progress.
     pub const WORKING: Self = Self(4);
-    /// No such call is known.
+    /// The call is unknown.
     pub const NO_CALL: Self = Self(5);
-    /// The call is not taken.
+    /// The call is rejected.
     pub const REJECT: Self = Self(6);
-    /// The response has arrived.
+    /// Acknowledges a response.
     pub const ACK: Self = Self(7);
-    /// A fragment has arrived.
+    /// Acknowledges a fragment.
     pub const FRAGMENT_ACK: Self = Self(9);
 }
 
-/// Flags of a header.
+/// Flags of the header.
 pub mod flag {
-    /// The last fragment.
+    /// Last fragment.
     pub const LAST_FRAGMENT: u8 = 0x02;
-    /// A fragment.
+    /// Fragment.
     pub const FRAGMENT: u8 = 0x04;
-    /// A fragment that wants no acknowledgement.
+    /// The fragment needs no acknowledgement.
     pub const NO_ACK: u8 = 0x08;
-    /// A call that may be done twice.
+    /// The call can be repeated.
     pub const IDEMPOTENT: u8 = 0x20;
 }
 
-/// What is called.
+/// Operation numbers.
 pub mod operation {
-    /// Begins a connection.
+    /// Open a connection.
     pub const CONNECT: u16 = 0;
-    /// Ends it.
+    /// Close a connection.
     pub const RELEASE: u16 = 1;
-    /// Reads a record.
+    /// Read a record.
     pub const READ: u16 = 2;
-    /// Writes records.
+    /// Write records.
     pub const WRITE: u16 = 3;
-    /// PrmEnd, ApplicationReady.
+    /// PrmEnd and ApplicationReady.
     pub const CONTROL: u16 = 4;
-    /// Reads a record outside a connection.
+    /// Read a record without a connection.
     pub const READ_IMPLICIT: u16 = 5;
 }
 
-/// The interface of devices.
+/// Interface UUID of devices.
 pub const DEVICE: Uuid = Uuid([0xDE, 0xA0, 0, 1, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, 0, 0xA0, 0x24, 0x42, 0xDF, 0x7D]);
-/// The interface of controllers.
+/// Interface UUID of controllers.
 pub const CONTROLLER: Uuid =
     Uuid([0xDE, 0xA0, 0, 2, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, 0, 0xA0, 0x24, 0x42, 0xDF, 0x7D]);
 
-/// The object of a station.
+/// Object UUID of a station.
 pub fn object(instance: u16, device: u16, vendor: u16) -> Uuid {
     let [i0, i1] = instance.to_be_bytes();
     let [d0, d1] = device.to_be_bytes();
@@ -83,45 +83,45 @@ pub fn object(instance: u16, device: u16, vendor: u16) -> Uuid {
     Uuid([0xDE, 0xA0, 0, 0, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, i0, i1, d0, d1, v0, v1])
 }
 
-/// The header of a datagram.
+/// RPC header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Header {
-    /// What it is.
+    /// Packet type.
     pub kind: Kind,
-    /// See [`flag`].
+    /// Flags; see [`flag`].
     pub flags: u8,
-    /// The order of bytes of header and NDR.
+    /// Byte order of header and NDR numbers.
     pub order: ByteOrder,
-    /// Whom it is about.
+    /// Object UUID of the device.
     pub object: Uuid,
-    /// Which set of operations.
+    /// Interface UUID.
     pub interface: Uuid,
-    /// Who calls: one for each client, its own.
+    /// Activity UUID, unique for each client.
     pub activity: Uuid,
-    /// When the server started; 0 for unknown.
+    /// Boot time of the server; 0 if unknown.
     pub boot: u32,
-    /// Counts the calls of an activity.
+    /// Sequence number of the call in the activity.
     pub sequence: u32,
-    /// See [`operation`].
+    /// Operation number; see [`operation`].
     pub operation: u16,
-    /// Counts fragments.
+    /// Fragment number.
     pub fragment: u16,
 }
 
-/// A datagram.
+/// An RPC datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Datagram<'a> {
-    /// Its header.
+    /// RPC header.
     pub header: Header,
-    /// NDR and blocks, or a part of them.
+    /// NDR numbers and blocks, or a fragment of them.
     pub body: &'a [u8],
 }
 
 impl<'a> Datagram<'a> {
-    /// Reads a datagram.
+    /// Decodes a datagram.
     ///
     /// # Errors
-    /// When it is no RPC of version 4, or shorter than it says.
+    /// Not RPC version 4, or too short.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(bytes);
         let version = reader.u8("RPC version")?;
@@ -154,7 +154,7 @@ impl<'a> Datagram<'a> {
         Ok(Self { header, body })
     }
 
-    /// The bytes.
+    /// Encodes the datagram.
     pub fn emit(&self) -> Vec<u8> {
         let header = &self.header;
         let mut out = Writer { bytes: Vec::with_capacity(HEADER_LEN + self.body.len()), order: header.order };
@@ -177,64 +177,58 @@ impl<'a> Datagram<'a> {
 }
 
 impl Header {
-    /// The header of the answer to it.
+    /// Header of the answer.
     #[must_use]
     pub const fn answer(&self) -> Self {
         Self { kind: Kind::RESPONSE, flags: flag::NO_ACK | flag::LAST_FRAGMENT, fragment: 0, ..*self }
     }
 
-    /// Whether what it stands before is a part of something longer.
+    /// Whether it is the header of a fragment.
     pub const fn is_fragment(&self) -> bool {
         self.flags & flag::FRAGMENT != 0
     }
 }
 
-/// A call as it is behind the header.
+/// Content of a call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call<'a> {
-    /// Room for the blocks of the answer.
+    /// Buffer size for the blocks of the answer.
     pub room: u32,
     /// The blocks.
     pub blocks: &'a [u8],
 }
 
 impl<'a> Call<'a> {
-    /// Reads it.
-    ///
-    /// # Errors
-    /// When lengths are longer than what is there.
+    /// Decodes a call.
     pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let (room, blocks) = read_ndr(body, order)?;
         Ok(Self { room, blocks })
     }
 
-    /// The bytes.
+    /// Encodes the call.
     pub fn emit(&self, order: ByteOrder) -> Vec<u8> {
         write_ndr(self.room, self.room, self.blocks, order)
     }
 }
 
-/// An answer as it is behind the header.
+/// Content of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reply<'a> {
-    /// 0 for done; see [`super::status`].
+    /// Status; 0 is success. See [`super::status`].
     pub status: u32,
-    /// The room that the call gave.
+    /// Buffer size from the call.
     pub room: u32,
     /// The blocks.
     pub blocks: &'a [u8],
 }
 
 impl<'a> Reply<'a> {
-    /// Reads it.
-    ///
-    /// # Errors
-    /// When lengths are longer than what is there.
+    /// Decodes an answer.
     pub fn parse(body: &'a [u8], order: ByteOrder) -> Result<Self, WireError> {
         let mut reader = Reader::big(body);
         reader.order = order;
         let status = reader.u32("PNIOStatus")?;
-        // What refuses may end behind its status.
+        // A refusal can end after its status.
         if status != 0 && body.len() < NDR_LEN {
             return Ok(Self { status, room: 0, blocks: &[] });
         }
@@ -244,7 +238,7 @@ impl<'a> Reply<'a> {
         Ok(Self { status, room, blocks })
     }
 
-    /// The bytes.
+    /// Encodes the answer.
     pub fn emit(&self, order: ByteOrder) -> Vec<u8> {
         write_ndr(self.status, self.room, self.blocks, order)
     }
@@ -297,7 +291,7 @@ mod tests {
 
     const BLOCKS: [u8; 394] = [7; 394];
 
-    /// notes, worked example: the header of Connect and its NDR.
+    /// notes, worked example: header of Connect and its NDR numbers.
     #[test]
     fn headers_in_both_orders_are_as_printed() {
         let big = hex(concat!(
@@ -321,7 +315,7 @@ mod tests {
         }
     }
 
-    /// Likewise: the answer.
+    /// notes, worked example: the answer.
     #[test]
     fn answers_begin_with_their_status() {
         let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);

@@ -1,18 +1,18 @@
-//! What a device says no with: four bytes, and what they mean.
+//! PNIOStatus: error codes of a device and their texts.
 
 use std::fmt;
 
 /// PNIOStatus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(
-    /// Code, decode, code 1, code 2, from the highest byte down.
+    /// Error code, decode, code 1, code 2, from the highest byte.
     pub u32,
 );
 
-/// A field of a block with the number that names it.
+/// Fields of a block, by code 2.
 type Fields = &'static [(u8, &'static str)];
 
-/// Blocks by their code 1, with their fields by code 2.
+/// Blocks by code 1, with their fields by code 2.
 const BLOCKS: [(u8, &str, Fields); 8] = [
     (
         0x01,
@@ -113,7 +113,7 @@ const BLOCKS: [(u8, &str, Fields); 8] = [
     (0x3D, "the state of the device", &[(0x00, "it does not fit the call")]),
 ];
 
-/// What the RPC part of a device says, by code 2; code 1 is 0x40.
+/// Errors of the RPC layer (code 1 is 0x40), by code 2.
 const RPC: [(u8, &str); 10] = [
     (0x00, "the length of the arguments is wrong"),
     (0x01, "there are blocks that it does not know"),
@@ -127,7 +127,7 @@ const RPC: [(u8, &str); 10] = [
     (0x09, "another connection has its ports"),
 ];
 
-/// What a record is refused with, by code 1.
+/// Errors of record access, by code 1.
 const RECORDS: [(u8, &str); 18] = [
     (0xA0, "read error"),
     (0xA1, "write error"),
@@ -149,7 +149,7 @@ const RECORDS: [(u8, &str); 18] = [
     (0xC0, "read constraint conflict"),
 ];
 
-/// Why a connection ended, by code 2 of an error of RTA (code 1 is 0xFD).
+/// Abort reasons of RTA (code 1 is 0xFD), by code 2.
 const REASONS: [(u8, &str); 32] = [
     (0x01, "an alarm came out of sequence"),
     (0x02, "the connection was closed"),
@@ -186,32 +186,32 @@ const REASONS: [(u8, &str); 32] = [
 ];
 
 impl Status {
-    /// From its parts.
+    /// Creates a status from its parts.
     pub const fn new(code: u8, decode: u8, code1: u8, code2: u8) -> Self {
         Self(u32::from_be_bytes([code, decode, code1, code2]))
     }
 
-    /// The error of RTA with this reason.
+    /// Status of an abort with this reason.
     pub const fn abort(reason: u8) -> Self {
         Self::new(0xCF, 0x81, 0xFD, reason)
     }
 
-    /// Code, decode, code 1, code 2.
+    /// Error code, decode, code 1, code 2.
     pub const fn parts(self) -> [u8; 4] {
         self.0.to_be_bytes()
     }
 
-    /// Whether the device has no room for another connection.
+    /// Whether the device has no free connection.
     pub const fn is_owned(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x04])
     }
 
-    /// Whether the device no longer knows the connection.
+    /// Whether the device does not know the connection any more.
     pub const fn is_unknown_ar(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x05])
     }
 
-    /// What was refused, by code: a call, an alarm.
+    /// Name of the refused call or alarm.
     pub const fn call(self) -> &'static str {
         match self.parts()[0] {
             0xDB => "Connect",
@@ -225,7 +225,7 @@ impl Status {
         }
     }
 
-    /// What to do about it, as far as that is known.
+    /// Remedies, if known.
     pub const fn remedies(self) -> &'static [&'static str] {
         match self.parts() {
             [_, 0x81, 0x40, 0x04] => &["end the other controller's connection, or wait until its watchdog ends it"],
@@ -242,7 +242,7 @@ impl Status {
         }
     }
 
-    /// What it means, without the four bytes; `None` for one that has no words.
+    /// Text without the four codes; `None` if unknown.
     pub fn meaning(self) -> Option<String> {
         let [_, decode, code1, code2] = self.parts();
         let named = |list: &[(u8, &'static str)], code| list.iter().find(|entry| entry.0 == code).map(|entry| entry.1);
@@ -263,7 +263,7 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// The meaning, and the four bytes beside it: some devices count fields in another way.
+    /// Text and the four codes, because some devices number fields differently.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [code, decode, code1, code2] = self.parts();
         if let Some(meaning) = self.meaning() {

@@ -1,4 +1,4 @@
-//! The clients of a host: what comes from each, and what goes to it.
+//! Clients of a host, with their input and output tasks.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,41 +11,41 @@ use tokio::time::{Instant, timeout_at};
 use crate::session::socket::{ReadHalf, WriteHalf};
 use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
 
-/// What came from whom; `None` when he has gone.
+/// Client and its frame; `None` when it is gone.
 pub type Letter = (u64, Option<Frame>);
 
-/// Frames that may wait for a client that does not read. More, and it is given up.
+/// Limit of frames that wait for a client. Above it, the client is dropped.
 const MOST_WAITING: usize = 1024;
-/// How long a client may be silent before it has said who it is.
+/// Time limit for the hello of a client.
 const FIRST_WORDS: Duration = Duration::from_secs(3);
-/// How long the last words to a client may take.
+/// Time limit for the last frame to a client.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 
-/// A client.
+/// A client of the session.
 #[derive(Debug)]
 pub struct Client {
     outbox: Arc<Outbox>,
     reading: JoinHandle<()>,
-    /// Its process, where the system tells.
+    /// Process id, if the system reports it.
     pid: Option<u32>,
-    /// What it says it is; `None` before its hello.
+    /// Process id and command of its hello; `None` before.
     name: Option<(u32, String)>,
-    /// What it comes for.
+    /// Purpose of its connection.
     pub purpose: Purpose,
-    /// Whether it said that it leaves.
+    /// Whether it has sent Bye.
     pub has_left: bool,
-    /// What the device is shown if it dies.
+    /// Last will: change to send if it dies.
     pub will: Option<Change>,
-    /// Since when it is there, has the line, may move.
+    /// Time of its connection.
     pub since: Instant,
-    /// Since when it has the line.
+    /// Time when it got the line.
     pub line_since: Instant,
-    /// Since when it may move the robot.
+    /// Time when it got the right to move the robot.
     pub motion_since: Instant,
 }
 
 impl Client {
-    /// Serves a connection; what comes goes into the letterbox.
+    /// Starts the tasks of a connection. Received frames go to `letterbox`.
     pub fn new(
         id: u64,
         (read, write, pid): (ReadHalf, WriteHalf, Option<u32>),
@@ -53,7 +53,7 @@ impl Client {
     ) -> Self {
         let outbox = Arc::new(Outbox::default());
         let now = Instant::now();
-        // It ends when the outbox is closed.
+        // This task ends when the outbox is closed.
         tokio::spawn(write_all(write, Arc::clone(&outbox)));
         Self {
             reading: tokio::spawn(read_all(id, Reader::new(read), letterbox)),
@@ -69,36 +69,34 @@ impl Client {
         }
     }
 
-    /// It has said who it is.
+    /// Stores the data of its hello.
     pub fn named(&mut self, pid: u32, command: String) {
         self.name = Some((self.pid.unwrap_or(pid), command));
     }
 
-    /// Whether it has said who it is.
+    /// Whether its hello has arrived.
     pub fn is_named(&self) -> bool {
         self.name.is_some()
     }
 
-    /// To others.
+    /// Description for other clients.
     pub fn peer(&self, since: Instant) -> Peer {
         let (pid, command) = self.name.clone().unwrap_or((self.pid.unwrap_or_default(), String::new()));
         Peer { pid, command, for_ms: milliseconds(since) }
     }
 
-    /// Sends it something.
     pub fn send(&self, frame: Frame) {
         self.outbox.push(frame);
     }
 
-    /// Sends it something rare.
     pub fn tell(&self, control: Control) {
         self.send(Frame::Control(control));
     }
 
-    /// Tells it the last thing; the connection stays until the client is dropped.
+    /// Sends a last frame. The connection stays open until the client is dropped.
     pub async fn dismiss(&self, control: Control) {
         self.tell(control);
-        // One that does not read must not hold up the end.
+        // A client that does not read must not delay the close.
         let _ = timeout_at(Instant::now() + LAST_WORDS, self.outbox.emptied()).await;
     }
 }
@@ -110,7 +108,7 @@ impl Drop for Client {
     }
 }
 
-/// How long ago that was.
+/// Milliseconds since a time.
 pub fn milliseconds(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
 }
@@ -118,11 +116,11 @@ pub fn milliseconds(since: Instant) -> u64 {
 async fn read_all(id: u64, mut reader: Reader, letterbox: mpsc::Sender<Letter>) {
     let mut is_named = false;
     loop {
-        // Who has said who he is may be silent; anybody else only takes up a place.
+        // After its hello a client can be silent. Before it, the client only blocks a place.
         let deadline = Instant::now() + FIRST_WORDS;
         let frame =
             if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
-        // What is no frame is the end, too.
+        // An invalid frame also ends the connection.
         let frame = frame.unwrap_or(None);
         let is_end = frame.is_none();
         is_named = is_named || matches!(frame, Some(Frame::Control(Control::Hello(_))));
@@ -140,7 +138,7 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
             frame.emit(&mut bytes);
         }
         while !bytes.is_empty() {
-            // A client that is gone is noticed by its reader.
+            // The reading task notices that the client is gone.
             if socket.writable().await.is_err() {
                 return;
             }
@@ -159,12 +157,12 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
     }
 }
 
-/// Frames on their way to a client. Of images that wait behind each other only the last one is worth sending.
+/// Queue of frames to a client. Of consecutive images, only the newest is sent.
 #[derive(Debug, Default)]
 struct Outbox {
     waiting: Mutex<Waiting>,
     news: Notify,
-    /// All was written.
+    /// Notified when everything is written.
     empty: Notify,
 }
 
@@ -172,7 +170,7 @@ struct Outbox {
 struct Waiting {
     frames: VecDeque<Frame>,
     is_closed: bool,
-    /// Whether some that were taken are being written.
+    /// Whether frames taken from the queue are being written.
     is_writing: bool,
 }
 

@@ -1,4 +1,4 @@
-//! The link that a host holds, of whichever kind.
+//! The link that a host holds: images, datagrams or a byte stream.
 
 use std::collections::BTreeMap;
 use std::future::Future;
@@ -16,50 +16,50 @@ use crate::sim::{InProcess, Peer};
 use crate::stream::Stream;
 use crate::udp::Udp;
 
-/// A link.
+/// The link of a session.
 pub enum Held {
-    /// Images each way.
+    /// An image link.
     Images(Images),
-    /// Datagrams.
+    /// A datagram link.
     Datagrams(Datagrams),
     /// A byte stream.
     Stream(Line),
 }
 
-/// What happens on it.
+/// Event of the link.
 #[derive(Debug)]
 pub enum Happening {
-    /// All that is shown has left.
+    /// All shown images were sent.
     Sent,
-    /// The device shows something new.
+    /// A new image of the device.
     Image(Arc<[u8]>),
-    /// The link is down, and why.
+    /// The link was lost, with the reason.
     Lost(String),
-    /// It is up again.
+    /// The link is open again.
     Reopened,
-    /// Bytes for a client, or for the holder of the line.
+    /// Bytes for a client, or for the owner of the line.
     Data {
-        /// Whom for, if not for the holder.
+        /// The client; `None` for the owner of the line.
         to: Option<u64>,
-        /// Which port of the device they come from.
+        /// Channel of the device.
         channel: u8,
-        /// They.
+        /// The bytes.
         bytes: Vec<u8>,
     },
-    /// Receiving failed.
+    /// A receive failed.
     Broken {
-        /// For whom.
+        /// The client.
         to: u64,
-        /// Why.
+        /// The error.
         error: io::Error,
     },
 }
 
-/// Longer than anything that is waited for.
+/// Longer than any wait.
 const LONG: Duration = Duration::from_secs(3600);
-/// Room for more than a frame of any controller, so that an oversized datagram shows.
+/// Larger than a frame of any controller, so that oversized datagrams are detected.
 const BUFFER: usize = 4096;
-/// Waits before another try to open a stream, one after the other; the last one again and again.
+/// Pauses before another attempt to open a stream. The last one repeats.
 const BACKOFF: [Duration; 5] = [
     Duration::from_millis(250),
     Duration::from_millis(500),
@@ -69,7 +69,7 @@ const BACKOFF: [Duration; 5] = [
 ];
 
 impl Held {
-    /// Waits for the next thing to happen. The future may be dropped.
+    /// Waits for the next event. Cancel safe.
     pub async fn next(&mut self) -> Happening {
         match self {
             Self::Images(images) => images.next().await,
@@ -78,7 +78,7 @@ impl Held {
         }
     }
 
-    /// Why the link is down; `None` while it is up.
+    /// Reason why the link is down; `None` while it is up.
     pub fn down(&self) -> Option<&str> {
         match self {
             Self::Images(images) => images.down.as_deref(),
@@ -87,7 +87,7 @@ impl Held {
         }
     }
 
-    /// The images, if there are some.
+    /// The image link, if it is one.
     pub fn images(&mut self) -> Option<&mut Images> {
         match self {
             Self::Images(images) => Some(images),
@@ -95,26 +95,26 @@ impl Held {
         }
     }
 
-    /// The line goes to a client: what came before is not for him.
+    /// A client gets the line. Bytes from before are dropped.
     pub fn begin(&mut self) {
         if let Self::Stream(Line { stream: Some(stream), .. }) = self {
             stream.discard();
         }
     }
 
-    /// Whether clients may use this channel at the same time: one that carries files must not keep a stop waiting.
+    /// Whether clients can use this channel at the same time. A file transfer must not delay a stop.
     pub fn is_parallel(&self, channel: u8) -> bool {
         matches!(self, Self::Datagrams(Datagrams { way: Way::Udp(_), .. })) && channel > 0
     }
 
-    /// A client expects no answer any more.
+    /// The client expects no more answers.
     pub fn pause(&mut self, client: u64) {
         if let Self::Datagrams(datagrams) = self {
             datagrams.expecting.remove(&client);
         }
     }
 
-    /// Sends what a client has to say.
+    /// Sends the bytes of a client.
     pub async fn send(&mut self, client: u64, channel: u8, bytes: &[u8]) -> io::Result<()> {
         match self {
             Self::Images(_) => Ok(()),
@@ -123,7 +123,7 @@ impl Held {
         }
     }
 
-    /// Gives a client a new socket for a channel.
+    /// Opens a new socket for a channel of a client.
     pub fn renew(&mut self, client: u64, channel: u8) {
         if let Self::Datagrams(Datagrams { sockets, .. }) = self
             && let Some(udp) = sockets.get_mut(&client)
@@ -133,7 +133,7 @@ impl Held {
         }
     }
 
-    /// A client has gone.
+    /// Removes a client.
     pub fn forget(&mut self, client: u64) {
         if let Self::Datagrams(datagrams) = self {
             datagrams.sockets.remove(&client);
@@ -141,10 +141,10 @@ impl Held {
         }
     }
 
-    /// Closes it.
+    /// Closes the link.
     ///
     /// # Errors
-    /// What was not closed properly, in words.
+    /// A text: what was not closed properly.
     pub async fn close(self) -> Result<(), String> {
         match self {
             Self::Images(images) => images.link.close().await.map_err(|trouble| trouble.to_string()),
@@ -153,42 +153,39 @@ impl Held {
     }
 }
 
-/// What a host has to know of images whose meaning it does not know.
+/// Rules for images, whose meaning the host does not know.
 #[derive(Debug, Clone)]
 pub struct Rules {
-    /// Whether anything may be shown at all.
+    /// Whether the link can send images.
     pub is_owner: bool,
-    /// Bytes of the output, from the first, that one client at a time changes.
+    /// Size of the exclusive part: bytes from the start that only the owner of the line can change.
     pub exclusive: usize,
-    /// So many of them, from the first, are 0 when nothing is under way there.
+    /// Size of the command part: bytes from the start that are 0 if no command is active.
     pub command: usize,
-    /// What is shown at first.
+    /// First image.
     pub resting: Vec<u8>,
-    /// What is shown after a loss, of what was shown before.
+    /// Image after a loss, computed from the one before.
     pub rest: fn(&[u8]) -> Vec<u8>,
-    /// Whether something moves, by what is shown and seen.
+    /// Whether the robot moves, from output and input image.
     pub under_way: fn(&[u8], &[u8]) -> bool,
 }
 
-/// An image link.
+/// An image link with its rules.
 pub struct Images {
     link: ImageLink,
-    /// What it goes by.
+    /// Rules for its images.
     pub rules: Rules,
-    /// What the device is shown.
+    /// Image to the device.
     pub shown: Vec<u8>,
-    /// What it shows; `None` while the link is down.
+    /// Image from the device; `None` while the link is down.
     pub seen: Option<Arc<[u8]>>,
-    /// How often the link went down.
+    /// Number of losses.
     pub generation: u32,
     down: Option<String>,
 }
 
 impl Images {
-    /// Begins with what is shown at first.
-    ///
-    /// # Errors
-    /// When that has another size than the images of the link.
+    /// Starts with the resting image.
     pub fn new(mut link: ImageLink, rules: Rules) -> Result<Self, String> {
         if rules.is_owner {
             link.show(&rules.resting).map_err(|trouble| trouble.to_string())?;
@@ -196,7 +193,7 @@ impl Images {
         Ok(Self { link, shown: rules.resting.clone(), rules, seen: None, generation: 0, down: None })
     }
 
-    /// Waits until the device shows something; `false` if it does not by then.
+    /// Waits for the first image of the device; `false` after a timeout.
     pub async fn begin(&mut self, until: Instant) -> bool {
         while self.seen.is_none() {
             match self.link.next(until).await {
@@ -234,8 +231,8 @@ impl Images {
         }
     }
 
-    /// Shows what a client wants shown; without the line the exclusive part stays as it is. What has changed, if it was
-    /// not meant for the time before a loss.
+    /// Applies a change of a client. Without the line, the exclusive part is not changed. Returns the actual change;
+    /// `None` if it is from before a loss.
     pub fn change(&mut self, mut change: Change, has_line: bool) -> Option<Change> {
         if change.generation != self.generation || self.down.is_some() || !self.rules.is_owner {
             return None;
@@ -250,22 +247,22 @@ impl Images {
 
     fn show(&mut self) {
         if self.rules.is_owner {
-            // It has the size of the image that was shown at first. A loss is told by `next`.
+            // The size was checked with the first image. `next` reports a loss.
             let _ = self.link.show(&self.shown);
         }
     }
 
-    /// Whether nothing is under way on the exclusive part.
+    /// Whether no command is active.
     pub fn is_clear(&self) -> bool {
         self.shown.iter().take(self.rules.command).all(|byte| *byte == 0)
     }
 
-    /// Whether something moves.
+    /// Whether the robot moves.
     pub fn under_way(&self) -> bool {
         self.seen.as_ref().is_some_and(|seen| (self.rules.under_way)(&self.shown, seen))
     }
 
-    /// For a client that comes.
+    /// Image state for a new client.
     pub fn welcome(&self) -> wire::Images {
         wire::Images {
             generation: self.generation,
@@ -276,11 +273,11 @@ impl Images {
     }
 }
 
-/// Datagrams: every client has sockets of its own, so that an answer that comes late is nobody else's.
+/// A datagram link. Each client has its own sockets, so a late answer never reaches another client.
 pub struct Datagrams {
     way: Way,
     sockets: BTreeMap<u64, Udp>,
-    /// Who expects an answer, and on which channel.
+    /// Clients that expect an answer, with the channel.
     expecting: BTreeMap<u64, u8>,
 }
 
@@ -293,12 +290,12 @@ enum Way {
 const CHANNELS: u8 = 2;
 
 impl Datagrams {
-    /// To a host on a network.
+    /// To a network host.
     pub fn udp(udp: Udp) -> Self {
         Self::over(Way::Udp(udp))
     }
 
-    /// To a peer in this process.
+    /// To an in-process peer.
     pub fn in_process(peer: InProcess<Box<dyn Peer>>) -> Self {
         Self::over(Way::InProcess(Box::new(peer)))
     }
@@ -351,7 +348,7 @@ impl Datagrams {
         match received {
             Ok(bytes) => Happening::Data { to: Some(to), channel, bytes },
             Err(error) => {
-                // Until he sends again there is nothing to receive.
+                // Nothing more to receive until the next send.
                 self.expecting.remove(&to);
                 Happening::Broken { to, error }
             }
@@ -359,7 +356,7 @@ impl Datagrams {
     }
 }
 
-/// The next datagram on a channel.
+/// Next datagram of a channel.
 async fn datagram(own: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
     let mut buffer = vec![0; BUFFER];
     loop {
@@ -370,23 +367,23 @@ async fn datagram(own: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
     }
 }
 
-/// A stream that was opened, or why not.
+/// An opened stream, or the reason of a failure.
 pub type Opened = Result<Stream<Box<dyn Peer + Send>>, String>;
 type Opening = Pin<Box<dyn Future<Output = Opened>>>;
 
-/// A byte stream, which is opened again when it is gone.
+/// A byte stream that is opened again after a loss.
 pub struct Line {
     stream: Option<Stream<Box<dyn Peer + Send>>>,
     open: Box<dyn Fn() -> Opening>,
     opening: Option<Opening>,
-    /// When to try again, and how often that was in vain.
+    /// Time of the next attempt, and the number of failed ones.
     due: Instant,
     tries: usize,
     down: Option<String>,
 }
 
 impl Line {
-    /// An open stream, and how it is opened again.
+    /// Wraps an open stream; `open` opens it again.
     pub fn new(stream: Stream<Box<dyn Peer + Send>>, open: impl Fn() -> Opening + 'static) -> Self {
         Self { stream: Some(stream), open: Box::new(open), opening: None, due: Instant::now(), tries: 0, down: None }
     }
@@ -410,7 +407,7 @@ impl Line {
                         return Happening::Data { to: None, channel: 0, bytes: buffer[..length].to_vec() };
                     }
                     Err(error) => {
-                        // A port of this machine is free again only once this handle is gone.
+                        // A local port is only free again after this handle is dropped.
                         self.stream = None;
                         self.down = Some(error.to_string());
                         (self.tries, self.due) = (0, Instant::now() + BACKOFF[0]);

@@ -1,4 +1,4 @@
-//! The host: holds the link, and lets clients have it one after the other.
+//! Session host: holds the link, and gives clients access one at a time.
 
 mod clients;
 pub mod held;
@@ -19,11 +19,10 @@ use super::wire::{
     Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, short,
 };
 
-/// Letters that wait before clients must.
+/// Size of the queue of received frames.
 const LETTERS: usize = 64;
-/// How long the line is kept for who stops the robot.
+/// How long the line is reserved for the client that stops the robot.
 const STOP_FIRST: Duration = Duration::from_secs(10);
-/// Clients at a time.
 const MOST_CLIENTS: usize = 64;
 
 /// A session.
@@ -37,58 +36,58 @@ pub struct Host {
     last: u64,
     letters: mpsc::Receiver<Letter>,
     letterbox: mpsc::Sender<Letter>,
-    /// Who has the line, and who waits for it.
+    /// Client with the line, and the queue for it.
     line: Option<u64>,
     queue: VecDeque<(u64, u32)>,
-    /// Who moves the robot.
+    /// Client that moves the robot.
     motion: Option<u64>,
-    /// Whose images have not left yet.
+    /// Clients whose images were not sent yet.
     showing: Vec<u64>,
     leftover: Option<(Leftover, Instant)>,
     began: Instant,
     reopenings: u32,
-    /// Where what happens is told.
+    /// Log of events.
     say: Box<dyn FnMut(&str)>,
-    /// What clients may send to a robot that is read-only; anything, if there is none.
+    /// Filter for a read-only robot.
     lock: Option<Lock>,
-    /// Stops the robot when the client that moved it has died; is given the reason.
+    /// Stops the robot after the client that moved it died; gets the reason.
     stop: Option<Stop>,
-    /// Until when nobody but who stops the robot gets the line.
+    /// Until this time, only a client that stops the robot gets the line.
     stop_first: Option<Instant>,
-    /// Is told whether a client of another process moves the robot, and was told last.
+    /// Reports whether a client of another process moves the robot, and the last reported value.
     guard: Option<Guarding>,
     is_guarding: bool,
-    /// Whether the link went down while a client moved the robot.
+    /// Whether the link was lost while a client moved the robot.
     was_lost_in_motion: bool,
-    /// How long it goes on without a client, and since when there is none; without end, if it is not told.
+    /// Idle time without clients after which the session ends (`None`: never), and the start of the current one.
     idle: Option<Duration>,
     idle_since: Instant,
 }
 
-/// Why a session ends by itself.
+/// Reason for the end of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Why {
-    /// A client wanted it.
+    /// A client has closed it.
     Asked,
-    /// No client has come for long.
+    /// No client for the idle time.
     Idle,
 }
 
-/// What may pass to a device that is only to be read, whoever sends it.
+/// Filter for a read-only device.
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
-    /// Whether these bytes may be sent.
+    /// Whether these bytes can be sent.
     pub sends: fn(&[u8]) -> bool,
-    /// Whether after the first image the second one may be shown.
+    /// Whether the second image can replace the first one.
     pub shows: fn(&[u8], &[u8]) -> bool,
 }
 
-/// Stops the robot; the text says why.
+/// Stops the robot, with the reason.
 type Stop = Box<dyn FnMut(&str)>;
-/// Is told whether what a client moves must be stopped when this process ends. What is wrong with that comes back in words.
+/// Reports whether the motion of a client must be stopped when this process ends. The error is a text.
 type Guarding = Box<dyn FnMut(bool) -> Result<(), String>>;
 
-/// Keeps a robot that is, or becomes, read-only from changes.
+/// Read-only lock, closed or still open.
 struct Lock {
     guard: Guard,
     is_closed: bool,
@@ -97,7 +96,7 @@ struct Lock {
 }
 
 impl Host {
-    /// Lets clients in.
+    /// Starts to accept clients.
     pub fn new(claim: Claim, key: String, info: Info, held: Held, say: impl FnMut(&str) + 'static) -> io::Result<Self> {
         let (letterbox, letters) = mpsc::channel(LETTERS);
         Ok(Self {
@@ -129,34 +128,35 @@ impl Host {
         })
     }
 
-    /// Lets only through what this allows from the first time on that `is_read_only` says yes: what would change
-    /// something asks it, and a yes holds as long as the session. A no that it cannot give is an error in words.
+    /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. After its first
+    /// `true`, the filter stays active for the rest of the session.
     #[must_use]
     pub fn guarded(self, guard: Guard, is_read_only: impl FnMut() -> Result<bool, String> + 'static) -> Self {
         Self { lock: Some(Lock { guard, is_closed: false, must_close: Box::new(is_read_only) }), ..self }
     }
 
-    /// Has `stop` stop the robot when a client that moved it has died, or when the link is open again that was lost in a
-    /// motion.
+    /// Sets the function that stops the robot. It is called after the client that moved the robot died, or when a link
+    /// is open again that was lost during a motion.
     #[must_use]
     pub fn stopped_by(self, stop: impl FnMut(&str) + 'static) -> Self {
         Self { stop: Some(Box::new(stop)), ..self }
     }
 
-    /// Tells `guard` whether what a client of another process moves must be stopped when this process ends.
+    /// Sets the function that reports whether the motion of a client from another process must be stopped when this
+    /// process ends.
     #[must_use]
     pub fn watched_by(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
         Self { guard: Some(Box::new(guard)), ..self }
     }
 
-    /// Has it end after so long without a client.
+    /// Sets the idle time after which the session ends.
     #[must_use]
     pub fn ending_after(self, idle: Option<Duration>) -> Self {
         Self { idle, ..self }
     }
 
-    /// Serves until a client has it end, or no client has come for the time of [`Host::ending_after`]. The future may be
-    /// dropped: [`Host::end`] goes on from there.
+    /// Serves clients until one of them closes the session, or until the idle time is over. Cancel safe: [`Host::end`]
+    /// continues from there.
     pub async fn serve(&mut self) -> Why {
         loop {
             let idle = self.idle.filter(|_| self.clients.is_empty()).map(|idle| self.idle_since + idle);
@@ -178,21 +178,21 @@ impl Host {
         }
     }
 
-    /// Whether the device shows that something is under way.
+    /// Whether the robot moves.
     pub fn under_way(&mut self) -> bool {
         self.held.images().is_some_and(|images| images.under_way())
     }
 
-    /// Ends it: nobody new comes, everybody is told, the link is closed.
+    /// Ends the session: accepts no new clients, informs all clients, closes the link.
     ///
     /// # Errors
-    /// What was not closed properly, in words.
+    /// A text: what was not closed properly.
     pub async fn end(self, why: &str) -> Result<(), String> {
         self.claim.hide();
         drop(self.listener);
         join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
         let closed = self.held.close().await;
-        // Connections end after all: who had it end waits for that.
+        // Connections are closed last, because a client that closes the session waits for that.
         drop(self.claim);
         drop(self.clients);
         closed
@@ -205,7 +205,7 @@ impl Host {
         }
     }
 
-    /// Something came from a client; whether it has the session end.
+    /// Handles a frame of a client. Returns whether the session must end.
     async fn heard(&mut self, id: u64, frame: Option<Frame>) -> bool {
         let Some(client) = self.clients.get_mut(&id) else { return false };
         let is_named = client.is_named();
@@ -217,7 +217,7 @@ impl Host {
             Frame::Control(Control::Hello(hello)) => self.welcome(id, &hello),
             Frame::Control(Control::Ask) => self.tell_status(id),
             Frame::Control(Control::Close { force }) => return self.may_close(id, force),
-            // Nobody does anything before he has said who he is.
+            // All other frames need a hello first.
             _ if !is_named => self.gone(id),
             Frame::Control(Control::Bye) => client.has_left = true,
             Frame::Control(Control::Will(will)) => client.will = will,
@@ -234,7 +234,7 @@ impl Host {
                     let change = images.change(change, has_line)?;
                     Some((images.shown != before, images.is_clear(), change))
                 });
-                // What was meant for the time before a loss is not done, and the loss has been told.
+                // A change from before a loss is dropped. The client already knows of the loss.
                 if let Some((is_new, is_clear, change)) = changed {
                     if is_clear {
                         self.leftover = None;
@@ -252,7 +252,7 @@ impl Host {
                     self.break_to(id, &error);
                 }
             }
-            // Without the line nobody talks. Anything else only a host says.
+            // Data without the line is dropped, and so are frames that only a host sends.
             _ => {}
         }
         false
@@ -265,7 +265,7 @@ impl Host {
         self.passes(|guard| (guard.shows)(&before, &after))
     }
 
-    /// Whether what a client sends may pass: reads and stops always, anything else where the robot is not read-only.
+    /// Whether a frame can pass: reads and stops always, anything else only if the robot is not read-only.
     fn passes(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
         let Some(lock) = &mut self.lock else { return true };
         if is_harmless(&lock.guard) {
@@ -281,7 +281,7 @@ impl Host {
         !lock.is_closed
     }
 
-    /// What a client wants to send is not for a device that is only to be read.
+    /// Refuses a frame, because the robot is read-only.
     fn refuse(&mut self, id: u64) {
         if let Some(client) = self.clients.get(&id) {
             let by = client.peer(client.since);
@@ -322,7 +322,7 @@ impl Host {
         };
         let Some(client) = self.clients.get_mut(&id) else { return };
         if let Some(why) = refused {
-            // What it is told still leaves.
+            // The refusal is still sent.
             client.tell(Control::Refused(why));
             self.gone(id);
             return;
@@ -354,7 +354,7 @@ impl Host {
 
     fn next_in_queue(&mut self) {
         while self.line.is_none() {
-            // Who stops the robot stands in front.
+            // A client that stops the robot is first in the queue.
             let first = self.queue.front().map(|(id, _)| *id);
             if self.stop_first.is_some() && !first.is_some_and(|id| self.is_stop(id)) {
                 return;
@@ -371,12 +371,11 @@ impl Host {
         }
     }
 
-    /// Whether a client has come to stop the robot.
     fn is_stop(&self, id: u64) -> bool {
         self.clients.get(&id).is_some_and(|client| client.purpose == Purpose::Stop)
     }
 
-    /// Has the robot stopped before anybody else gets the line; who has it loses it.
+    /// Starts a stop before any other client gets the line. The current owner loses it.
     fn stop_before_all(&mut self, why: &str) {
         let Some(stop) = &mut self.stop else { return };
         stop(why);
@@ -389,7 +388,7 @@ impl Host {
         self.next_in_queue();
     }
 
-    /// A client does not want the line any more, or cannot have it.
+    /// The client releases the line, or loses it.
     fn release(&mut self, id: u64) {
         self.queue.retain(|(other, _)| *other != id);
         self.held.pause(id);
@@ -418,8 +417,8 @@ impl Host {
         }
     }
 
-    /// Tells the guard of this process what it must know. A device that loses the link of its images stops by itself, and
-    /// a client in this very process has a guardian of its own.
+    /// Updates the guardian of this process. It is not needed for an image link, because the device stops by itself
+    /// after a loss. A client in this process has its own guardian.
     fn keep_guard(&mut self) {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
@@ -436,8 +435,8 @@ impl Host {
         }
     }
 
-    /// A client has gone, or is not let in: it gives back all that it holds. What it has left on the image stays there,
-    /// but for what it wanted shown if it died.
+    /// Removes a client and releases all it has. Its changes of the image stay, except that its last will is sent if it
+    /// died.
     fn gone(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
         self.idle_since = Instant::now();
@@ -480,7 +479,7 @@ impl Host {
         self.next_in_queue();
     }
 
-    /// Whether what the mover began may move on: of images it is known, by the command that is left there.
+    /// Whether the robot can still move without the client. An image link shows it by the active command.
     fn may_be_moving(&mut self, leaves_command: bool) -> bool {
         leaves_command || self.held.images().is_none()
     }
@@ -531,7 +530,7 @@ impl Host {
         closes
     }
 
-    /// Something happened on the link.
+    /// Handles an event of the link.
     fn happened(&mut self, happening: Happening) {
         match happening {
             Happening::Sent => {
@@ -543,7 +542,7 @@ impl Host {
             }
             Happening::Image(image) => self.everybody(|| Frame::Image(image.to_vec())),
             Happening::Data { to, channel, bytes } => {
-                // What comes when nobody has asked is nobody's.
+                // Data without a request is dropped.
                 if let Some(client) = to.or(self.line).and_then(|id| self.clients.get(&id)) {
                     client.send(Frame::Data { channel, bytes });
                 }
@@ -553,7 +552,7 @@ impl Host {
                 (self.say)(&format!("the link was lost: {why}; it is being opened again"));
                 self.showing.clear();
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
-                // A device that loses the link of its images stops by itself.
+                // A device with an image link stops by itself after a loss.
                 self.was_lost_in_motion |=
                     mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.held.images().is_none();
                 if self.leftover.take().is_some() {

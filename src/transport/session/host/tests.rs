@@ -1,4 +1,4 @@
-//! Host and clients over a real socket, with a peer in this process behind it.
+//! Tests of host and clients on a real socket, with an in-process peer.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -17,7 +17,7 @@ use crate::sim;
 use crate::stream::Stream;
 use crate::tcp::Tcp;
 
-/// Shows what it is shown.
+/// Echo peer for images.
 #[derive(Debug, Default)]
 struct Mirror(Vec<u8>);
 
@@ -35,7 +35,7 @@ impl ImagePeer for Mirror {
     }
 }
 
-/// Answers each datagram with itself.
+/// Echo peer for datagrams.
 #[derive(Debug, Default)]
 struct Echo(VecDeque<(usize, Vec<u8>)>);
 
@@ -53,7 +53,7 @@ impl sim::Peer for Echo {
     }
 }
 
-/// Two bytes that one client at a time changes, and one of bits; it moves while the first byte is not 0.
+/// Images with two exclusive bytes and one shared byte. The robot moves while the first byte is not 0.
 fn images() -> Held {
     let rules = Rules {
         is_owner: true,
@@ -87,7 +87,7 @@ fn soon() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
 
-/// Runs what clients do, while the host serves.
+/// Runs `clients` while the host serves.
 async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
     tokio::select! {
         _ = host.serve() => panic!("nobody closed it"),
@@ -120,7 +120,7 @@ async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
         assert_eq!(mover.shown().unwrap(), [0, 0, 0x41]);
         mover.take(soon()).await.unwrap();
         shows(&mut mover, &[7, 8, 0x41]).await;
-        // Without the line only bits count; what the mover shows stays.
+        // Without the line, only shared bits are changed.
         shows(&mut other, &[9, 9, 0x01]).await;
         sees(&mut mover, &[7, 8, 0x01]).await;
         assert_eq!(mover.shown().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
@@ -141,7 +141,7 @@ async fn the_line_and_motion_have_one_owner() {
         assert!(matches!(second.claim_motion().await, Err(SessionBusy::Moved(peer)) if peer.command == "first"));
         let busy = second.take(Instant::now() + Duration::from_millis(20)).await;
         assert!(matches!(busy, Err(SessionBusy::Busy(Some(peer))) if peer.command == "first"));
-        // Who gave up does not have it when it is free; who asks again does.
+        // A request that timed out is dropped; a new request gets the line.
         first.over();
         first.take(soon()).await.unwrap();
         let waiting = status(&spot).await.unwrap().unwrap();
@@ -187,7 +187,7 @@ async fn datagrams_are_for_whoever_has_the_line() {
         let (mut first, mut second) = (client(&spot, "first").await, client(&spot, "second").await);
         let mut buffer = [0; 16];
         first.take(soon()).await.unwrap();
-        // Without the line nothing is sent.
+        // Without the line, nothing is sent.
         second.send(0, b"no").await.unwrap();
         first.send(1, b"yes").await.unwrap();
         assert_eq!(first.receive(1, &mut buffer, soon()).await.unwrap(), Some(3));
@@ -227,7 +227,7 @@ async fn a_client_for_another_device_is_sent_away() {
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
 
-/// What the host says to a client that sends these frames, up to the end of the connection.
+/// Sends frames to the host. Returns all its frames until the connection is closed.
 async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
     use tokio::io::AsyncWriteExt as _;
 
@@ -236,7 +236,7 @@ async fn told(spot: &Spot, frames: &[Control]) -> Vec<Frame> {
     for control in frames {
         Frame::Control(control.clone()).emit(&mut bytes);
     }
-    // Who is not let in may be gone before he has said anything.
+    // The host can close the connection of a refused client early.
     if write.write_all(&bytes).await.is_err() {
         return Vec::new();
     }
@@ -255,7 +255,7 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
     served(&mut host, async {
         let silent: Vec<_> = (0..MOST_CLIENTS).map(|_| told(&spot, &[])).collect();
         let asking = told(&spot, &[Control::Ask]);
-        // The first ones are let in, and let go again; then there is room.
+        // The first ones are accepted, then dropped for lack of a hello. Then there is a free place.
         let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
@@ -322,7 +322,7 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
         mover.take(soon()).await.unwrap();
         mover.send(0, b"go").await.unwrap();
         line.read_exact(&mut [0; 2]).await.unwrap();
-        // Somebody waits for the line when it is lost; the stop comes last.
+        // Another client waits for the line when it is lost. The stop comes last.
         let read = async {
             reader.take(soon()).await.unwrap();
             reader.send(0, b"read").await.unwrap();

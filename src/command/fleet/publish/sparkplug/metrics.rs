@@ -1,4 +1,4 @@
-//! What a look at a robot found, as metrics with types and units.
+//! Conversion of a sample to Sparkplug metrics with types and units.
 
 use serde_json::Value as Json;
 use srad_types::payload::metric::Value;
@@ -10,12 +10,12 @@ use super::super::also::Also;
 use crate::command::fleet::poll::Look;
 use crate::command::robot::state::Mode;
 
-/// Most metrics of one line of `--also`.
+/// Limit of metrics per extra command.
 const MOST: usize = 2000;
-/// Deepest list or object in its answer that has metrics of its own.
+/// Limit of nesting in its result.
 const DEEPEST: usize = 8;
 
-/// Units by the end of a name, as reports have them.
+/// Units by name suffix, as in reports.
 const UNITS: [(&str, &str); 9] = [
     ("_mm", "mm"),
     ("_um", "µm"),
@@ -28,7 +28,7 @@ const UNITS: [(&str, &str); 9] = [
     ("_pulses", "pulses"),
 ];
 
-/// All metrics of a look, of these kinds and lines.
+/// All metrics of a sample, for these kinds and extra commands.
 pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
     let line = &look.sample.line.state;
     let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
@@ -84,7 +84,7 @@ pub fn of_look(look: &Look, kinds: &[Kind], also: &[Also]) -> Vec<Metric> {
     metrics
 }
 
-/// A metric with its unit, where its name has one.
+/// A metric, with a unit if its name has one.
 fn metric(name: &str, kind: DataType, value: Option<Value>) -> Metric {
     let mut metric = Metric::new();
     metric.set_name(name.to_owned()).set_datatype(kind);
@@ -108,8 +108,8 @@ fn unit(name: &str) -> Option<&'static str> {
     found.max_by_key(|(end, _)| end.len()).map(|(_, unit)| *unit)
 }
 
-/// Every value of a report under its path; things of a list under their names, where they have some. What is null has no
-/// type that could be told.
+/// Converts every value of a report, with its path as name. List items use their names if they have some. Null has no
+/// type and is skipped.
 fn flatten(path: &str, data: &Json, depth: usize, metrics: &mut Vec<Metric>) {
     if metrics.len() >= MOST || depth > DEEPEST {
         return;

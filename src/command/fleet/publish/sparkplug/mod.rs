@@ -1,8 +1,8 @@
-//! A Sparkplug B node (Sparkplug 3.0.0) whose devices are robots.
+//! Sparkplug B node (Sparkplug 3.0.0) whose devices are robots.
 //!
-//! The node is born when its connection is there and, where a primary host is named, that is online. A robot is born when
-//! it answers, and dies when it does not. What was found while nobody could be told is told later as history. Of all
-//! commands one is obeyed: to be born again. Nothing that comes from a broker reaches a robot.
+//! The node is born when it is connected and its primary host, if one is set, is online. A robot is born when it
+//! answers, and dies when it does not. Data from times without a connection is sent later as history. The only accepted
+//! command is a rebirth request. Nothing from the broker reaches a robot.
 
 mod metrics;
 #[cfg(test)]
@@ -27,46 +27,45 @@ use crate::command::fleet::poll::{Event, Look};
 use crate::output::log::Level;
 use crate::settings::Robot;
 
-/// Least time between two births that a host asks for.
+/// Minimum time between two births at the request of a host.
 const BIRTHS_MS: u64 = 1000;
 
-/// What records are.
 mod kind {
-    /// Values of a device that have changed.
+    /// Changed values of a device.
     pub const DATA: u8 = 1;
-    /// A device that answers, with all of its values.
+    /// A device answers; all its values.
     pub const BIRTH: u8 = 2;
-    /// A device that does not.
+    /// A device does not answer.
     pub const DEATH: u8 = 3;
 }
 
-/// A robot, as hosts see it.
+/// A robot as a Sparkplug device.
 #[derive(Debug, Default)]
 struct Device {
-    /// Its metrics as they were found last, with the numbers that stand for their names.
+    /// Last metrics by name, with their aliases.
     metrics: BTreeMap<String, (u64, Metric)>,
-    /// Whether it answers.
+    /// Whether the robot answers.
     is_up: bool,
-    /// Whether hosts believe that it is there.
+    /// Whether hosts consider it online.
     is_born: bool,
-    /// When all of it was told last.
+    /// Time of the last message with all values.
     told_ms: u64,
 }
 
-/// Who the node is, and for whom.
+/// Names of the node.
 #[derive(Debug, Clone)]
 pub struct Names {
-    /// Its group.
+    /// Group id.
     pub group: String,
-    /// Itself.
+    /// Node id.
     pub node: String,
-    /// The host without which it tells nothing.
+    /// Primary host id. The node only sends while this host is online.
     pub host: Option<String>,
-    /// Its devices.
+    /// Device ids.
     pub levels: Levels,
 }
 
-/// Keeps the number of the next connection for the next process.
+/// Saves the number of the next connection for the next process.
 pub type Remember = Box<dyn FnMut(u8)>;
 
 /// The node.
@@ -75,17 +74,17 @@ pub struct Node {
     kinds: Vec<Kind>,
     also: Rc<[Also]>,
     every_ms: u64,
-    /// The number of this connection, and of the next one.
+    /// bdSeq of this connection and of the next one.
     bd_seq: (u8, u8),
     remember: Remember,
-    /// The number of the next message.
+    /// Sequence number of the next message.
     seq: u8,
-    /// How many times it was born.
+    /// Number of births.
     epoch: u64,
     is_connected: bool,
     is_born: bool,
     born_ms: u64,
-    /// When the host said last whether it is there, and what.
+    /// Time and state of the host's last message.
     host: Option<(u64, bool)>,
     devices: BTreeMap<String, Device>,
     next_alias: u64,
@@ -98,7 +97,8 @@ impl fmt::Debug for Node {
 }
 
 impl Node {
-    /// That tells these kinds and lines, all of them again after so long. `bd_seq` is the number of its first connection.
+    /// Creates a node for these kinds and extra commands; unchanged data is sent again after `every_ms`. `bd_seq` is
+    /// the number of the first connection.
     pub fn new(
         names: Names,
         (kinds, also): (&[Kind], Rc<[Also]>),
@@ -127,7 +127,7 @@ impl Node {
         node_topic(&self.names.group, message, &self.names.node)
     }
 
-    /// A message with the next number.
+    /// A message with the next sequence number.
     fn numbered(&mut self, topic: String, metrics: Vec<Metric>, now_ms: u64) -> Message {
         let seq = self.seq;
         self.seq = seq.wrapping_add(1);
@@ -140,7 +140,7 @@ impl Node {
         self.numbered(topic, metrics, now_ms)
     }
 
-    /// The death, which has the number of its birth instead of one of its own.
+    /// NDEATH message; it has the bdSeq of its birth and no sequence number.
     fn death(&self, now_ms: u64) -> Message {
         let metrics = vec![bd_seq(self.bd_seq.0, now_ms)];
         let payload = Payload { timestamp: Some(now_ms), metrics, seq: None, uuid: None, body: None };
@@ -152,7 +152,7 @@ impl Node {
         }
     }
 
-    /// The node with all devices that answer.
+    /// NBIRTH and the DBIRTH of all devices that answer.
     fn births(&mut self, now_ms: u64) -> Vec<Message> {
         self.epoch += 1;
         self.seq = 0;
@@ -176,7 +176,7 @@ impl Node {
         messages
     }
 
-    /// A device with all that is known of it.
+    /// DBIRTH with all known metrics.
     fn birth(&mut self, id: &str, now_ms: u64) -> Option<Message> {
         let device = self.devices.get_mut(id)?;
         device.is_born = true;
@@ -185,7 +185,7 @@ impl Node {
         Some(self.of_device(&DeviceMessage::DBirth, id, metrics, now_ms))
     }
 
-    /// A robot was looked at.
+    /// Handles a successful poll of a robot.
     fn looked(&mut self, look: &Look, now_ms: u64) -> Option<Record> {
         let id = self.names.levels.of(&look.robot).ok()?;
         let found = metrics::of_look(look, &self.kinds, &self.also);
@@ -198,7 +198,7 @@ impl Node {
             metric.timestamp = Some(now_ms);
             let Some(name) = metric.name.clone() else { continue };
             if let Some((_, last)) = device.metrics.get_mut(&name) {
-                // What had a type keeps it: hosts know the metric by that.
+                // A metric keeps its first type, because hosts know it by that.
                 if metric.datatype != last.datatype {
                     continue;
                 }
@@ -225,7 +225,7 @@ impl Node {
         Some(self.record(kind, id, metrics, now_ms))
     }
 
-    /// A robot does not answer, or is no more.
+    /// The robot does not answer or was removed.
     fn fell_silent(&mut self, robot: &Robot, now_ms: u64) -> Option<Record> {
         let id = self.names.levels.of(robot).ok()?;
         let device = self.devices.get_mut(&id)?;
@@ -237,7 +237,7 @@ impl Node {
         Record { kind, time_ms, key, body, epoch: self.epoch }
     }
 
-    /// Values of a device, as they are now or as they were.
+    /// DDATA with current or historical values.
     fn data(&mut self, record: &Record, is_history: bool, now_ms: u64) -> Vec<Message> {
         let Ok(Payload { metrics, .. }) = Payload::decode(&record.body[..]) else { return Vec::new() };
         let id = &record.key;
@@ -254,8 +254,8 @@ impl Node {
             if metric.datatype != last.datatype {
                 continue;
             }
-            // With its type, although that may be left out (tck-id-payloads-metric-datatype-not-req): decoders that do not
-            // remember births know no value without it.
+            // With datatype, although it is optional (tck-id-payloads-metric-datatype-not-req): a decoder that does not
+            // store births needs it.
             told.push(Metric {
                 name: None,
                 alias: Some(*alias),
@@ -273,20 +273,20 @@ impl Node {
             messages.extend(self.birth(id, now_ms));
         }
         messages.push(self.of_device(&DeviceMessage::DData, id, told, now_ms));
-        // It has a past, and does not answer now.
+        // It has history, but does not answer now.
         if !is_up {
             messages.extend(self.dies(id, now_ms));
         }
         messages
     }
 
-    /// A device that hosts believe to be there is not.
+    /// DDEATH if hosts consider the device online.
     fn dies(&mut self, id: &str, now_ms: u64) -> Option<Message> {
         let device = self.devices.get_mut(id)?;
         std::mem::take(&mut device.is_born).then(|| self.of_device(&DeviceMessage::DDeath, id, Vec::new(), now_ms))
     }
 
-    /// A host says whether it is there.
+    /// Handles a STATE message of the host.
     fn host_says(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("a state of the host that cannot be read");
@@ -302,7 +302,7 @@ impl Node {
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
                 leaves: false,
             },
-            // It is told of the death, and the next connection waits for it (section 5.4).
+            // The node sends its death, and the next connection waits for the host (section 5.4).
             (false, true) => {
                 self.is_born = false;
                 Reaction {
@@ -322,7 +322,7 @@ impl Node {
         }
     }
 
-    /// A host orders something: to be born again is all that it can.
+    /// Handles a command of the host. Only rebirth is supported.
     fn ordered(&mut self, message: &Message, now_ms: u64) -> Reaction {
         let Ok(payload) = Payload::decode(&message.payload[..]) else {
             return ignored("a command that cannot be read");
@@ -412,7 +412,7 @@ impl Speech for Node {
     fn told(&mut self, record: Record, now_ms: u64) -> Vec<Message> {
         let is_history = record.epoch < self.epoch;
         match record.kind {
-            // What is over is over.
+            // Historical deaths are not sent.
             kind::DEATH if is_history => Vec::new(),
             kind::DEATH => self.dies(&record.key, now_ms).into_iter().collect(),
             kind::BIRTH if !is_history => self.birth(&record.key, now_ms).into_iter().collect(),

@@ -1,4 +1,4 @@
-//! The node against what hosts expect, message by message.
+//! Tests of the Sparkplug node, message by message, against the expectations of hosts.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -8,7 +8,7 @@ use srad_types::payload::metric::Value;
 use super::super::tests::{look, robot, silence};
 use super::*;
 
-/// A node of group Plant, and the numbers of connections that it remembers.
+/// A node of group Plant, and the connection numbers that it saves.
 fn node(host: Option<&str>) -> (Node, Rc<RefCell<Vec<u8>>>) {
     let remembered: Rc<RefCell<Vec<u8>>> = Rc::default();
     let names = Names {
@@ -44,7 +44,7 @@ fn bd_seq_of(message: &Message) -> Option<Value> {
     payload(message).metrics.into_iter().find(|metric| metric.name.as_deref() == Some("bdSeq"))?.value
 }
 
-/// What is told of an event at once.
+/// Messages for an event, sent at once.
 fn told(node: &mut Node, event: &Event, now_ms: u64) -> Vec<Message> {
     let records = node.found(event, now_ms);
     records.into_iter().flat_map(|record| node.told(record, now_ms)).collect()
@@ -79,7 +79,7 @@ fn births_have_types_units_and_aliases_and_data_comes_by_alias() {
     let births = node.connected(2);
     assert_eq!(heads(&births), ["NBIRTH - 0"]);
     assert!(births.iter().all(|message| !message.retain && !message.acknowledged));
-    // The death belongs to the birth.
+    // The death has the number of its birth.
     assert_eq!((bd_seq_of(&will), bd_seq_of(&births[0])), (Some(Value::LongValue(254)), Some(Value::LongValue(254))));
     let press = robot("press");
     let messages = told(&mut node, &look(&press, 1.0, &[]), 10);
@@ -103,7 +103,7 @@ fn births_have_types_units_and_aliases_and_data_comes_by_alias() {
     assert_eq!(found, expected.map(|name| (metric(name).alias, None, None)));
     assert_eq!(data.metrics[2].value, Some(Value::DoubleValue(2.5)));
     assert!(told(&mut node, &look(&press, 2.5, &["4315"]), 30).is_empty(), "nothing has changed");
-    // All of it, once a minute.
+    // Once a minute, all metrics.
     let messages = told(&mut node, &look(&press, 2.5, &["4315"]), 60_010);
     assert_eq!(payload(&messages[0]).metrics.len(), birth.metrics.len());
     assert_eq!(*remembered.borrow(), [255]);
@@ -156,7 +156,7 @@ fn what_was_found_while_nobody_listened_is_told_as_history() {
     waiting.extend(node.found(&look(&press, 3.0, &[]), 4));
     waiting.extend(node.found(&silence(&loader), 5));
     node.will(6);
-    // Births have what is so now.
+    // A birth has the current values.
     let births = node.connected(7);
     assert_eq!(heads(&births), ["NBIRTH - 0", "DBIRTH press 1"]);
     let x = |message: &Message| {
@@ -168,14 +168,14 @@ fn what_was_found_while_nobody_listened_is_told_as_history() {
     };
     assert_eq!(x(&births[1]), Some((3.0, Some(4), None)));
     let history: Vec<Message> = waiting.into_iter().flat_map(|record| node.told(record, 8)).collect();
-    // The loader has a past, and is not there.
+    // The loader has history, but does not answer now.
     assert_eq!(
         heads(&history),
         ["DDATA press 2", "DBIRTH loader 3", "DDATA loader 4", "DDEATH loader 5", "DDATA press 6"]
     );
     assert_eq!(x(&history[0]), Some((2.0, Some(3), Some(true))));
     assert_eq!(x(&history[2]), Some((2.0, Some(3), Some(true))));
-    // What comes now is no history.
+    // New data is not history.
     let now = told(&mut node, &look(&press, 4.0, &[]), 9);
     assert_eq!(x(&now[0]), Some((4.0, Some(9), None)));
 }
@@ -203,7 +203,7 @@ fn hosts_can_ask_for_births_and_for_nothing_else() {
     node.connected(1);
     told(&mut node, &look(&robot("press"), 1.0, &[]), 2);
     let yes = Value::BooleanValue(true);
-    // Right behind a birth another one would say the same.
+    // A second birth so soon would contain the same.
     assert_eq!(node.received(&command("Node Control/Rebirth", yes.clone()), 500).messages, []);
     let reborn = node.received(&command("Node Control/Rebirth", yes.clone()), 5000);
     assert_eq!(heads(&reborn.messages), ["NBIRTH - 0", "DBIRTH press 1"]);
@@ -235,7 +235,7 @@ fn nothing_is_told_without_the_primary_host() {
     assert!(node.is_ready());
     let history: Vec<Message> = waiting.into_iter().flat_map(|record| node.told(record, 5)).collect();
     assert!(payload(&history[0]).metrics.iter().all(|metric| metric.is_historical == Some(true)));
-    // One that is older than what is known is of a host that has come back since.
+    // A STATE message older than the last one is ignored: the host is back since then.
     assert!(!node.received(&state(false, 99), 6).leaves && node.is_ready());
     let death = node.received(&state(false, 101), 7);
     assert_eq!((heads(&death.messages), death.leaves, node.is_ready()), (vec!["NDEATH - -".to_owned()], true, false));

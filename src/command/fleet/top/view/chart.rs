@@ -1,4 +1,4 @@
-//! A value over time.
+//! Chart of a value over time.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -15,27 +15,27 @@ use crate::command::fleet::top::track::window;
 use crate::output::painter::{Painter, after, line_of, width};
 use crate::output::view::Tone;
 
-/// What is drawn.
+/// Data of a chart.
 #[derive(Debug)]
 pub struct Chart<'a> {
-    /// Whose value.
+    /// Name of the axis.
     pub of: &'a str,
-    /// Which, in which unit.
+    /// Quantity and unit.
     pub what: &'a str,
-    /// Digits of the numbers at the side.
+    /// Decimals of the scale.
     pub decimals: u8,
-    /// Seconds and values, ascending.
+    /// Times in seconds and values, ascending.
     pub points: &'a VecDeque<(f64, f64)>,
 }
 
 impl Chart<'_> {
-    /// Columns of the numbers at the side.
+    /// Width of the scale.
     pub fn side(&self) -> u16 {
         let (bottom, top) = self.numbers();
         u16::try_from(width(&top).max(width(&bottom))).unwrap_or(u16::MAX)
     }
 
-    /// The least and the greatest value, as they stand at the side.
+    /// Scale: smallest and largest value.
     fn numbers(&self) -> (String, String) {
         let (least, most) = range(self.points);
         let text = |value: f64| format!("{value:.*}", usize::from(self.decimals));
@@ -43,7 +43,7 @@ impl Chart<'_> {
     }
 }
 
-/// Draws it: a heading, the greatest and the least value in `side` columns at the left, and the line.
+/// Draws a heading, the scale in `side` columns at the left, and the line.
 pub fn draw(painter: &mut Painter<'_>, area: Rect, chart: &Chart<'_>, side: u16, now: Moment, every: Duration) {
     let (quiet, style) = (painter.palette.quiet(), painter.palette.heading());
     let time = window(every);
@@ -85,7 +85,7 @@ fn plot(painter: &mut Painter<'_>, area: Rect, points: &VecDeque<(f64, f64)>, (n
     canvas.render(area, painter.buffer);
 }
 
-/// The least and the greatest value, apart also where nothing changes.
+/// Range of the values; never empty, even for a constant value.
 fn range(points: &VecDeque<(f64, f64)>) -> (f64, f64) {
     let values = || points.iter().map(|(_, value)| *value);
     let (least, most) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));

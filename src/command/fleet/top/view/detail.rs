@@ -1,4 +1,4 @@
-//! The screen of one robot: indicators, alarms, axes as bars with charts beside them, signals.
+//! Screen of one robot: indicators, alarms, axes as bars with charts, signals.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -12,15 +12,15 @@ use crate::command::robot::alarm::Alarm;
 use crate::output::painter::{Painter, after, line_of, width, wrapped};
 use crate::output::view::Tone;
 
-/// Columns of the axes beside a chart, and the least that a chart gets.
+/// Width of the axes next to a chart, and minimum width of a chart.
 const AXES: u16 = 46;
 const CHART: u16 = 24;
-/// Lines from which on there are empty ones between the parts.
+/// Screen height from which the parts are separated by empty lines.
 const AIRY: u16 = 28;
-/// The least lines of a chart.
+/// Minimum height of a chart.
 const CHART_LINES: u16 = 5;
 
-/// The first line: who, how, and how fast it answers.
+/// First line: name, state, answer time.
 pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, now: Moment) {
     let (answered, style) = answer(painter, seen, now, model.every);
     let quiet = painter.palette.quiet();
@@ -38,7 +38,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &Seen, n
     pace(painter, line, model);
 }
 
-/// Everything else, from the top to where there is no room.
+/// Everything else, from the top, as far as there is room.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, now: Moment) {
     let Some(sample) = seen.sample() else { return trouble(painter, area, seen) };
     let Some(whole) = &sample.whole else {
@@ -47,7 +47,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, n
         return;
     };
     let mut rest = area;
-    // Air, where there is room for it.
+    // Empty lines, if there is room.
     let air = u16::from(area.height >= AIRY);
     rest = below(rest, air);
     rest = below(rest, indicators(painter, rest, &whole.indicators) + air);
@@ -58,7 +58,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, n
     } else {
         2 * (CHART_LINES + 1)
     });
-    // Axes come first; signals are whole or not there.
+    // Axes have priority; signals are shown completely or not at all.
     let has_signals = signals > 0 && rest.height >= wanted.min(8).saturating_add(signals);
     let middle = rest.height.saturating_sub(if has_signals { signals } else { 0 });
     let middle_area = Rect { height: middle, ..rest };
@@ -68,7 +68,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, n
     }
 }
 
-/// Why there is nothing to see.
+/// Draws the reason for missing data.
 fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &Seen) {
     let Contact::Fails(failure) = &seen.contact else {
         painter.left(after(line_of(area, 1), 2), "waiting for the first answer", painter.palette.quiet());
@@ -87,7 +87,7 @@ fn trouble(painter: &mut Painter<'_>, area: Rect, seen: &Seen) {
     painter.left(after(line_of(area, line), 2), "armctl keeps trying.", painter.palette.quiet());
 }
 
-/// The indicators, in columns; returns the lines that they took.
+/// Draws the indicators in columns. Returns the number of lines.
 fn indicators(painter: &mut Painter<'_>, area: Rect, indicators: &[Indicator]) -> u16 {
     let widest = indicators.iter().map(|indicator| width(indicator.name)).max().unwrap_or_default();
     let columns = u16::try_from(widest).unwrap_or_default() + 3;
@@ -113,7 +113,7 @@ fn light(painter: &Painter<'_>, is_on: bool, tone: Tone) -> Style {
     }
 }
 
-/// Alarms with what to do about them; returns the lines that they took.
+/// Draws the alarms with remedies. Returns the number of lines.
 fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let bad = painter.palette.tone(Tone::Bad);
     let line = &sample.line;
@@ -138,7 +138,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     taken
 }
 
-/// Axes on the left, and the past of the chosen one on the right.
+/// Draws the axes on the left, and charts of the selected one on the right.
 fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole: &Whole, now: Moment) {
     if whole.axes.is_empty() {
         let why = whole.not_asked.unwrap_or("the controller does not report its position");
@@ -162,7 +162,7 @@ fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole
     let position = Chart { of: &axis.name, what: axis.unit, decimals: axis.decimals.min(1), points: &track.positions };
     let what = format!("torque, {}", has_torque.unwrap_or_default());
     let torque = Chart { of: &axis.name, what: &what, decimals: 0, points: &track.torques };
-    // Both have their numbers in the same columns, so that what happened at the same time stands above each other.
+    // The same scale width for both charts, so that equal times are aligned.
     let side = if has_torque.is_some() { position.side().max(torque.side()) } else { position.side() };
     chart::draw(painter, Rect { height: lines, ..right }, &position, side, now, model.every);
     if has_torque.is_some() {
@@ -170,7 +170,7 @@ fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &Seen, whole
     }
 }
 
-/// A line an axis: name, position, a bar, torque.
+/// One line per axis: name, position, bar, torque.
 fn table(painter: &mut Painter<'_>, area: Rect, whole: &Whole, tracks: &[Track], chosen: usize) {
     const NAME: u16 = 4;
     const POSITION: u16 = 11;
@@ -192,7 +192,7 @@ fn table(painter: &mut Painter<'_>, area: Rect, whole: &Whole, tracks: &[Track],
     painter.right(part(heading, position_at, POSITION), "POSITION", style);
     painter.left(part(heading, bar_at, bar), if by_limits { "SOFT LIMITS" } else { "RANGE SEEN" }, style);
     painter.right(part(heading, bar_at + bar, torque), "TORQUE", style);
-    // The chosen one is in sight.
+    // Scroll so that the selected axis is visible.
     let lines = usize::from(area.height.saturating_sub(1));
     let first = (chosen + 1).saturating_sub(lines);
     for (line, (index, axis)) in (1..area.height).zip(whole.axes.iter().enumerate().skip(first)) {
@@ -213,7 +213,7 @@ fn table(painter: &mut Painter<'_>, area: Rect, whole: &Whole, tracks: &[Track],
     }
 }
 
-/// Where an axis is between its limits, or in the range that was seen.
+/// Draws the position of an axis between its limits, or in the range seen so far.
 fn gauge(painter: &mut Painter<'_>, place: Rect, axis: &Axis, seen: (f64, f64)) {
     let (least, most) = axis.limits.unwrap_or(seen);
     let columns = place.width;
@@ -227,13 +227,13 @@ fn gauge(painter: &mut Painter<'_>, place: Rect, axis: &Axis, seen: (f64, f64)) 
     painter.parts(place, &[(&full, style), (&empty, quiet)]);
 }
 
-/// Lines that the signals take, with their heading.
+/// Number of lines for the signals with their heading.
 fn signal_lines(banks: &[Bank], columns: u16) -> u16 {
     let lines: u16 = banks.iter().map(|bank| bank_lines(bank, columns)).sum();
     if lines == 0 { 0 } else { lines + 1 }
 }
 
-/// Columns of the name of a bank, and of eight signals with their label.
+/// Width of a bank name, and of eight signals with their label.
 const BANK: u16 = 9;
 const EIGHT: u16 = 17;
 
@@ -242,7 +242,7 @@ fn bank_lines(bank: &Bank, columns: u16) -> u16 {
     u16::try_from(bank.groups.len()).unwrap_or(u16::MAX).div_ceil(across)
 }
 
-/// The signals, a indicator each.
+/// Draws the signals, one indicator each.
 fn banks(painter: &mut Painter<'_>, area: Rect, banks: &[Bank]) {
     let heading = line_of(area, 0);
     painter.paint(heading, painter.palette.heading());
@@ -266,12 +266,12 @@ fn banks(painter: &mut Painter<'_>, area: Rect, banks: &[Bank]) {
     }
 }
 
-/// A number with so many digits behind the point.
+/// A number with fixed decimals.
 fn number(value: f64, decimals: u8) -> String {
     format!("{value:.*}", usize::from(decimals))
 }
 
-/// What is left of an area below so many lines.
+/// The part of an area below `lines` lines.
 fn below(area: Rect, lines: u16) -> Rect {
     let lines = lines.min(area.height);
     Rect { y: area.y + lines, height: area.height - lines, ..area }

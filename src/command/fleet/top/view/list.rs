@@ -8,7 +8,6 @@ use crate::command::fleet::top::model::{Contact, Model, Moment, Seen, Severity, 
 use crate::output::painter::{self, Painter, after, line_of, width};
 use crate::output::view::Tone;
 
-/// A column of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Column {
     Name,
@@ -16,25 +15,25 @@ enum Column {
     Mode,
     Servo,
     State,
-    /// Takes what the others leave.
+    /// Uses the remaining width.
     Alarm,
     Position {
         decimals: usize,
     },
     Answer,
-    /// The times of the last answers.
+    /// Last answer times.
     Past,
 }
 
-/// Widest and narrowest names, and the least that an alarm gets.
+/// Minimum and maximum width of names, and minimum width of alarms.
 const NAME: (usize, usize) = (5, 20);
 const ALARM: u16 = 8;
-/// Times of answers in the column of the past.
+/// Number of answer times shown.
 const PAST: usize = 12;
-/// Signs of the past, the lowest first.
+/// Bar characters, lowest first.
 const LEVELS: [&str; 8] = ["▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"];
 
-/// The first line: how many there are, and how they are.
+/// First line: number of robots and of problems.
 pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let robots = model.robots();
     let count = |trouble| robots.iter().filter(|seen| seen.trouble() == trouble).count();
@@ -65,7 +64,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     pace(painter, line, model);
 }
 
-/// Headings, robots, and at the end the trouble of the one at the cursor in full.
+/// Draws headings and robots, and the full problem of the selected one.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     let columns = columns(area.width, model.robots());
     let heading = line_of(area, 0);
@@ -100,12 +99,12 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     }
 }
 
-/// The first robot that is shown, so that the cursor is in the middle as far as there are others.
+/// First visible robot. The selected one is in the middle if possible.
 fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
     cursor.saturating_sub(lines / 2).min(robots.saturating_sub(lines))
 }
 
-/// What is wrong with the robot at the cursor.
+/// Draws the problem of the selected robot.
 fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let Some(seen) = model.chosen() else { return };
     let (text, tone) = if let Contact::Fails(failure) = &seen.contact {
@@ -119,13 +118,13 @@ fn trouble(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     painter.left(after(line, 1), &text, style);
 }
 
-/// The columns that there is room for, with place and width.
+/// Columns that fit the width, with position and width.
 fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
     let name = robots.iter().map(|seen| painter::width(&seen.name)).max().unwrap_or_default();
     let name = u16::try_from(name.clamp(NAME.0, NAME.1)).unwrap_or_default();
     let is_mixed = robots.windows(2).any(|pair| pair[0].family != pair[1].family);
     let gap = if width >= 100 { 2 } else { 1 };
-    // The least width of the whole at which a column is there.
+    // The number is the minimum screen width for the column.
     let all = [
         (Column::Name, name, 0),
         (Column::Family, 6, if is_mixed { 76 } else { 90 }),
@@ -158,7 +157,7 @@ fn columns(width: u16, robots: &[Seen]) -> Vec<(Column, Rect)> {
     placed
 }
 
-/// The place of a column in a line.
+/// Position of a column in a line.
 fn on(column: Rect, line: Rect) -> Rect {
     Rect { x: line.x + column.x, y: line.y, width: column.width, height: line.height }
 }
@@ -186,7 +185,7 @@ impl Column {
         let palette = painter.palette;
         let line = seen.sample().map(|sample| &sample.line);
         let is_old = seen.is_old(now, model.every);
-        // What is old stands back.
+        // Outdated values are dimmed.
         let plain = if is_old { palette.quiet() } else { Style::new() };
         let toned = |tone| if is_old { palette.quiet() } else { palette.tone(tone) };
         let dash = ("-", palette.quiet());
@@ -223,7 +222,7 @@ impl Column {
     }
 }
 
-/// Three coordinates, each in a column of its own.
+/// Draws three coordinates in columns.
 fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize, style: Style) {
     let Some(sample) = seen.sample() else { return painter.right(place, "-", painter.palette.quiet()) };
     let Some(at) = sample.line.state.position else {
@@ -237,7 +236,7 @@ fn position(painter: &mut Painter<'_>, place: Rect, seen: &Seen, decimals: usize
     }
 }
 
-/// The times of the last answers, the tallest being the longest.
+/// Draws the last answer times as bars, relative to the longest.
 fn past(painter: &mut Painter<'_>, place: Rect, seen: &Seen) {
     let last = seen.answers.iter().rev().take(PAST).rev();
     let longest = last.clone().max().copied().unwrap_or_default().as_secs_f64();

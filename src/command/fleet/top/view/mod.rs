@@ -1,4 +1,4 @@
-//! The picture of a live view: the list of all robots, the screen of one, and the keys.
+//! Screen of a live view: the list of robots, the screen of one, the help.
 
 mod chart;
 mod detail;
@@ -17,7 +17,7 @@ pub use crate::output::painter::Palette;
 use crate::output::painter::{Painter, after, line_of, to_ascii};
 use crate::output::view::Tone;
 
-/// Draws everything.
+/// Draws the screen.
 pub fn draw(frame: &mut Frame<'_>, model: &Model, now: Moment, palette: Palette) {
     let area = frame.area();
     render(frame.buffer_mut(), area, model, model.moment(now), palette);
@@ -43,7 +43,7 @@ fn render(buffer: &mut Buffer, area: Rect, model: &Model, now: Moment, palette: 
     }
 }
 
-/// The screen of the one robot of a model: its first line, and what is below it.
+/// Draws the screen of one robot: its first line, and the rest.
 pub fn robot(painter: &mut Painter<'_>, [head, body]: [Rect; 2], model: &Model, now: Moment) {
     if let Some(seen) = model.chosen() {
         detail::head(painter, head, model, seen, now);
@@ -51,7 +51,7 @@ pub fn robot(painter: &mut Painter<'_>, [head, body]: [Rect; 2], model: &Model, 
     }
 }
 
-/// The first line, the last one, and what is between them.
+/// First line, last line, and the area between.
 fn rows(area: Rect) -> [Rect; 3] {
     let head = line_of(area, 0);
     let foot = if area.height > 1 { line_of(area, area.height - 1) } else { Rect::ZERO };
@@ -59,7 +59,7 @@ fn rows(area: Rect) -> [Rect; 3] {
     [head, body, foot]
 }
 
-/// How often robots are looked at, and whether the picture stands still, at the end of the first line.
+/// Draws the polling interval and the pause mark at the end of the first line.
 fn pace(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let pace = format!("every {:?} ", model.every);
     painter.right(line, &pace, painter.palette.quiet());
@@ -71,7 +71,7 @@ fn pace(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     }
 }
 
-/// The last line: what keys do, as many as there is room for; or the filter that is being typed.
+/// Last line: keys, as many as fit; or the filter that is being typed.
 fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     let (accent, quiet) = (painter.palette.accent(), painter.palette.quiet());
     if model.is_typing {
@@ -85,7 +85,7 @@ fn keys(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     painter.keys(line, &shown.collect::<Vec<_>>());
 }
 
-/// When a robot answered last, and how fast: `4.1 ms`, or `12s ago` where it is late.
+/// Time of the last answer: `4.1 ms`, or `12s ago` if it is late.
 fn answer(painter: &Painter<'_>, seen: &Seen, now: Moment, every: Duration) -> (String, Style) {
     let Some(age) = seen.age(now) else { return ("-".to_owned(), painter.palette.quiet()) };
     if seen.sample().is_none() || seen.is_old(now, every) {
@@ -94,7 +94,7 @@ fn answer(painter: &Painter<'_>, seen: &Seen, now: Moment, every: Duration) -> (
     }
     match seen.sample().and_then(|sample| sample.answered_in) {
         Some(time) => (milliseconds(time), Style::new()),
-        // Nothing is asked: the controller shows itself.
+        // No polling: the controller sends its state cyclically.
         None => ("live".to_owned(), painter.palette.quiet()),
     }
 }
@@ -104,7 +104,7 @@ fn milliseconds(time: Duration) -> String {
     if milliseconds < 10.0 { format!("{milliseconds:.1} ms") } else { format!("{milliseconds:.0} ms") }
 }
 
-/// A time in two digits and a letter, as long as it is less than four days.
+/// A time with two digits and a letter, below four days.
 fn short(time: Duration) -> String {
     match time.as_secs() {
         seconds @ 0..100 => format!("{seconds}s"),
@@ -113,7 +113,7 @@ fn short(time: Duration) -> String {
     }
 }
 
-/// A time in its greatest unit.
+/// A time in its largest unit.
 fn whole(time: Duration) -> String {
     match time.as_secs() {
         seconds @ 0..120 => format!("{seconds} s"),

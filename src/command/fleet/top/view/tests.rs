@@ -1,4 +1,4 @@
-//! Pictures as text. `ARMCTL_BLESS=1` writes them anew; look at the difference.
+//! Tests of screens as text. `ARMCTL_BLESS=1` writes them again; check the diff.
 
 use std::path::Path;
 use std::time::Duration;
@@ -15,7 +15,7 @@ const EVERY: Duration = Duration::from_millis(500);
 const RICH: Palette = Palette { has_color: true, is_unicode: true };
 const POOR: Palette = Palette { has_color: false, is_unicode: false };
 
-/// What a picture shows, without colours.
+/// Text of a screen, without colors.
 fn picture(model: &Model, now: Moment, columns: u16, lines: u16, palette: Palette) -> String {
     let area = Rect::new(0, 0, columns, lines);
     let mut buffer = Buffer::empty(area);
@@ -36,7 +36,7 @@ fn picture(model: &Model, now: Moment, columns: u16, lines: u16, palette: Palett
     rows.map(text).collect()
 }
 
-/// Four robots: one runs, one is silent, one has alarms, one was not heard yet.
+/// Four robots: running, silent, with alarms, not polled yet.
 fn four() -> (Model, Moment) {
     let mut model = Model::new(&fleet(4), EVERY);
     let mut now = Duration::ZERO;

@@ -1,8 +1,8 @@
-//! What each instruction does.
+//! Effects of the instructions.
 
 use super::{Bench, What, fails, ran};
 
-/// Steps of task 1 in the order in which they are executed.
+/// Steps of task 1 in execution order.
 fn order(bench: &mut Bench) -> Vec<usize> {
     bench.sim.record_trace(true);
     bench.run();
@@ -254,7 +254,7 @@ fn a_million_instructions_are_executed() {
     bench.ok("@SPST 0001");
     bench.rest();
     assert_eq!(bench.counter(2), 34);
-    // 34 times 9999 rounds of three, and a little; a tenth of a millisecond each.
+    // 34 times 9999 rounds of three, and some more; 0.1 ms each.
     assert!(bench.now > std::time::Duration::from_secs(100), "{:?}", bench.now);
     assert_eq!(bench.error(), None);
 }

@@ -1,4 +1,4 @@
-//! Blocks on the line: pieces, noise, length, form.
+//! Blocks on the line: pieces, noise, length, format.
 
 use std::time::Duration;
 

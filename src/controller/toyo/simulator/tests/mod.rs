@@ -1,4 +1,4 @@
-//! The simulator as the host sees it, in virtual time.
+//! Tests of the simulator from the host side, in virtual time.
 
 mod host;
 mod instructions;
@@ -17,13 +17,12 @@ use super::trace::What;
 use super::{Simulator, Start};
 use crate::Now;
 
-/// A controller with the time.
 struct Bench {
     sim: Simulator,
     now: Now,
 }
 
-/// Longest run of anything here.
+/// Maximum run time in a test.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
 impl Bench {
@@ -32,7 +31,7 @@ impl Bench {
         Self { sim: Simulator::new(start), now: Now::ZERO }
     }
 
-    /// With host on, and the origin known.
+    /// With host ON and known origin.
     fn ready(toml: &str) -> Self {
         Self::new(&format!("host = true\norigin = true\n{toml}"))
     }
@@ -43,7 +42,7 @@ impl Bench {
         Self::ready(&format!("steps.1 = [{}]\n{toml}", steps.join(", ")))
     }
 
-    /// Sends a block and takes the answer, both without line end.
+    /// Sends a block and returns the answer, both without line end.
     fn ask(&mut self, block: &str) -> String {
         self.sim.receive(self.now, format!("{block}\r\n").as_bytes());
         let answer = self.sim.transmit(self.now).unwrap_or_else(|| panic!("{block}: no answer"));
@@ -58,7 +57,7 @@ impl Bench {
         assert_eq!(answer, "@OK", "{block}: {:?}", self.sim.console(self.now, "why"));
     }
 
-    /// Demands a refusal, for a reason.
+    /// Asserts a refusal with this reason.
     #[track_caller]
     fn ng(&mut self, block: &str, why: &str) {
         assert_eq!(self.ask(block), "@NG", "{block}");
@@ -76,7 +75,7 @@ impl Bench {
         self.sim.advance(self.now);
     }
 
-    /// Lets time pass until nothing is executed any more, or nothing will change by itself.
+    /// Advances the time until nothing runs, or no event is due.
     fn rest(&mut self) {
         let end = self.now + PATIENCE;
         while self.sim.state().executing {
@@ -86,7 +85,7 @@ impl Bench {
         }
     }
 
-    /// Starts the program at its first step and lets it run.
+    /// Starts the program and runs it to its end.
     fn run(&mut self) {
         self.ok("@SPST 0001");
         self.rest();
@@ -118,14 +117,14 @@ impl Bench {
     }
 }
 
-/// Runs a program from its start, and returns the controller after it.
+/// The controller after a run of the program.
 fn ran(steps: &[&str]) -> Bench {
     let mut bench = Bench::with(steps, "");
     bench.run();
     bench
 }
 
-/// The error that a program ends with.
+/// Asserts the error that ends the program.
 #[track_caller]
 fn fails(steps: &[&str], code: u8) -> Bench {
     let bench = ran(steps);

@@ -1,17 +1,17 @@
-//! Moves over time: ramps, speeds, limits, origin, JOG, things in the way.
+//! Moves over time: ramps, speeds, limits, origin, JOG, obstacles.
 
 use std::time::Duration;
 
 use super::{Bench, What, fails};
 
-/// A move of X to 100 mm with row 5 of the speeds, 200 mm/s, and a ramp of 0.1 s, takes 0.6 s: 20 mm of ramps.
+/// A move of X to 100 mm with speed row 5 (200 mm/s) and ramps of 0.1 s takes 0.6 s: the ramps are 20 mm.
 const TO_100: &str = "MOV a X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST";
 
 fn mov(x: f64, y: f64, tail: &str) -> String {
     format!("MOV a X={x:+08.2} Y={y:+08.2} Z=+0000.00 R=+0000.00 {tail}")
 }
 
-/// Runs steps and returns how long that took, less an instruction for every step but the moves.
+/// Run time of steps, without the instruction time of steps other than moves.
 fn time_of(steps: &[&str], toml: &str) -> (Bench, Duration) {
     let mut bench = Bench::with(steps, &format!("instruction_us = 1\n{toml}"));
     bench.run();
@@ -47,15 +47,15 @@ fn speed_and_ramps_come_from_tables_and_override() {
     about(bench.now, 1.1);
     // Ramps of 0.4 s, then 0.2 s: 40 and 20 mm, 40 mm between them.
     about(time_of(&["ACC A=04", "DEC D=02", TO_100, "END"], "").1, 0.8);
-    // Row 0 is the speed chosen by SPD.
+    // Row 0 is the speed of SPD.
     about(time_of(&["SPD V=04", &mov(100.0, 0.0, "S V=00 POST"), "END"], "").1, 1.1);
-    // An axis is never faster than E06.
+    // An axis never exceeds E06.
     about(time_of(&[TO_100, "END"], "write = [\"WPAR E06 AX1=0100 AX2=1000 AX3=1000 AX4=1000\"]").1, 1.1);
 }
 
 #[test]
 fn line_speed_is_along_the_line_and_axis_speed_that_of_the_longest_way() {
-    // 30, 40: 50 mm along the line. 20 mm of ramps.
+    // 30 and 40 mm: 50 mm along the line. 20 mm of ramps.
     about(time_of(&[&mov(30.0, 40.0, "T V=05 POST"), "END"], "").1, 0.2 + 30.0 / 200.0);
     about(time_of(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "").1, 0.2 + 20.0 / 200.0);
     let mut bench = Bench::with(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "");
@@ -89,7 +89,7 @@ fn pass_points_are_rounded_and_do_not_stop() {
     assert!((97.0..98.0).contains(&x) && (2.0..3.0).contains(&y), "{x} {y}");
     bench.rest();
     bench.at([100.0, 100.0, 0.0, 0.0]);
-    // A program ends when its last move has.
+    // A program ends with its last move.
     about(time_of(&[&first, "END"], "").1, 0.6);
 }
 
@@ -190,7 +190,7 @@ fn soft_limits_are_looked_at_before_and_during_moves() {
     .at([1000.0, 0.0, 0.0, 0.0]);
     let offset = "OFS X=+0000.00 Y=-0950.00 Z=+0000.00 R=+0000.00";
     fails(&[offset, "MOV a X=+0000.00 Y=-0051.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"], 0x39).at([0.0; 4]);
-    // An arc between places within the limits that bulges beyond.
+    // An arc between positions within the limits that extends beyond them.
     let mut bench = Bench::with(
         &[
             "MVC a X=+0070.00 Y=+0070.00 Z=+0000.00 R=+0000.00 V=05 POST",
@@ -300,7 +300,7 @@ fn the_origin_is_sought_axis_by_axis() {
     about(bench.now, 0.6 + 1.2 + 1.1 + 1.2);
     assert_eq!(bench.page(0), 0b0011_0000);
     bench.at([5.0, 0.0, 0.0, 0.0]);
-    // Once more: it knows where it is, and goes to E13 fast, then 5 mm to the sensor.
+    // The second time the origin is known: fast to E13, then 5 mm to the sensor.
     bench.ok("@HOME");
     bench.rest();
     assert_eq!(bench.page(0), 0b0011_0000);
@@ -319,7 +319,7 @@ fn a_return_that_is_stopped_is_not_complete() {
     bench.rest();
     assert_eq!(bench.page(0), 0b0011_0000);
     bench.at([0.0; 4]);
-    // In a program as well, where HOME is done anew.
+    // In a program HOME is repeated.
     let mut bench = Bench::with(&["HOME", TO_100, "END"], "position = [50.0, 0.0, 0.0, 0.0]");
     bench.ok("@SPST 0001");
     bench.pass(200);
@@ -390,7 +390,7 @@ fn jog_gets_no_farther_than_the_soft_limit() {
     bench.ok("@JGST X=-L Y=SP Z=SP R=SP");
     bench.pass(500);
     assert_eq!(bench.error(), None, "but back");
-    // Without its origin an axis has no limits.
+    // Without a known origin an axis has no limits.
     let mut bench = Bench::new("host = true");
     bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
     bench.ok("@JGST X=-H Y=SP Z=SP R=SP");
@@ -487,7 +487,7 @@ fn torque_limits_end_moves() {
         bench.ok("@SPST 0001");
         bench
     };
-    // Torque and lock end it at the obstacle, half a second after it got there.
+    // Torque and lock end it at the obstacle, half a second after contact.
     for limits in ["TE=ON LE=OFF AE=OFF DD=ON", "TE=OFF LE=ON AE=OFF DD=ON"] {
         let mut bench = bench(limits, true);
         bench.pass(700);
@@ -496,7 +496,7 @@ fn torque_limits_end_moves() {
         assert_eq!((bench.error(), bench.counter(1)), (None, 1));
         bench.at([80.0, 0.0, 0.0, 0.0]);
     }
-    // Neither does: it pushes on, locked, until somebody takes the obstacle away.
+    // With neither, it pushes on, locked, until the obstacle is removed.
     let mut bench1 = bench("TE=OFF LE=OFF AE=OFF DD=ON", true);
     bench1.pass(5000);
     assert_eq!((bench1.error(), bench1.counter(1), bench1.port(1)), (None, 0, 0b111));
@@ -504,14 +504,14 @@ fn torque_limits_end_moves() {
     bench1.rest();
     assert_eq!((bench1.error(), bench1.counter(1), bench1.port(1)), (None, 1, 0));
     bench1.at([100.0, 0.0, 0.0, 0.0]);
-    // Without an obstacle it arrives; that ends it only if it may.
+    // Without an obstacle it arrives, which ends it only if allowed.
     let mut bench2 = bench("TE=ON LE=OFF AE=ON DD=ON", false);
     bench2.rest();
     assert_eq!(bench2.counter(1), 1);
     let mut bench3 = bench("TE=ON LE=OFF AE=OFF DD=ON", false);
     bench3.pass(5000);
     assert_eq!((bench3.counter(1), bench3.page(0) & 0b10), (0, 0b10));
-    // Overflow is watched for, or not.
+    // With and without overflow detection.
     for (watch, code) in [("ON", Some(0x24)), ("OFF", None)] {
         let limits = format!("TE=OFF LE=OFF AE=OFF DD={watch}");
         let steps = [format!("TLMV X TT=01 TM=000.5 {limits}"), TO_100.to_owned(), "END".to_owned()];

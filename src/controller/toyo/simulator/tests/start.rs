@@ -1,4 +1,4 @@
-//! The start state, and the console.
+//! Start state and console.
 
 use std::time::Duration;
 
@@ -73,7 +73,7 @@ fn events_happen_in_their_time() {
     bench.pass(1000);
     assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000000"));
     assert_eq!(bench.sim.wake(), None);
-    // What has become impossible by then is told.
+    // A scheduled line that became impossible is reported.
     let mut bench = Bench::new("[[event]]\nat_ms = 1000\ndo = \"servo on\"\n[[event]]\nat_ms = 500\ndo = \"estop\"");
     bench.pass(2000);
     assert_eq!(bench.console("why"), "servo on: there is an error: cancel it first");

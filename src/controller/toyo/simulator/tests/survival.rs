@@ -1,4 +1,4 @@
-//! Programs that nobody would write.
+//! Random programs.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::simulator::Simulator;
 use crate::toyo::table::instructions::INSTRUCTIONS;
 
-/// A value in range; small numbers come often, so that counters, tags and ports meet.
+/// A value in range. Small numbers are frequent, so that counters, tags and ports meet.
 fn value(field: &Field, random: &mut fastrand::Rng) -> Value {
     match field.form {
         Form::Number(number) => {
@@ -31,7 +31,7 @@ fn program(random: &mut fastrand::Rng) -> Vec<Record> {
     (0..random.usize(1..30)).map(|_| step(random)).collect()
 }
 
-/// Runs random programs, with random lines of the console and blocks of the host between.
+/// Runs random programs with random console lines and host blocks in between.
 #[test]
 fn any_program_runs_or_ends_with_an_error() {
     let lines = [
@@ -92,7 +92,7 @@ fn any_program_runs_or_ends_with_an_error() {
     assert!(ended > 30, "{ended}");
 }
 
-/// Time that comes in large or small pieces makes no difference.
+/// The result does not depend on the step size of time.
 #[test]
 fn pieces_of_time_do_not_matter() {
     let mut random = fastrand::Rng::with_seed(5);

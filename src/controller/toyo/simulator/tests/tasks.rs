@@ -1,4 +1,4 @@
-//! Four tasks beside each other, and how programs are started and stopped.
+//! Parallel tasks, and start and stop of programs.
 
 use super::{Bench, What};
 

@@ -1,4 +1,4 @@
-//! What the manual prints: every request is taken, and the answers have the printed form.
+//! Examples of the manual: every request is accepted, and the answers have the printed format.
 
 use serde_json::Value as Json;
 
@@ -10,14 +10,14 @@ fn transcripts() -> Json {
     serde_json::from_str(include_str!("../../../../../tests/data/toyo-transcripts.json")).unwrap()
 }
 
-/// Request and answer as printed, or as they should have been.
+/// Request and answer as printed, or corrected.
 fn corrected(pair: &Json) -> (String, String) {
     let blocks = pair.get("corrected").unwrap_or(pair);
     let text = |name: &str| blocks[name].as_str().unwrap().to_owned();
     (text("tx"), text("rx"))
 }
 
-/// A controller that can do what a request asks for.
+/// A controller that can execute the request.
 fn suitable(request: &Request) -> Bench {
     let text = request.text();
     let of_models = |models: &[&str]| models.contains(&"KCA-20-M00") && !models.contains(&"KCA-25-M10");
@@ -51,7 +51,7 @@ fn every_printed_request_is_answered_as_printed() {
         let request = Request::parse(&tx).unwrap();
         let mut bench = suitable(&request);
         let reads_back = tx != "@RSTX 0000" && ["@RPAR", "@RSTX", "@RPLT"].iter().any(|word| tx.starts_with(word));
-        // A read follows the write of the same thing.
+        // A read follows the write of the same object.
         if let Some(write) = written.take().filter(|_| reads_back) {
             bench.ok(&write);
         }
@@ -66,7 +66,7 @@ fn every_printed_request_is_answered_as_printed() {
             (Answer::Data(printed), Answer::Data(given)) => assert_eq!(given.layout(), printed.layout(), "{tx}"),
             _ => panic!("{tx}: {answer}, not {rx}: {why}"),
         }
-        // E22 is printed with another value than was written (ambiguity R15), RSMV as one that stops (R4).
+        // The manual prints E22 with another value than was written (ambiguity R15), and RSMV with POST (R4).
         if reads_back && !tx.contains("E22") {
             assert_eq!(answer, rx.trim_end(), "{tx}");
             exact += 1;
@@ -84,7 +84,7 @@ fn the_program_of_the_first_session_moves_and_switches() {
         let (tx, rx) = corrected(step);
         let answer = bench.ask(&tx);
         match tx.as_str() {
-            // The status is asked for until the return to origin is complete.
+            // The status is polled until the return to origin is complete.
             "@STAS SNO=0" => {
                 assert_eq!(answer, "@STAS SNO=0 ST1=0A ST2=00");
                 bench.rest();

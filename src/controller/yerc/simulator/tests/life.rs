@@ -1,4 +1,4 @@
-//! State, alarms, jobs, start states, the console.
+//! State, alarms, jobs, start states, console.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! The simulator from outside: datagrams in, datagrams out, in virtual time.
+//! Tests of the simulator by datagrams, in virtual time.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ mod survival;
 
 const PEER: u64 = 7;
 
-/// A simulator with a clock and a hand to send with.
+/// A simulator with a clock.
 struct Bench {
     simulator: Simulator,
     now: Now,
@@ -44,7 +44,7 @@ impl Bench {
         self.simulator.console(self.now, line).unwrap()
     }
 
-    /// Every frame that a datagram brings forth at once.
+    /// Sends a datagram and returns all immediate answers.
     fn exchange(&mut self, division: Division, peer: u64, bytes: &[u8]) -> Vec<Vec<u8>> {
         self.simulator.receive(self.now, division, peer, bytes);
         self.waiting()
@@ -54,7 +54,7 @@ impl Bench {
         std::iter::from_fn(|| self.simulator.transmit(self.now)).map(|outgoing| outgoing.bytes).collect()
     }
 
-    /// A robot request: status, and data.
+    /// Sends a robot request; returns status and data.
     fn ask(&mut self, command: u16, instance: u16, attribute: u8, service: u8, data: &[u8]) -> (Status, Vec<u8>) {
         let frame = RequestFrame {
             division: Division::Robot,
@@ -112,14 +112,14 @@ impl Bench {
         self.set_word(0x86, 1, 1)
     }
 
-    /// A frame to the file server.
+    /// Sends a frame to the file server.
     fn file(&mut self, peer: u64, id: u8, ack: bool, service: u8, block: u32, data: &[u8]) -> Vec<Vec<u8>> {
         let division = Division::File;
         let frame = RequestFrame { division, ack, id, block, command: 0, instance: 0, attribute: 0, service, data };
         self.exchange(division, peer, &frame.emit())
     }
 
-    /// One answer of the file server.
+    /// Sends a frame and returns the only answer of the file server.
     fn file_one(&mut self, ack: bool, service: u8, block: u32, data: &[u8]) -> (Status, u32, Vec<u8>) {
         let frames = self.file(PEER, 3, ack, service, block, data);
         assert_eq!(frames.len(), 1);
@@ -127,7 +127,7 @@ impl Bench {
         (answer.status, answer.block, answer.data.to_vec())
     }
 
-    /// A whole list or save.
+    /// Fetches a complete list or file.
     fn fetch(&mut self, service: u8, name: &[u8]) -> Result<Vec<u8>, Status> {
         let mut content = Vec::new();
         let (mut status, mut block, mut data) = self.file_one(false, service, 0, name);
@@ -146,7 +146,7 @@ impl Bench {
         Ok(content)
     }
 
-    /// A whole load in blocks of `size`.
+    /// Loads a file in blocks of `size`.
     fn load(&mut self, name: &[u8], content: &[u8], size: usize) -> Status {
         let (status, block, _) = self.file_one(false, 0x15, 0, name);
         if !status.is_ok() {
@@ -194,7 +194,7 @@ fn cartesian(instance_speed: (u32, u32), coordinate: u32, target: [i32; 6]) -> C
     }
 }
 
-/// Y +500 mm in a straight line at 100 mm/s: five seconds.
+/// Straight move of Y by +500 mm at 100 mm/s: five seconds.
 fn five_seconds() -> CartesianMove {
     cartesian((1, 1000), 16, [1_000_000, 500_000, 1_200_000, 1_800_000, 0, 0])
 }

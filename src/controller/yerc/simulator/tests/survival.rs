@@ -1,4 +1,4 @@
-//! Whatever comes, the simulator stands.
+//! The simulator survives any input.
 
 use proptest::prelude::*;
 

@@ -1,5 +1,5 @@
-//! Exchanges with a small scripted controller, in virtual time: the master sends every 20 ms, the controller scans every
-//! 5 ms and shows its image every 20 ms.
+//! Exchanges against a scripted controller in virtual time: the master sends every 20 ms, the controller scans every
+//! 5 ms and sends its image every 20 ms.
 
 use super::*;
 use crate::testing::ms;
@@ -11,23 +11,22 @@ use crate::yrcx::value::{Key, Values};
 const STEP: u64 = 5;
 const RPI: u64 = 20;
 
-/// What the controller does with the next command.
+/// Behaviour of the controller for the next command.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "a script is made of switches")]
 struct Script {
-    /// How long it runs; `None` for ever.
+    /// Run time; `None` without end.
     runs: Option<u64>,
-    /// Whether it shows the run status.
+    /// Whether the running status is visible.
     shows_run: bool,
-    /// What it answers.
     answer: Words,
-    /// Whether it takes commands at all.
+    /// Whether it accepts commands.
     takes: bool,
     /// Whether the status reset works.
     resets: bool,
-    /// What it shows while it runs, from WO1.
+    /// Output while it runs, from WO1.
     running: Words,
-    /// Whether it takes one command only.
+    /// Whether it accepts only one command.
     once: bool,
 }
 
@@ -39,18 +38,18 @@ impl Default for Script {
     }
 }
 
-/// A controller, an order, and what was seen.
+/// A controller, an order, and the observations.
 struct World {
     script: Script,
     exchange: Exchange,
     output: Output,
     now: u64,
-    /// The controller's image and when the command ends.
+    /// Image of the controller, and end time of the command.
     shown: Image,
     started: Option<u64>,
-    /// Every image that was sent, when it differed from the one before.
+    /// Changed images that were sent, with their times.
     sent: Vec<(u64, Image)>,
-    /// The link goes down at this moment.
+    /// Time of the link loss.
     cut: Option<u64>,
     interrupt: Option<u64>,
     updates: Vec<Values>,
@@ -161,7 +160,7 @@ impl World {
         }
     }
 
-    /// WI0 of every image that differed, and whether its data words are those of the order.
+    /// WI0 of each changed image, and whether its data words are those of the order.
     fn commands(&self) -> Vec<(u16, bool)> {
         let data = |image: &Image| image.command()[1..] == self.exchange.order().words()[1..];
         let mut seen: Vec<(u16, bool)> = self.sent.iter().map(|(_, image)| (image.0[0], data(image))).collect();
@@ -280,7 +279,7 @@ fn a_running_command_of_another_master_is_left_alone() {
 
 #[test]
 fn an_answer_that_is_not_ours_is_not_taken() {
-    // The status comes up between our decision to send and the sending.
+    // The status changes between the decision to send and the sending.
     let mut exchange = Exchange::new(servo_status(), Policy::default());
     let mut output = Output::new(resting());
     output.sent(ms(0));
@@ -333,7 +332,7 @@ fn silence_has_its_reason() {
     let odd = Script { answer, ..Script::default() };
     assert_eq!(ended(move_to_19(), odd).ended, Ended::OutcomeUnknown(Silence::Undocumented(0x1234)));
 
-    // Ready without an end status, and deaf from then on.
+    // Ready without an end status, and no more commands accepted.
     let vanishing = Script { answer: [0; 16], once: true, ..Script::default() };
     assert_eq!(ended(move_to_19(), vanishing).ended, Ended::OutcomeUnknown(Silence::Vanished));
 }

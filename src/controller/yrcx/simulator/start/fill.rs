@@ -1,4 +1,4 @@
-//! Robots and memory as a start state names them.
+//! Robots and memory from a start state.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::yrcx::table::parameter::PARAMETERS as KNOWN_PARAMETERS;
 use crate::yrcx::table::{Charset, Field};
 use crate::yrcx::value::{Key, Value};
 
-/// Puts the robots there.
+/// Adds the robots.
 pub(super) fn robots(
     world: &mut World,
     entries: &[Spanned<RobotEntry>],
@@ -136,7 +136,7 @@ fn arm(entry: ArmEntry) -> Arm {
     }
 }
 
-/// Puts everything else there, on top of what is.
+/// Adds everything else to the existing content.
 pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let last_point = usize::from(POINTS) - 1;
     source.each_of(&entries.points, |number, entry| {
@@ -225,7 +225,7 @@ fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<
     })
 }
 
-/// What depends on several entries.
+/// Checks constraints on several entries.
 pub(super) fn check(world: &World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let mut number = 0;
     source.each(&entries.robots, |robot| {

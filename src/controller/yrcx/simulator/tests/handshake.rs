@@ -105,7 +105,7 @@ fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
     bench.simulator.input(bench.now, None);
     bench.now += Duration::from_secs(1);
     bench.simulator.advance(bench.now);
-    // The next master shows a command at once, which is not taken before a status reset.
+    // The next master sends a command at once, which is ignored before a status reset.
     bench.image.set_command(&words(&[0x0503]));
     bench.wait(20);
     assert_eq!(bench.words(), words(&[0x4000, 12, 551]));
@@ -160,7 +160,7 @@ fn scans_are_5_ms_apart_and_none_is_in_vain() {
     assert_eq!(simulator.output().0[0], 0);
     simulator.advance(Duration::from_millis(20));
     assert_eq!(simulator.output().0[0], 0x0200);
-    // The same image again changes nothing.
+    // A repeated image changes nothing.
     simulator.input(Duration::from_millis(40), Some(&image));
     assert_eq!(simulator.wake(), None);
     // A day passes at once.

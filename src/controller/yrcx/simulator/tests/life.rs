@@ -1,4 +1,4 @@
-//! What happens beside the master: the box, safety settings, alarms, the clock, the start state.
+//! Programming box, safety settings, alarms, clock, start state.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! The simulator from outside: images in, images out, in virtual time.
+//! Tests of the simulator by images, in virtual time.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ mod refusals;
 mod sessions;
 mod signals;
 
-/// A simulator with a clock and a master that shows images.
+/// A simulator with a clock and a master.
 struct Bench {
     simulator: Simulator,
     now: Now,
@@ -40,7 +40,7 @@ impl Bench {
         bench
     }
 
-    /// Shows the image for so long.
+    /// Sends the image for some time.
     fn wait(&mut self, millis: u64) {
         self.simulator.input(self.now, Some(&self.image));
         self.now += Duration::from_millis(millis);
@@ -59,7 +59,7 @@ impl Bench {
         signal.is_on(self.simulator.output())
     }
 
-    /// Switches an input and waits until edges may follow.
+    /// Switches an input and waits for the minimum edge interval.
     fn set(&mut self, signal: Signal, on: bool) {
         signal.set(&mut self.image, on);
         self.wait(120);
@@ -70,7 +70,7 @@ impl Bench {
         self.set(signal, false);
     }
 
-    /// Shows a command for a scan.
+    /// Sends a command for one scan.
     fn begin(&mut self, words: &Words) {
         let mut data = *words;
         data[0] = 0;
@@ -96,20 +96,20 @@ impl Bench {
         panic!("never over");
     }
 
-    /// A whole command in words.
+    /// Runs a command given in words.
     fn send(&mut self, words: &Words) -> Words {
         self.begin(words);
         self.end()
     }
 
-    /// A whole command.
+    /// Runs a command.
     fn ask(&mut self, draft: Draft) -> Answer {
         let order = draft.build().unwrap();
         let words = self.send(order.words());
         Answer::parse(&order, &words).unwrap()
     }
 
-    /// A command that ends well.
+    /// Asserts a normal end.
     fn done(&mut self, draft: Draft) -> Values {
         match self.ask(draft) {
             Answer::Done(values) => values,
@@ -117,7 +117,7 @@ impl Bench {
         }
     }
 
-    /// A command that is refused or broken off.
+    /// Asserts a refusal or an abort.
     fn refused(&mut self, draft: Draft) -> String {
         match self.ask(draft) {
             Answer::Refused { alarm, .. } => alarm.to_string(),
@@ -125,18 +125,18 @@ impl Bench {
         }
     }
 
-    /// Where a robot is in pulses.
+    /// Position of a robot in pulses.
     fn pulses(&mut self, robot: i32) -> [i32; 4] {
         self.done(Command::PositionPulse.order().with(Key::Robot, robot)).axes().unwrap()
     }
 
-    /// Where a robot is in 0.001 mm.
+    /// Position of a robot in 0.001 mm.
     fn steps(&mut self, robot: i32) -> [i32; 4] {
         self.done(Command::PositionMm.order().with(Key::Robot, robot)).axes().unwrap()
     }
 }
 
-/// Words from the first ones.
+/// Words that begin with these.
 fn words(head: &[u16]) -> Words {
     let mut words = [0; 16];
     words[..head.len()].copy_from_slice(head);

@@ -1,4 +1,4 @@
-//! What must not be sent is refused: by checks that are not the client's, and with the same result.
+//! Invalid commands are refused by checks that are independent of the client's, with the same result.
 
 use fastrand::Rng;
 
@@ -7,7 +7,7 @@ use crate::yrcx::order::Order;
 use crate::yrcx::simulator::request::Request;
 use crate::yrcx::table::{ROWS, Row};
 
-/// Commands that the client would send, one for each row at least.
+/// Valid commands, at least one for each row.
 fn sendable() -> Vec<Words> {
     let mut all: Vec<Words> = examples::examples().into_iter().map(|(_, words, _)| words).collect();
     for row in ROWS {
@@ -57,7 +57,7 @@ fn both_checks_agree_on_every_word() {
         }
         let (client, simulator) = (Order::parse(&words), Request::read(&words));
         match (&client, &simulator) {
-            // Stricter than what the client reads; it never writes a mixture of fills.
+            // Stricter than the decoder of the client, which never writes mixed padding.
             (Ok(_), Err(fault)) if fault.why.ends_with("characters after the end") => {}
             _ => assert_eq!(
                 client.is_ok(),

@@ -1,5 +1,5 @@
-//! The client's sessions against the simulator in virtual time: the master sends every 20 ms, and sees the controller's
-//! image every 20 ms.
+//! Client sessions against the simulator in virtual time: the master sends every 20 ms, and receives the image of the
+//! controller every 20 ms.
 
 use super::*;
 use crate::testing::ms;
@@ -11,12 +11,11 @@ use crate::yrcx::session::{Ended, Exchange, ImageSession, Next, NotSentReason, O
 
 const RPI: u64 = 20;
 
-/// A master on a link.
 struct MasterLink {
     simulator: Simulator,
     output: Output,
     now: u64,
-    /// When the link goes.
+    /// Time of the link loss.
     cut: Option<u64>,
     linked: bool,
 }
@@ -30,7 +29,7 @@ impl MasterLink {
         Self { simulator, output, now: 500, cut: None, linked: true }
     }
 
-    /// One step of 5 ms; says whether the session has something to look at.
+    /// A step of 5 ms.
     fn step<S: ImageSession>(&mut self, session: &mut S) {
         let now = ms(self.now);
         if self.cut == Some(self.now) {
@@ -73,7 +72,7 @@ impl MasterLink {
         self.run_with(&mut Sequence::new(procedure, Duration::from_secs(5)), |_, _| {})
     }
 
-    /// Where axis 1 is once everything is at rest.
+    /// Position of axis 1 at rest.
     fn place(&mut self) -> i32 {
         self.simulator.advance(ms(self.now + 60_000));
         geometry::whole(self.simulator.world.robots[0].pulses()[0])

@@ -1,4 +1,4 @@
-//! The dedicated signals with the timing of the charts (chapter 1, section 3).
+//! Dedicated signals with the timing of the charts (chapter 1, section 3).
 
 use super::*;
 
@@ -47,7 +47,7 @@ fn into_emergency_stop_and_out_of_it() {
     bench.pulse(input::SERVO_ON);
     bench.wait(100);
     assert!(bench.is_on(output::SERVO_ON));
-    // The alarm is in the history, and so are the vain attempts.
+    // The history contains the alarm and the failed attempts.
     let newest = bench.done(Command::AlarmHistory.order().with(Key::History, 3));
     assert_eq!((newest.int(Key::AlarmGroup), newest.int(Key::AlarmCategory)), (Some(12), Some(600)));
 }
@@ -78,7 +78,7 @@ fn edges_closer_than_100_ms_are_not_seen() {
     assert!(!bench.is_on(output::SERVO_ON));
     assert!(bench.console("why").contains("less than 100 ms"));
     bench.set(input::SERVO_ON, false);
-    // Both at once are too close, too.
+    // Simultaneous edges are too close as well.
     input::PROGRAM_RESET.set(&mut bench.image, false);
     input::SERVO_ON.set(&mut bench.image, true);
     bench.wait(400);
@@ -87,7 +87,7 @@ fn edges_closer_than_100_ms_are_not_seen() {
     bench.set(input::SERVO_ON, true);
     bench.wait(200);
     assert!(bench.is_on(output::SERVO_ON));
-    // What stops is never too close.
+    // A stop is never too early.
     input::EMERGENCY_STOP.set(&mut bench.image, false);
     bench.wait(5);
     assert!(bench.is_on(output::EMERGENCY_STOP));

@@ -1,30 +1,30 @@
-//! The modules in the blocks of Connect: those that are expected, and what differs from them.
+//! Codec for module blocks of Connect: expected modules, and differences.
 
 use super::super::{Reader, WireError, Writer, count16};
 
-/// A module that is expected in a slot.
+/// An expected module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExpectedModule {
-    /// The profile; 0.
+    /// API (profile); 0.
     pub api: u32,
-    /// The slot.
+    /// Slot.
     pub slot: u16,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
-    /// What is in it.
+    /// Submodules.
     pub submodules: Vec<ExpectedSubmodule>,
 }
 
-/// A submodule that is expected.
+/// An expected submodule.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExpectedSubmodule {
-    /// The subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// Its kind.
+    /// Ident number.
     pub ident: u32,
     /// Bits 0 and 1: 0 no data, 1 input, 2 output, 3 both.
     pub properties: u16,
-    /// Its data.
+    /// Data descriptions.
     pub data: Vec<DataDescription>,
 }
 
@@ -33,11 +33,11 @@ pub struct ExpectedSubmodule {
 pub struct DataDescription {
     /// 1 input, 2 output.
     pub direction: u16,
-    /// Bytes.
+    /// Bytes of data.
     pub length: u16,
-    /// Bytes of the consumer's status.
+    /// Bytes of the consumer status.
     pub consumer: u8,
-    /// Bytes of the provider's status.
+    /// Bytes of the provider status.
     pub provider: u8,
 }
 
@@ -95,32 +95,32 @@ pub(super) fn write_expected(modules: &[ExpectedModule], out: &mut Writer) {
     }
 }
 
-/// A module that is not as expected.
+/// A module that differs from the expected one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModuleDiff {
-    /// Its slot.
+    /// Slot.
     pub slot: u16,
-    /// The kind that is there.
+    /// Ident number of the real module.
     pub ident: u32,
-    /// 0 none, 1 wrong, 2 proper, 3 substitute.
+    /// State: 0 none, 1 wrong, 2 proper, 3 substitute.
     pub state: u16,
-    /// What is in it.
+    /// Submodules that differ.
     pub submodules: Vec<SubmoduleDiff>,
 }
 
-/// A submodule that is not as expected.
+/// A submodule that differs from the expected one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SubmoduleDiff {
-    /// Its subslot.
+    /// Subslot.
     pub subslot: u16,
-    /// The kind that is there.
+    /// Ident number of the real submodule.
     pub ident: u32,
-    /// With bit 15: bits 11 to 14 are 0 fine, 1 substitute, 2 wrong, 3 none.
+    /// State. With bit 15, bits 11 to 14 are 0 proper, 1 substitute, 2 wrong, 3 none.
     pub state: u16,
 }
 
 impl SubmoduleDiff {
-    /// Bits 11 to 14, where they are told; without bit 15 the whole of it is 0 none, 1 wrong, 2 proper, 3 substitute.
+    /// Bits 11 to 14. Without bit 15, the whole state is 0 none, 1 wrong, 2 proper, 3 substitute, and is converted.
     const fn ident_info(&self) -> u16 {
         match (self.state & 0x8000 != 0, self.state) {
             (true, state) => (state >> 11) & 0xF,
@@ -131,12 +131,12 @@ impl SubmoduleDiff {
         }
     }
 
-    /// Whether it is the one that is expected, or one that does the same.
+    /// Whether it is the expected submodule or a substitute.
     pub const fn is_usable(&self) -> bool {
         self.ident_info() < 2
     }
 
-    /// Whether there is none.
+    /// Whether it is missing.
     pub const fn is_missing(&self) -> bool {
         self.ident_info() == 3
     }
