@@ -175,6 +175,10 @@ impl<F: Backups> Command for Diff<F> {
         F::backup_risk(robot)
     }
 
+    fn uses_files(&self) -> bool {
+        true
+    }
+
     fn takes_robot(&self) -> bool {
         self.options.new.is_none()
     }
