@@ -268,9 +268,9 @@ fn a_board_that_misbehaves() {
             "no answer to servo-status: the controller did not take it",
             "`yrcx status` tells how the controller stands",
         ),
-        ("stall", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-id", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-size", "yrcx info servo", "the controller shows nothing", LINK),
+        ("stall", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-size", "yrcx info servo", "the controller sends no data", LINK),
     ] {
         tells(&Board::start(&["--mischief", mischief]).target, line, 4, "", message, hint);
     }

@@ -395,7 +395,7 @@ fn a_lost_link_is_opened_again() {
     drop(simulator);
     session.says("the link was lost");
     desk.until(|session| session["link"] == "down");
-    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller shows nothing");
+    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
     let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
     session.says("the link is open again");
     let listed = desk.until(|session| session["link"] == "up");

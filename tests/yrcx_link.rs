@@ -71,9 +71,9 @@ fn what_the_adapter_does_wrong_has_its_exit_code() {
     for (mischief, exit, part) in [
         ("mute", 4, "was not answered"),
         ("reset", 4, "ended before"),
-        ("stall", 4, "shows nothing"),
-        ("wrong-id", 4, "shows nothing"),
-        ("wrong-size", 4, "shows nothing"),
+        ("stall", 4, "sends no data"),
+        ("wrong-id", 4, "sends no data"),
+        ("wrong-size", 4, "sends no data"),
         ("garbage", 5, "cannot be read"),
     ] {
         let output = Simulator::start(&["--mischief", mischief]).run("yrcx info servo");
@@ -166,7 +166,7 @@ fn a_simulator_in_this_process_has_faults_too() {
         assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
     }
     for (url, exit, part) in [
-        ("sim:?mischief=stall", 4, "shows nothing"),
+        ("sim:?mischief=stall", 4, "sends no data"),
         ("sim:?mischief=mute", 4, "was not answered within 400 ms"),
         ("sim:?mischief=garbage", 5, "cannot be read"),
         ("sim:?mischief=none", 2, "wrong-sequence"),

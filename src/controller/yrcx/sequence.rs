@@ -58,7 +58,7 @@ impl fmt::Display for Outcome {
             }
             Self::TimedOut { signal, on } => write!(f, "{} did not go {} in time", signal.named(), state(on)),
             Self::Broken { signal } => write!(f, "{} came on meanwhile", signal.named()),
-            Self::NoImage => f.write_str("the controller shows nothing"),
+            Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost { begun: false } => f.write_str("the link went down before anything was switched"),
             Self::LinkLost { begun: true } => f.write_str("the link went down in the middle"),
         }

@@ -150,7 +150,7 @@ fn signals_are_switched_while_a_command_runs() {
     let item = &switched["items"][0];
     assert_eq!((&item["name"], &item["old"], &item["new"]), (&json!("SI(20)"), &json!(false), &json!(true)));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
-    assert!(busy.message.contains("move-ptp is still under way"), "{busy}");
+    assert!(busy.message.contains("move-ptp still runs"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
     // What ended meanwhile is noticed, and the next command goes out.
     bench.run(&["alarm", "reset"]).unwrap();

@@ -81,7 +81,7 @@ pub enum Silence {
 impl fmt::Display for NotSentReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoImage => f.write_str("the controller shows nothing"),
+            Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost => f.write_str("the link is down"),
             Self::NotReady(status) => write!(f, "the controller is not ready for a command, its status is: {status}"),
             Self::Interrupted => f.write_str("interrupted"),
