@@ -139,7 +139,7 @@ fn a_name_that_is_missing_is_chosen() {
     select.says("NAME");
     select.press("WAIT\r");
     // The terminal is narrower than the line.
-    select.says("the same without a question: armctl --config robots.toml --sim yerc job select");
+    select.says("the same command without the question: armctl --config robots.toml --sim yerc job select");
     select.says("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     gives_back(&select, "chosen");

@@ -64,7 +64,7 @@ pub enum ColorChoice {
 
 /// Output settings.
 #[derive(Debug, Clone, Copy)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent flag")]
 pub struct Screen {
     /// Format of data.
     pub format: Format,
