@@ -383,7 +383,7 @@ fn a_session_that_is_asked_to_end_tells_its_clients() {
     let (code, said) = moving.end();
     assert!(code == Some(6) && said.contains("the session has ended: asked to end (SIGTERM)"), "{code:?} {said}");
     let (code, said) = session.end();
-    assert!(code == Some(0) && !said.contains("not closed properly"), "{said}");
+    assert!(code == Some(0) && !said.contains("not closed correctly"), "{said}");
     assert!(desk.files("sock").is_empty());
 }
 
@@ -451,9 +451,9 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
     assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
     let log = PathBuf::from(opened["log"].as_str().unwrap());
     assert_eq!(mode(&log), 0o600);
-    assert!(std::fs::read_to_string(&log).unwrap().contains("the link is open"));
+    assert!(std::fs::read_to_string(&log).unwrap().contains("the connection is open"));
     assert_eq!(desk.listed()["pid"], opened["pid"]);
-    fails(&desk.run("-r cell session open --background"), 4, "a session is open already");
+    fails(&desk.run("-r cell session open --background"), 4, "a session is already open");
     fails(&desk.run("session close elsewhere"), 2, "there is no session of 'elsewhere'");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);

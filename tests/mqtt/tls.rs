@@ -84,7 +84,7 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     assert!(code == Some(0) && !said.contains("can read"), "{said}");
     std::fs::set_permissions(strict.folder().join("client.key"), Permissions::from_mode(0o640)).unwrap();
     let (code, said) = publish(&desk, &strict, &client);
-    assert!(code == Some(0) && said.matches("users of this machine can read this private key").count() == 1, "{said}");
+    assert!(code == Some(0) && said.matches("users of this computer can read this private key").count() == 1, "{said}");
     let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
@@ -115,7 +115,7 @@ fn a_service_waits_for_a_broker_to_get_the_right_certificate() {
     let url = broker.url().replace("mqtt:", "mqtts:");
     let mut publisher = Publisher::start(desk.command(&["publish", &url, "--ca", &ca, "--json"]));
     publisher
-        .says("its certificate is for another name (write the name that is in the certificate into the URL); trying");
+        .says("its certificate is for another name (use the name in the certificate as the host of the URL); next try");
     broker.kill();
     put(broker.folder(), "broker");
     broker.start_again();

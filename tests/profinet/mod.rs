@@ -74,7 +74,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("yrcx io get", "0", &["CPU_OK"]),
         ("yrcx position", "0", &["mm"]),
         ("yrcx io get servo-on", "0", &["servo-on on"]),
-        ("--yes session open", "4", &["a session is open already"]),
+        ("--yes session open", "4", &["a session is already open"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
         ("session close", "0", &["closed"]),
         ("--yes yrcx recover", "7", &["read-only", "its address is that of 'line3'"]),
