@@ -308,7 +308,7 @@ fn a_jog_whose_client_is_killed_is_stopped() {
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.says("<- WO 0100");
     jogging.signal("KILL");
-    session.says("what it was to be stopped by is shown");
+    session.says("armctl sends its stop signals");
     desk.until(|session| session["under_way"] == false);
     let next = desk.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
@@ -346,7 +346,7 @@ fn a_command_whose_holder_is_killed_says_so() {
         commanding.says(until);
         session.signal("KILL");
         let (code, said) = commanding.end();
-        assert!(code == Some(6) && said.contains("the session's holder has ended"), "{words}: {code:?}, {said}");
+        assert!(code == Some(6) && said.contains("the process of the session has ended"), "{words}: {code:?}, {said}");
         assert!(!said.contains("os error") && !said.contains("reset by peer"), "{words}: {said}");
     }
 }
@@ -359,7 +359,7 @@ fn a_session_that_is_killed_takes_the_outcome_with_it() {
     session.signal("KILL");
     let (code, said) = moving.end();
     assert!(
-        code == Some(6) && said.contains("the session's holder has ended") && said.contains("hint: keep clear"),
+        code == Some(6) && said.contains("the process of the session has ended") && said.contains("hint: keep clear"),
         "{said}"
     );
     assert_eq!((desk.files("sock").len(), desk.listed()["link"].as_str()), (1, Some("dead")));
@@ -393,11 +393,11 @@ fn a_lost_link_is_opened_again() {
     let mut session = Running::session(&desk, "cell");
     let address = simulator.first.trim_start_matches("eip://").to_owned();
     drop(simulator);
-    session.says("the link was lost");
+    session.says("the connection was lost");
     desk.until(|session| session["link"] == "down");
     fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
     let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
-    session.says("the link is open again");
+    session.says("the connection is open again");
     let listed = desk.until(|session| session["link"] == "up");
     assert_eq!(listed["reopenings"], 1);
     assert!(desk.run("-r cell yrcx info servo").status.success());
@@ -436,7 +436,7 @@ fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_bac
         let mut moving = Running::start(desk.command(&format!("{SLOW} -vv --timeout 1m")), false);
         moving.says("<- WO 0100");
         simulator.signal("STOP");
-        let lost = "the link was lost";
+        let lost = " was lost";
         session.as_mut().unwrap_or(&mut moving).says(lost);
         simulator.signal("CONT");
         let (code, said) = moving.end();
@@ -513,10 +513,10 @@ fn a_line_goes_from_client_to_client() {
 
     let address = simulator.first.trim_start_matches("tcp://").to_owned();
     drop(simulator);
-    session.says("the link was lost");
+    session.says("the connection was lost");
     fails(&desk.run("-r cell toyo status"), 4, "the line is gone");
     let _simulator = self::simulator(&desk, "toyo", &address);
-    session.says("the link is open again");
+    session.says("the connection is open again");
     assert!(desk.run("-r cell toyo status").status.success());
 }
 
@@ -544,7 +544,7 @@ fn a_folder_of_others_is_not_trusted() {
     let folder = desk.folder.path().join("run/armctl");
     std::fs::create_dir(&folder).unwrap();
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
-    fails(&desk.run("-r x session open"), 1, "other users may use it");
+    fails(&desk.run("-r x session open"), 1, "other users have access to it");
     let output = desk.run("-r x yrcx status");
     assert!(output.status.success() && stderr(&output).contains("sessions are not used"), "{}", stderr(&output));
 }

@@ -65,8 +65,8 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     let (code, said) = publish(&desk, &broker, &["--ca", "ca.pem"]);
     assert_eq!(code, Some(0), "{said}");
     for (words, why) in [
-        (&["--ca", "stranger.pem"][..], "issued by nobody who is trusted here"),
-        (&[], "issued by nobody who is trusted here"),
+        (&["--ca", "stranger.pem"][..], "does not trust the issuer"),
+        (&[], "does not trust the issuer"),
         (&["--ca", "ca.key"], "not a certificate in PEM"),
         (&["--ca", "ca.pem", "--cert", "client.pem", "--key", "ca.pem"], "not a private key in PEM"),
     ] {
@@ -91,7 +91,7 @@ fn a_broker_is_trusted_by_its_certificate_and_nothing_else() {
     // A port without TLS, and one with it that is talked to without.
     let plain = Mosquitto::start();
     let (code, said) = publish(&desk, &plain, &[]);
-    assert!(code == Some(2) && said.contains("does not speak TLS"), "{code:?} {said}");
+    assert!(code == Some(2) && said.contains("does not use TLS"), "{code:?} {said}");
     let output = desk.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
     assert!(output.status.code() == Some(4) && stderr(&output).contains("mqtts://"), "{}", stderr(&output));
 }

@@ -66,7 +66,7 @@ impl SlcanPort {
         let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
         let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
         if rate == Some(Said::No) {
-            return Err(port.wrong(&format!("the adapter does not take {bitrate}")));
+            return Err(port.wrong(&format!("the adapter refuses the bit rate {bitrate}")));
         }
         let open = if listens { b"L\r" } else { b"O\r" };
         let opened = port.ask(open, |said| *said == Said::Done).await?;
@@ -75,7 +75,7 @@ impl SlcanPort {
                 let what = if listens { "listen only" } else { "go on the bus" };
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
-            (None, None, None) => return Err(port.wrong("nothing answers as an SLCAN adapter does")),
+            (None, None, None) => return Err(port.wrong("no answer of an SLCAN adapter")),
             _ => {}
         }
         if let Some(Said::Flags(flags)) = port.ask(b"F\r", |said| matches!(said, Said::Flags(_))).await? {

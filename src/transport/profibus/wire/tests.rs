@@ -109,7 +109,7 @@ fn a_diagnosis_reads_in_words() {
     assert_eq!(text("00 0C 00 02 12 34"), "watchdog on, master 2, ident 0x1234");
     assert_eq!(
         text("C8 04 80 09 00 01 03 AA BB 42 05 83 45 26 C1"),
-        "wrong parameters, locked by another master, more diagnosis than fits, master 9, ident 0x0001, device AABB, \
+        "wrong parameters, locked by another master, diagnosis overflow, master 9, ident 0x0001, device AABB, \
          modules 0 2, module 3 input channel 5: line break, revision 1"
     );
     let error = Diagnosis::parse(&hex("08 04 00 FF 12 34 05 01")).unwrap_err();
