@@ -255,17 +255,17 @@ fn a_board_that_misbehaves() {
     for (mischief, line, message, hint) in [
         ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
         ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NOBODY),
-        ("reset", "yrcx info servo", "the TCP connection ended before ForwardOpen was answered", NOBODY),
+        ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NOBODY),
         (
             "reset",
             "yrcx io get",
-            "the TCP connection ended before Get_Attribute_Single of the input assembly was answered",
+            "the TCP connection ended before the answer to Get_Attribute_Single of the input assembly",
             NOBODY,
         ),
         (
             "frozen",
             "yrcx info servo",
-            "no answer to servo-status: the controller did not take it",
+            "no answer to servo-status: the controller did not start it",
             "`yrcx status` tells how the controller stands",
         ),
         ("stall", "yrcx info servo", "the controller sends no data", LINK),

@@ -239,7 +239,7 @@ fn commands_go_through_a_session_by_themselves() {
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
     fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
     let second = desk.run("-r cell session open");
-    fails(&second, 4, &format!("a session is open already: process {}, since", session.process.id()));
+    fails(&second, 4, &format!("a session is already open: process {}, since", session.process.id()));
     session.signal("TERM");
     assert_eq!(session.end().0, Some(0));
     assert!(desk.files("sock").is_empty());
@@ -428,7 +428,7 @@ fn a_session_holds_each_fieldbus_and_its_death_is_the_alarm_of_that_one() {
 
 #[test]
 fn a_motion_whose_link_was_lost_says_how_the_stop_input_stands_after_it_came_back() {
-    const TOLD: &str = "the link went down; it is up again, and the stop input SI(06) is on";
+    const TOLD: &str = "the connection was lost; it is up again, and the stop input SI(06) is on";
     // Through a session, and on a connection of the command's own.
     for is_held in [true, false] {
         let (simulator, desk) = cell();
@@ -454,7 +454,7 @@ fn a_session_in_the_background_is_up_when_it_says_so() {
     assert!(std::fs::read_to_string(&log).unwrap().contains("the connection is open"));
     assert_eq!(desk.listed()["pid"], opened["pid"]);
     fails(&desk.run("-r cell session open --background"), 4, "a session is already open");
-    fails(&desk.run("session close elsewhere"), 2, "there is no session of 'elsewhere'");
+    fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
     // It is gone, with its connection, so that another one can take its place.

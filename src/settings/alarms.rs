@@ -29,14 +29,14 @@ use crate::files;
 
 const FILE_NAME: &str = "alarms.toml";
 
-/// What the file says of an alarm.
+/// Explanation of an alarm in the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Explanation {
-    /// What it means.
+    /// Its meaning.
     pub text: String,
-    /// What usually causes it.
+    /// Its usual cause.
     pub cause: Option<String>,
-    /// What to do.
+    /// Remedy.
     pub remedy: Option<String>,
 }
 

@@ -145,9 +145,9 @@ pub struct KeptFile {
     pub file: String,
     /// Its size.
     pub bytes: u64,
-    /// Of its bytes.
+    /// SHA-256 of its bytes.
     pub sha256: String,
-    /// How many names it has.
+    /// Number of names in it.
     pub names: usize,
 }
 
@@ -323,7 +323,10 @@ mod tests {
         assert!(robot().all().damage.is_none());
         models.keep(&address, ToldModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
         let damage = robot().all().damage.clone().unwrap();
-        assert!(damage.message.contains("YAS2.80") && damage.message.contains("this one has DN2.07"), "{damage}");
+        assert!(
+            damage.message.contains("YAS2.80") && damage.message.contains("this controller has DN2.07"),
+            "{damage}"
+        );
     }
 
     #[test]

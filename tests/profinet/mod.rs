@@ -82,7 +82,7 @@ fn the_binary_commands_a_simulated_device_on_another_network_card() {
         ("session open", "7", &["read-only"]),
         ("--yes yrcx alarm reset", "4", &["02:00:00:00:00:09 was not found"]),
         ("--yes yrcx info tasks", "4", &["station 'other' was not found"]),
-        ("--yes yrcx info slots", "2", &["no network interface 'pc9'", "there are pc0"]),
+        ("--yes yrcx info slots", "2", &["has no network interface 'pc9'", "use one of pc0"]),
         ("--yes yrcx info speed", "3", &["Connect was refused"]),
         ("unprivileged", "1", &["CAP_NET_RAW", "setcap cap_net_raw+ep"]),
     ] {

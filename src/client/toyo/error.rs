@@ -185,12 +185,12 @@ mod tests {
         let silence = Unanswered { request, waited: Duration::from_secs(1), counters, unfitting: None };
         let silent = Error::NoAnswer(Box::new(silence.clone()));
         assert_eq!(silent.to_string(), "no answer within 1.0s (@MPST)");
-        let unfitting = Some(("@M".to_owned(), "there is no command 'M'".to_owned()));
+        let unfitting = Some(("@M".to_owned(), "unknown command 'M'".to_owned()));
         let noise = Unanswered { counters: Counters { noise: 7, ..counters }, request: None, ..silence };
         assert_eq!(noise.to_string(), "no answer, but 7 stray characters");
         let odd = Error::NoAnswer(Box::new(Unanswered { unfitting, ..noise }));
         assert!(odd.is_malformed() && !silent.is_malformed());
-        assert_eq!(odd.to_string(), "unexpected answer '@M': there is no command 'M'");
+        assert_eq!(odd.to_string(), "unexpected answer '@M': unknown command 'M'");
         let kept = Error::HostKept(None).to_string();
         assert_eq!(kept, "armctl switched host control ON and could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));

@@ -170,11 +170,14 @@ mod tests {
             is_stop_held: false,
             ended: None,
         };
-        assert_eq!(lost.to_string(), "move-ptp was sent, and may or may not have been carried out: the link went down");
+        assert_eq!(
+            lost.to_string(),
+            "move-ptp was sent, and may or may not have been carried out: the connection was lost"
+        );
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };
         let broken = Error::Unfinished { name: "run", outcome };
         assert_eq!(broken.to_string(), "run: alarm (SO(03)) went on during the procedure");
         let busy = Error::Session(SessionBusy::Busy(None));
-        assert_eq!(busy.to_string(), "the line is in use by another client");
+        assert_eq!(busy.to_string(), "another client uses the connection");
     }
 }

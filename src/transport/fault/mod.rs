@@ -66,7 +66,7 @@ impl fmt::Display for Share {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FaultSpecError {
     /// A part without a value.
-    #[error("'{part}' is not of the form key=value, as in drop=5%")]
+    #[error("'{part}' must be key=value, as in drop=5%")]
     NoValue {
         /// The part.
         part: String,

@@ -337,7 +337,7 @@ EndModule
         assert_eq!((configuration.as_slice(), parameters.len()), (&[0xC0, 0xD7, 0xD7][..], 7));
         assert_eq!(gsd.fitting(48, 48).unwrap().name, "24 words in, out");
         assert_eq!(gsd.fitting(2, 2), None);
-        assert!(gsd.assemble(&["24"]).unwrap_err().contains("there are 24 words in, out, 2 words"));
+        assert!(gsd.assemble(&["24"]).unwrap_err().contains("known: 24 words in, out, 2 words"));
     }
 
     #[test]
@@ -354,9 +354,9 @@ EndModule
             (
                 "0xC0, 0xD7, \\\n  0xD7",
                 "0xC0",
-                "line 19: Module: length of an identifier at offset 1: needs 1 bytes, 0 are there",
+                "line 19: Module: length of an identifier at offset 1: needs 1 bytes, but only 0 are present",
             ),
-            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks belongs here"),
+            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is expected"),
             ("0x71\nEndModule", "0x71", "line 25: Module: it has no EndModule"),
             (
                 "#Profibus_DP",

@@ -400,7 +400,7 @@ const REFUSALS: [(Mood, &str); 4] = [
     (Mood::Refuses(1), "this version of MQTT (try --protocol 5"),
     (
         Mood::Distrusted,
-        "its certificate has expired (give the broker a new certificate; or this machine's clock is wrong)",
+        "its certificate has expired (check the clock of this computer, or give the broker a new certificate)",
     ),
 ];
 

@@ -80,7 +80,7 @@ fn what_reads_is_repeated_after_a_loss_and_what_changes_is_not() {
         let (outcome, peer) = run_on(Scripted::new([lost(), answer.clone()]), line);
         let failure = outcome.unwrap_err();
         assert_eq!((failure.kind, peer.taken.len()), (Kind::OutcomeUnknown, 1), "{line:?}");
-        assert!(failure.message.contains("the link went down"), "{failure}");
+        assert!(failure.message.contains("the connection was lost"), "{failure}");
         assert!(failure.hint.is_some());
     }
 }
@@ -98,7 +98,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
-    assert!(failure.message.contains("did not take it"), "{failure}");
+    assert!(failure.message.contains("did not start it"), "{failure}");
     assert!(!peer.taken.is_empty());
     let (moved, _) = run_on(Scripted::new([]), MOVE);
     assert_eq!(moved.unwrap_err().kind, Kind::OutcomeUnknown);
