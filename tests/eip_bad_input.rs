@@ -77,13 +77,13 @@ fn numbers_that_the_board_does_not_have() {
         (
             "in_size=50",
             "0x0109",
-            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 50 bytes",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the correct size is 50 bytes",
             SIZE,
         ),
         (
             "out_size=50",
             "0x0109",
-            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the right one is 54 bytes",
+            "ForwardOpen was refused: invalid connection size (0x01/0x0109), the correct size is 54 bytes",
             SIZE,
         ),
         ("in=101", "0x0117", "ForwardOpen was refused: invalid connection point (0x01/0x0117)", point),
@@ -247,37 +247,37 @@ fn many_at_once_find_room_one_after_the_other() {
     }
 }
 
-const NOBODY: &str = "check the address, that the controller is on, and that its EtherNet/IP board is enabled";
+const NOBODY: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
 
 #[test]
 fn a_board_that_misbehaves() {
     const LINK: &str = "check the link: `-v` counts what came";
     for (mischief, line, message, hint) in [
-        ("mute", "yrcx info servo", "RegisterSession was not answered within 400 ms", NOBODY),
-        ("mute", "yrcx io get", "RegisterSession was not answered within 400 ms", NOBODY),
-        ("reset", "yrcx info servo", "the TCP connection ended before ForwardOpen was answered", NOBODY),
+        ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NOBODY),
+        ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NOBODY),
+        ("reset", "yrcx info servo", "the TCP connection ended before the answer to ForwardOpen", NOBODY),
         (
             "reset",
             "yrcx io get",
-            "the TCP connection ended before Get_Attribute_Single of the input assembly was answered",
+            "the TCP connection ended before the answer to Get_Attribute_Single of the input assembly",
             NOBODY,
         ),
         (
             "frozen",
             "yrcx info servo",
-            "no answer to servo-status: the controller did not take it",
+            "no answer to servo-status: the controller did not start it",
             "`yrcx status` tells how the controller stands",
         ),
-        ("stall", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-id", "yrcx info servo", "the controller shows nothing", LINK),
-        ("wrong-size", "yrcx info servo", "the controller shows nothing", LINK),
+        ("stall", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
+        ("wrong-size", "yrcx info servo", "the controller sends no data", LINK),
     ] {
         tells(&Board::start(&["--mischief", mischief]).target, line, 4, "", message, hint);
     }
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip get 4 100 3"] {
         let (exit, _, _, message, hint) = told(&Board::start(&["--mischief", "garbage"]).target, line);
-        assert!(exit == 5 && message.contains("cannot be read"), "{line}: {exit} {message}");
-        assert_eq!(hint, "check that an EtherNet/IP adapter has this address");
+        assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
+        assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
     // Stale, doubled and miscounted images are passed over: a numbering that stands still is a silence.
     for (mischief, works) in [("double", true), ("drop", true), ("stale", false), ("wrong-sequence", false)] {
@@ -304,7 +304,8 @@ fn a_change_whose_answer_is_lost_is_not_repeated() {
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(
         message,
-        "sent once, and whether it was done is unknown: the TCP connection ended before Set_Attribute_Single was answered"
+        "sent once, and whether it was done is unknown: the TCP connection ended before the answer to \
+         Set_Attribute_Single"
     );
     assert_eq!(hint, "`yrcx eip get 0xf5 1 3` tells");
 }

@@ -69,12 +69,12 @@ fn failed(output: &Output) -> (i32, String) {
 #[test]
 fn what_the_adapter_does_wrong_has_its_exit_code() {
     for (mischief, exit, part) in [
-        ("mute", 4, "was not answered"),
+        ("mute", 4, "no answer to"),
         ("reset", 4, "ended before"),
-        ("stall", 4, "shows nothing"),
-        ("wrong-id", 4, "shows nothing"),
-        ("wrong-size", 4, "shows nothing"),
-        ("garbage", 5, "cannot be read"),
+        ("stall", 4, "sends no data"),
+        ("wrong-id", 4, "sends no data"),
+        ("wrong-size", 4, "sends no data"),
+        ("garbage", 5, "cannot decode"),
     ] {
         let output = Simulator::start(&["--mischief", mischief]).run("yrcx info servo");
         let (code, stderr) = failed(&output);
@@ -166,9 +166,9 @@ fn a_simulator_in_this_process_has_faults_too() {
         assert!(run(url).status.success(), "{url}: {:?}", failed(&run(url)));
     }
     for (url, exit, part) in [
-        ("sim:?mischief=stall", 4, "shows nothing"),
-        ("sim:?mischief=mute", 4, "was not answered within 400 ms"),
-        ("sim:?mischief=garbage", 5, "cannot be read"),
+        ("sim:?mischief=stall", 4, "sends no data"),
+        ("sim:?mischief=mute", 4, "within 400 ms"),
+        ("sim:?mischief=garbage", 5, "cannot decode"),
         ("sim:?mischief=none", 2, "wrong-sequence"),
         ("sim:?fault=busy=5%25", 2, "busy is not for yrcx"),
     ] {

@@ -75,7 +75,7 @@ fn five_a_host_that_answers_garbage() {
             .replace(&target, "udp://127.0.0.1:10040"),
         snapbox::str![[r#"
 5 "malformed"
-"udp://127.0.0.1:10040: no answer of the protocol within 200ms, but 1 truncated"
+"udp://127.0.0.1:10040: no valid answer within 200ms, but 1 truncated"
 
 "#]]
     );

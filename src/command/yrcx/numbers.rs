@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(runs(&Numbers::of(&given)), "7, 2..5");
         assert_eq!(Numbers::of(&[points("0..29999").unwrap()]).len(), 30_000);
         assert_eq!(points("0..30000").unwrap_err(), "30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(points("5..2").unwrap_err(), "the range ends before it begins; did you mean 2..5?");
+        assert_eq!(points("5..2").unwrap_err(), "the end of the range is before its start; did you mean 2..5?");
         assert!(points("").is_err() && points("-3").is_err() && points("x").is_err() && points("1..").is_err());
     }
 

@@ -177,8 +177,8 @@ mod tests {
         for (line, part) in [
             ("param set TOLE 16385 --axis 3", "16385 is out of range for TOLE; allowed: 1 to 16384 pulses"),
             ("param set PSHFRC -1001 --axis 3", "allowed: -1000 to 1000"),
-            ("param set TOLE 1", "TOLE belongs to an axis; name one"),
-            ("param get TOLE", "TOLE belongs to an axis; name one"),
+            ("param set TOLE 1", "TOLE belongs to an axis; set the axis"),
+            ("param get TOLE", "TOLE belongs to an axis; set the axis"),
             ("param set WEIGHT 1 --axis 1", "WEIGHT belongs to the robot, not to an axis"),
             ("param set TOLE 1 --axis 1,2", "axes"),
             ("param set TOLE 1.5 --axis 1", "value"),

@@ -181,11 +181,11 @@ mod tests {
             ("copy 30000 --to 1", "allowed: 0 to 29999"),
             ("pallet 40 --place 1 --to 1", "allowed: 0 to 39"),
             ("pallet 1 --place 0 --to 1", "allowed: 1 to 32767"),
-            ("element 1 --element 7 --mm 1", "there are 1 to 6"),
+            ("element 1 --element 7 --mm 1", "must be from 1 to 6"),
             ("element 1 --element 1,2 --mm 1", "name exactly 1"),
             ("element 1 --element 1", "--mm"),
             ("element 1 --element 1 --mm 1 --pulse 1", "cannot be used with"),
-            ("shift-element 1 --element 5 --mm 1", "there are 1 to 4"),
+            ("shift-element 1 --element 5 --mm 1", "must be from 1 to 4"),
         ] {
             let objection = objection(&["point-calc"].into_iter().chain(line.split(' ')).collect::<Vec<_>>());
             assert!(objection.contains(part), "{line}: {objection}");

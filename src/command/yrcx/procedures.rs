@@ -115,7 +115,7 @@ mod tests {
         // SI(00) and SI(06) are on from the beginning, unless a session shows them off.
         let edges = [("0x0043", "servo-on (SI(01)) on"), ("0x0041", "servo-on (SI(01)) off")];
         assert_eq!(shown, [&[("0x0041", "emergency-stop (SI(00)) on")], &edges[..]].concat());
-        assert_eq!(noted[0]["depends_on"], "what is shown before it: it is sent if emergency-stop is off");
+        assert_eq!(noted[0]["depends_on"], "the earlier signals: sent only if emergency-stop is off");
         assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
         assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
     }

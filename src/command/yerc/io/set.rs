@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(set(&["27013=on", "27013=off"], &[]).unwrap_err().message, "#27013 is given twice");
         assert!(set(&["27013=on"], &["2701=0"]).is_err());
         assert!("27018=on".parse::<Switch>().is_err());
-        assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on and off"));
+        assert!("27010=yes".parse::<Switch>().unwrap_err().contains("on or off"));
         assert!("2701=256".parse::<Whole>().unwrap_err().contains("0 to 255"));
     }
 }

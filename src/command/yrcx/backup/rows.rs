@@ -81,7 +81,7 @@ mod tests {
         for (text, why) in [
             ("", "line 1: the columns are a,b"),
             ("a\n", "line 1: the columns are a,b"),
-            ("a,b\n1,2\n3\n", "line 3: 1 cells under 2 columns"),
+            ("a,b\n1,2\n3\n", "line 3: 1 cells for 2 columns"),
             ("a,b\n1,\"2\n", "line 2: a quotation mark has no other end"),
         ] {
             assert_eq!(read(&["a", "b"], text).unwrap_err(), why);

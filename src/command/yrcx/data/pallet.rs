@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn a_pallet_has_so_many_places_and_no_more() {
         for (line, part) in [
-            ("1 --nx 256 --ny 128 --first-point 1", "X times Y times Z is 32768; 1 to 32767"),
+            ("1 --nx 256 --ny 128 --first-point 1", "X times Y times Z is 32768; a pallet has 1 to 32767"),
             ("1 --nx 0 --ny 1 --first-point 1", "X times Y times Z is 0"),
             ("1 --nx 1 --ny 1 --first-point 29996", "allowed: 0 to 29995"),
         ] {

@@ -268,7 +268,7 @@ mod tests {
         for (line, part) in [
             (&["io", "set"][..], "SIGNAL=STATE"),
             (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "there are on and off"),
+            (&["io", "set", "20=maybe"], "use on or off"),
             (&["io", "set", "SI(02)=on"], "reserved"),
             (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
             (&["io", "set", "SOW2=5"], "the controller's to set"),

@@ -80,7 +80,7 @@ fn what_reads_is_repeated_after_a_loss_and_what_changes_is_not() {
         let (outcome, peer) = run_on(Scripted::new([lost(), answer.clone()]), line);
         let failure = outcome.unwrap_err();
         assert_eq!((failure.kind, peer.taken.len()), (Kind::OutcomeUnknown, 1), "{line:?}");
-        assert!(failure.message.contains("the link went down"), "{failure}");
+        assert!(failure.message.contains("the connection was lost"), "{failure}");
         assert!(failure.hint.is_some());
     }
 }
@@ -98,7 +98,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
-    assert!(failure.message.contains("did not take it"), "{failure}");
+    assert!(failure.message.contains("did not start it"), "{failure}");
     assert!(!peer.taken.is_empty());
     let (moved, _) = run_on(Scripted::new([]), MOVE);
     assert_eq!(moved.unwrap_err().kind, Kind::OutcomeUnknown);
@@ -150,7 +150,7 @@ fn signals_are_switched_while_a_command_runs() {
     let item = &switched["items"][0];
     assert_eq!((&item["name"], &item["old"], &item["new"]), (&json!("SI(20)"), &json!(false), &json!(true)));
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
-    assert!(busy.message.contains("move-ptp is still under way"), "{busy}");
+    assert!(busy.message.contains("move-ptp still runs"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
     // What ended meanwhile is noticed, and the next command goes out.
     bench.run(&["alarm", "reset"]).unwrap();

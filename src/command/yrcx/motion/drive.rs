@@ -199,7 +199,7 @@ mod tests {
     fn what_cannot_be_meant_is_rejected() {
         for (line, part) in [
             ("drive --axis 1,2 --to 5", "axes: 2 named; name exactly 1"),
-            ("drive --axis 5 --to 5", "there are 1 to 4"),
+            ("drive --axis 5 --to 5", "must be from 1 to 4"),
             ("drive --axis X --to 5", "'X' is not a valid list"),
             ("drive --axis 1 --point 30000", "allowed: 0 to 29999"),
             ("drive --axis 1 --to 3000000", "target"),

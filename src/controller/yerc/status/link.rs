@@ -8,7 +8,7 @@ const FILE_INTERNAL: &str =
     "An internal error of the controller, numbered among its file errors; no cause is published.";
 const LINK_INTERNAL: &str =
     "An internal error of the controller, numbered among its link errors; no cause is published.";
-const BUSY_CAUSE: &str = "The controller is still at work on another command, from this host or another one.";
+const BUSY_CAUSE: &str = "The controller still processes another command, from this or a different host.";
 const BUSY_REMEDY: &str = "Repeat after a moment. If it stays, find the other host that talks to this controller.";
 const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. In other software, correct it there.";
 
@@ -71,7 +71,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check the number against the controller's ranges and the set model; `armctl yerc axes` lists the control \
          groups."),
     row(0xA002, Class::Address, BOTH, "attribute error",
-        "The field asked for does not exist in this command. Some controllers want 0 where the manual lists 1.",
+        "The requested field does not exist in this command. Some controllers need 0 although the manual lists 1.",
         "With `armctl yerc raw`, try --attribute 0. Otherwise check the model and report the exchange with --trace."),
     row(0xA100, Class::Address, NONE, "answer data size error (hardware limit)",
         "The answer would not fit into one frame (hint: only Yaskawa's own packet dissector lists this code).",
@@ -101,7 +101,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check value, first number and count against the limits of this controller."),
     row(0xB005, Class::Data, BOTH, "data undefined",
         "The data addressed were never set, such as an untaught position or an empty entry.",
-        "Set or teach it first, or address another one."),
+        "Set or teach it first, or use another address."),
     row(0xB006, Class::Data, BOTH, "specified application not registered",
         "The application number does not exist on this controller.",
         "List the ones that exist with `armctl yerc info` and `armctl yerc hours`, and use one of those."),
@@ -124,7 +124,7 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0xB00C, Class::Data, BOTH, "type setting error",
         "The form of a move (its words \"type\" and \"expanded type\") has bits that are not defined, or cannot be \
          reached; in a position, its kind does not exist.",
-        "Check --form and --extended-form of the move, or the kind of the position (pulse, base, robot, tool, user)."),
+        "Check --form and --extended-form of the move, or the type of the position (pulse, base, robot, tool, user)."),
     row(0xB00D, Class::Data, BOTH, "tool number setting error",
         "The tool number is out of range or the tool is not set up.",
         "Use a tool that exists on this controller (pendant: ROBOT > TOOL)."),
@@ -132,8 +132,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The user coordinate number is out of range or the system is not taught.",
         "Use 1 to 63 and a taught one (pendant: ROBOT > USER COORDINATE)."),
     row(0xC001, Class::System, BOTH, "address error",
-        "The controller failed inside while addressing the data (hint: Yaskawa's packet dissector calls it a data \
-         area setting error).",
+        "The controller had an internal error in the address of the data (hint: Yaskawa's packet dissector calls it \
+         a data area setting error).",
         "Check the number and count asked for. If they are right: clear the alarm and try again; if it stays, keep \
          a CMOS.BIN backup and call the service with this code."),
     row(0xC002, Class::System, BOTH, "system error",
@@ -150,7 +150,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "An internal error of the controller; no cause is published.",
         SYSTEM_REMEDY),
     row(0xCFFF, Class::System, BOTH, "other error",
-        "The controller refused for a reason that has no code of its own.",
+        "The controller refused for a reason without a code.",
         "Look at the pendant for an alarm or message, and repeat the request once that is cleared."),
     row(0xD8F1, Class::Busy, DX200, "busy: another command is being processed",
         BUSY_CAUSE,
@@ -228,7 +228,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The file request has no usable name. A name that ends in a NUL byte has the same effect.",
         "Give a file name; with `armctl yerc raw`, leave out the NUL at its end."),
     row(0xE49E, Class::File, DX200, "format: frame too long",
-        "The controller received a frame longer than it accepts (data of at most 479 bytes).",
+        "The controller received a frame above its size limit (data of at most 479 bytes).",
         FRAME_REMEDY),
     row(0xE49F, Class::File, DX200, "format: frame size is 0",
         "The controller received a frame without any length.",
@@ -278,7 +278,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         LINK_INTERNAL,
         SYSTEM_REMEDY),
     row(0xFFF6, Class::Busy, DX200, "busy: too many requests",
-        "More requests came than the controller can queue, from this host or from all of them together.",
+        "The controller received more requests than its queue can hold, from this host or from all hosts together.",
         "Slow down: longer --watch intervals, and fewer programs that ask the same controller."),
     row(0xFFF7, Class::System, DX200, "system error",
         LINK_INTERNAL,

@@ -144,7 +144,7 @@ impl Start {
 }
 
 #[derive(Debug, Deserialize)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a key of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent key")]
 #[serde(default, deny_unknown_fields)]
 struct Entries {
     mode: Mode,

@@ -73,7 +73,7 @@ const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::Freeze, 1, 0x10, "inputs frozen"),
     (Flag::Sync, 1, 0x20, "outputs held by sync"),
     (Flag::Deactivated, 1, 0x80, "deactivated"),
-    (Flag::Overflow, 2, 0x80, "more diagnosis than fits"),
+    (Flag::Overflow, 2, 0x80, "diagnosis overflow"),
 ];
 
 /// A bit that is always set.

@@ -118,12 +118,12 @@ fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(3600))]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.ends_with("the link went down; it is still down"), "{failure}");
+    assert!(failure.message.ends_with("the connection was lost; it is still down"), "{failure}");
 }
 
 #[test]
 fn what_cannot_be_meant_is_rejected() {
-    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("there are 1 to 4"));
+    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("must be from 1 to 4"));
     assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
     assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
     assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("no time"));
