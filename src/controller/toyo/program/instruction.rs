@@ -207,7 +207,7 @@ fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, Str
     let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
     let alike = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
     let hint = nearest(text, alike).map(|near| format!("did you mean {near}?"));
-    let hint = hint.unwrap_or_else(|| format!("names stand in robots.toml: {} = \"{prefix}1\"", shown(text)));
+    let hint = hint.unwrap_or_else(|| format!("define names in robots.toml: {} = \"{prefix}1\"", shown(text)));
     Some((format!("there is no {} called '{}'", kind.word(), shown(text)), hint))
 }
 
