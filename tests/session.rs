@@ -274,7 +274,7 @@ fn an_interrupt_stops_a_motion_in_a_session_too() {
     let moving = moving(&desk);
     moving.signal("INT");
     let (code, said) = moving.end();
-    assert!(code == Some(130) && said.contains("was stopped by the stop input SI(06), which is on again"), "{said}");
+    assert!(code == Some(130) && said.contains("the stop input SI(06) stopped the robot and is on again"), "{said}");
 }
 
 #[test]
@@ -290,14 +290,14 @@ fn what_a_dead_client_has_left_is_told_and_dealt_with() {
     assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
     assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
     let output = desk.run("-r cell yrcx servo on --yes");
-    fails(&output, 4, "another client's command is still under way: move-mm");
+    fails(&output, 4, "another client's command is still running: move-mm");
     assert!(stderr(&output).contains("by a client that has died"), "{}", stderr(&output));
 
     assert!(desk.run("-r cell yrcx stop").status.success());
     // The motion ends a moment after the stop; until then its words are taken.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
-    assert!(stderr(&next).contains("another client had left move-mm"), "{}", stderr(&next));
+    assert!(stderr(&next).contains("another client left move-mm running"), "{}", stderr(&next));
     assert_eq!(desk.listed()["leftover"], Value::Null);
 }
 

@@ -242,7 +242,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("run");
     let failure = desk.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "the robot program runs, and may use what would be written");
+    assert_eq!(failure.message, "the robot program is running and may use the data to be written");
 }
 
 #[test]
@@ -257,7 +257,7 @@ fn dry_runs_show_what_would_be_read_and_written() {
     let last: Vec<_> = sent[sent.len() - 6..].iter().map(|frame| (&frame["about"], &frame["wi"][0])).collect();
     assert_eq!(last[2], (&json!("pallets 10, to compare"), &json!("0x0109")));
     assert_eq!(last[5], (&json!("pallets 10"), &json!("0x0108")));
-    assert_eq!(sent.last().unwrap()["depends_on"], "the comparison: it is written if it differs");
+    assert_eq!(sent.last().unwrap()["depends_on"], "the comparison: written if different");
     assert_eq!((risk(&["backup", "x"]), risk(&["restore", "x"])), (Risk::Read, Risk::Destroy));
     assert_eq!(words(&["backup", "x", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
 }

@@ -31,7 +31,7 @@ pub struct AxisServo {
     pub state: String,
 }
 
-/// The servos of the axes that there are.
+/// Servos of the axes that exist.
 pub fn servos(values: &Values) -> Vec<AxisServo> {
     let states = Key::AXES.into_iter().map(|key| shown(Command::ServoStatus, values, key));
     let states = (1..).zip(states).filter_map(|(axis, state)| Some(AxisServo { axis, state: state? }));
@@ -39,7 +39,7 @@ pub fn servos(values: &Values) -> Vec<AxisServo> {
 }
 
 impl AxisServo {
-    /// The state, as it is noticed.
+    /// State with its tone.
     pub fn cell(&self) -> Cell {
         let tone = match &self.state[..] {
             "servo" => Tone::Good,

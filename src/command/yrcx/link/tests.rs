@@ -108,7 +108,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
 fn an_interrupt_stops_the_motion_and_gives_the_stop_input_back() {
     let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words(STOPPED)), ends(0, &[0x0200])]));
     bench.interrupt(MOVE, Duration::from_secs(2));
-    assert_eq!(bench.halt().unwrap(), "the robot was stopped by the stop input SI(06), which is on again");
+    assert_eq!(bench.halt().unwrap(), "the stop input SI(06) stopped the robot and is on again");
     bench.run(&["alarm", "reset"]).unwrap();
     let peer = bench.into_peer();
     assert_eq!(peer.bits, [REST, HELD, REST]);

@@ -156,11 +156,8 @@ fn an_interrupt_stops_every_kind_of_motion() {
         let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words_of(&[0x4000, 12, 400]))]));
         bench.interrupt(&split(line), Duration::from_secs(2));
         let told = bench.halt().unwrap();
-        assert!(
-            told.starts_with("the robot was stopped by the stop input SI(06), which is on again"),
-            "{line}: {told}"
-        );
-        assert_eq!(told.contains("goes on to its old target"), line.contains("ei --"), "{line}: {told}");
+        assert!(told.starts_with("the stop input SI(06) stopped the robot and is on again"), "{line}: {told}");
+        assert_eq!(told.contains("moves to the old target"), line.contains("ei --"), "{line}: {told}");
         let peer = bench.into_peer();
         assert_eq!((peer.taken.len(), &peer.bits[..]), (1, &[REST, HELD, REST][..]), "{line}");
     }
@@ -214,7 +211,7 @@ fn a_relative_motion_that_breaks_off_tells_of_its_target() {
     for line in ["movei --point 1", "drivei --axis 1 --by 5"] {
         let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split(line));
         let hint = outcome.unwrap_err().hint.unwrap();
-        assert!(hint.contains("release it") && hint.contains("goes on to its old target"), "{hint}");
+        assert!(hint.contains("release it") && hint.contains("moves to the old target"), "{hint}");
     }
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
     assert!(!outcome.unwrap_err().hint.unwrap().contains("old target"));

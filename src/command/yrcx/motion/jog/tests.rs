@@ -106,7 +106,7 @@ fn a_link_that_is_lost_rests_with_the_stop_input_off() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(1)), ends(0, &[0x0200])]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("it is up again, and the stop input SI(06) is off"), "{failure}");
+    assert!(failure.message.contains("the connection is up again, and the stop input SI(06) is off"), "{failure}");
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.peer(|peer| peer.bits.clone()), [REST, HELD]);
     bench.run(&["io", "set", "stop=on"]).unwrap();
