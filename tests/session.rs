@@ -274,7 +274,7 @@ fn an_interrupt_stops_a_motion_in_a_session_too() {
     let moving = moving(&desk);
     moving.signal("INT");
     let (code, said) = moving.end();
-    assert!(code == Some(130) && said.contains("the stop input SI(06) stopped the robot and is on again"), "{said}");
+    assert!(code == Some(130) && said.contains("was stopped by the stop input SI(06), which is on again"), "{said}");
 }
 
 #[test]

@@ -192,7 +192,7 @@ fn an_interrupt_stops_the_motion_and_says_so() {
     stderr.read_to_string(&mut rest).unwrap();
     assert_eq!(moving.wait().unwrap().code(), Some(130));
     assert!(rest.contains("-> SI(06) off") && rest.contains("-> SI(06) on"), "{rest}");
-    assert!(rest.contains("interrupted: the stop input SI(06) stopped the robot and is on again"), "{rest}");
+    assert!(rest.contains("interrupted: the robot was stopped by the stop input SI(06), which is on again"), "{rest}");
 }
 
 #[test]

@@ -108,7 +108,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
 }
 
 /// Result of a stop.
-const STOPPED: &str = "the stop input SI(06) stopped the robot and is on again";
+const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
 
 /// Text for the result of a stop.
 pub fn stopped(stopped: Stopped) -> String {

@@ -1,4 +1,4 @@
-//! `yerc file backup`: every file of the controller in a folder, with a list of itself.
+//! `yerc file backup`: all files of the controller in a folder, with a manifest.
 
 use std::path::PathBuf;
 
@@ -26,12 +26,12 @@ use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::Robot;
 
-/// Fetches every file into a folder.
+/// Downloads all files to a folder.
 #[derive(Debug, Args)]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Which types, such as jbi,dat [default: all, or those of the backup that goes on]
+    /// File types, such as jbi,dat [default: all, or those of the backup to continue]
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
     types: Vec<TypeArg>,
 }
@@ -39,7 +39,7 @@ pub struct Backup {
 const SHAPE: Shape = Shape { done: "saved", has_paths: false, has_bytes: true };
 
 impl Backup {
-    /// The types that are asked for, as the list says it; none for all.
+    /// Requested types for the manifest; empty for all.
     fn types(&self) -> Vec<String> {
         let types = TypeArg::chosen(&self.types);
         let is_all = types.len() == FileType::ALL.len();
@@ -47,14 +47,14 @@ impl Backup {
     }
 }
 
-/// What was asked for, read back.
+/// Requested types and patterns from the scope of a manifest.
 fn asked(scope: &[String]) -> (Vec<FileType>, Only) {
     let word = |kind: &FileType| scope.iter().any(|word| word.strip_prefix(TYPE) == Some(type_word(*kind)));
     let types: Vec<FileType> = FileType::ALL.into_iter().filter(word).collect();
     (if types.is_empty() { FileType::ALL.into() } else { types }, Only::of_scope(scope))
 }
 
-/// Before a type, in the scope of a backup.
+/// Prefix of a type in the scope of a backup.
 const TYPE: &str = "type ";
 
 impl Command for Backup {
@@ -64,7 +64,7 @@ impl Command for Backup {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<BackedUp, Failure> {
         let making = self.options.making(self.types());
-        // All types are what nobody needs to say, but not what a backup goes on with.
+        // The default is all types, except for a backup that is continued.
         let scope = making.scope.or_else(|| (!self.types.is_empty()).then(Vec::new));
         Ok(back_up(context, Making { scope, ..making }).await?.into())
     }
@@ -78,13 +78,13 @@ pub async fn back_up(context: Context<'_, Yerc>, making: Making) -> Result<backu
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, asked(&task.scope).0.iter().map(|kind| files::list(*kind)))?;
-        link.then("fetches every file that the lists name (service 0x16), and acknowledges each of its blocks");
+        link.then("downloads every listed file (service 0x16) and acknowledges each block");
         return Ok(backup::BackedUp::new(&task.folder, task.scope, false, Items::new(Vec::new())));
     }
     cut_off_by_ctrl_c(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
 
-/// A file of the controller, and its name here.
+/// File on the controller and its local name.
 struct Listed {
     kind: FileType,
     name: Vec<u8>,
@@ -99,7 +99,7 @@ async fn save(
     let (types, only) = asked(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
-    // The file service may be busy with what somebody else broke off.
+    // The file service may still be busy with an aborted transfer of another client.
     let looking = screen.spinner("looking for files");
     for kind in types {
         match transfer::list(link, kind).await {
@@ -132,7 +132,7 @@ async fn save(
         let holds = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
         let entry = Entry { name: shown, name_hex: Some(hex(name)), holds, ..Entry::default() };
         let fetched = async {
-            // A name that a controller lists and that must not be used is the controller's fault, not the operator's.
+            // A listed name that is not allowed is an error of the controller, not of the operator.
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
             let file = name::exact(name.clone()).map_err(malformed)?;
@@ -154,7 +154,7 @@ async fn save(
     Ok(made)
 }
 
-/// Fetches a file to a place; the name of the copy is left to the caller.
+/// Downloads a file; the caller renames the copy.
 async fn fetch(
     link: &mut Link,
     screen: &Screen,
@@ -175,14 +175,14 @@ async fn fetch(
     Ok(Saved { file: String::new(), bytes: hash.bytes, sha256: hash.hex() })
 }
 
-/// What is in the folder now.
+/// Content of the folder after a backup.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct BackedUp {
-    /// The folder.
+    /// Folder.
     folder: String,
-    /// The list of what is in it.
+    /// Manifest of the folder.
     manifest: String,
-    /// Whether nothing is missing.
+    /// Whether all files are present.
     complete: bool,
     #[serde(flatten)]
     results: Results,
@@ -209,6 +209,6 @@ impl Report for BackedUp {
     }
 
     fn failure(&self) -> Option<Failure> {
-        Some(backup::with_hint(self.results.failure()?, "--resume fetches what is missing"))
+        Some(backup::with_hint(self.results.failure()?, "--resume downloads the missing files"))
     }
 }

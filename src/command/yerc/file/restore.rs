@@ -1,4 +1,4 @@
-//! `yerc file restore`: the files of a backup back to the controller.
+//! `yerc file restore`: upload of the files of a backup.
 
 use std::path::PathBuf;
 
@@ -27,47 +27,47 @@ use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::output::Screen;
 
-/// Sends the files of a backup back.
+/// Uploads the files of a backup.
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct Restore {
     /// Folder of the backup
     folder: PathBuf,
-    /// These files only
+    /// Only these files
     #[arg(long, value_name = "NAME", num_args = 1..)]
     only: Vec<String>,
-    /// Which types, such as jbi,dat; parameters and system data only when named
+    /// File types, such as jbi,dat; parameters and system data only if listed
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true)]
     types: Vec<TypeArg>,
-    /// Read every file back and compare
+    /// Read every file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Compare without the line ///DATE, which controllers rewrite
+    /// Ignore the line ///DATE in the comparison, because controllers rewrite it
     #[arg(long)]
     ignore_header: bool,
-    /// Replace jobs that the controller does not overwrite by itself
+    /// Delete and send jobs that the controller does not overwrite
     #[arg(long)]
     replace: bool,
-    /// Compare first, and send only what differs
+    /// Compare first and send only differing files
     #[arg(long)]
     differing: bool,
-    /// Files whose names fit
+    /// Patterns of file names
     #[arg(skip)]
     patterns: Only,
-    /// Send the backup of one model to another
+    /// Send a backup to another model
     #[arg(long)]
     force: bool,
 }
 
 const SHAPE: Shape = Shape { done: "sent", has_paths: true, has_bytes: true };
 
-/// What goes first: jobs need the data and conditions they name, and after parameters a controller may want a restart.
+/// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
-/// What goes if nobody says which types. Parameters and system data change the controller itself.
+/// Types that are sent by default. Parameters and system data change the controller itself.
 const USUAL: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {
-    /// Of what is asked for in any family.
+    /// Options from those of the `restore` command of all families.
     pub fn of(restoring: &Restoring) -> Self {
         let Restoring { folder, only: patterns, machine, force } = restoring.clone();
         let mut types = vec![TypeArg::Dat, TypeArg::Cnd, TypeArg::Jbi];
@@ -96,7 +96,7 @@ impl Command for Restore {
     type Report = Results;
     const ID: &'static str = "yerc.file.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite files by those of the backup";
+    const INTENT: &'static str = "overwrite files with those of the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Results, Failure> {
@@ -108,7 +108,7 @@ impl Command for Restore {
         if taken_of != model.name() && !link.is_dry() && !self.force {
             let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("check the model (?model=…); --force sends the files all the same"));
+                .hint("check the model (?model=…); --force sends the files anyway"));
         }
         let chosen = self.chosen(link, &manifest)?;
         let mut deliveries = Vec::with_capacity(chosen.len());
@@ -137,13 +137,13 @@ impl Command for Restore {
         if self.differing && !self.compare(link, screen, &lists, &mut deliveries, &mut results).await? {
             return Results::new(results, SHAPE).report();
         }
-        // What is the same stays, and what could not be compared is not sent.
+        // Equal files are skipped, and files that could not be compared are not sent.
         let mut open: Vec<(Delivery, &mut FileResult)> =
             deliveries.into_iter().zip(&mut results).filter(|(_, result)| result.state == State::NotTried).collect();
         deliver::confirm(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery)).await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
-            // What nobody knew of is not deleted.
+            // An unlisted file was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.tell(&delivery.file) != There::No;
             let outcome = deliver(link, screen, delivery, Manner { replace, ..manner }, result).await;
             if !result.settle(outcome) {
@@ -157,7 +157,7 @@ impl Command for Restore {
 }
 
 impl Restore {
-    /// Finds the files that are the same on the controller already; `false` if the work cannot go on.
+    /// Finds the files that are equal on the controller; `false` if the work cannot continue.
     async fn compare(
         &self,
         link: &mut Link,
@@ -183,12 +183,12 @@ impl Restore {
         Ok(true)
     }
 
-    /// What a dry run says of each file of the backup.
+    /// Notes each file of the backup in a dry run.
     fn plan_items(&self, link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
         let on = match (self.differing, self.replace) {
             (true, _) => "whether the controller's file differs",
-            (false, true) => "what is there: a file of its name is replaced",
-            (false, false) => "what is there: a file of its name is overwritten",
+            (false, true) => "whether a file with this name exists: it is replaced",
+            (false, false) => "whether a file with this name exists: it is overwritten",
         };
         for entry in &manifest.files {
             let Some(copy) = &entry.copy else { continue };
@@ -199,13 +199,13 @@ impl Restore {
                 (true, _) => would_write(&entry.name, ("bytes", copy.bytes), on),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
                 (false, false) => {
-                    would_leave(&entry.name, "parameters or system data: written with --machine or --type")
+                    would_leave(&entry.name, "parameters or system data; written only with --machine or --type")
                 }
             });
         }
     }
 
-    /// What a dry run shows behind the lists.
+    /// Notes in a dry run the requests after the lists.
     async fn plan(
         &self,
         link: &mut Link,
@@ -217,7 +217,7 @@ impl Restore {
         let reason = if self.differing {
             for Delivery { file, .. } in &*deliveries {
                 let reason =
-                    Reason::about("if the list has it: compares").depending_on("whether the list has the file");
+                    Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
                 link.plan_download(&file.save(), reason)?;
             }
             Reason::about("if it differs").depending_on("whether the file differs")
@@ -230,11 +230,11 @@ impl Restore {
         Ok(())
     }
 
-    /// The files to send, in the order of sending.
+    /// Files to send, in the order of sending.
     fn chosen<'a>(&self, link: &Link, manifest: &'a Manifest) -> Result<Vec<(FileName, &'a Entry)>, Failure> {
         let only = name::all_typed(link.encoding, &self.only)?;
         let types = match &self.types[..] {
-            // A file that is named is meant, whatever its type; parameters and system data need their type as well.
+            // A file selected by name is sent whatever its type; parameters and system data also need their type.
             [] if only.is_empty() => USUAL.to_vec(),
             [] => [&USUAL[..], &[FileType::Lst]].concat(),
             types => TypeArg::chosen(types),
@@ -242,12 +242,13 @@ impl Restore {
         for file in &only {
             let shown = link.encoding.decode(file.as_bytes());
             if manifest.entry_of(file.as_bytes()).and_then(|entry| entry.copy.as_ref()).is_none() {
-                return Err(Failure::usage(format!("the backup has no {shown}")).hint(format!("{MANIFEST} lists it")));
+                return Err(Failure::usage(format!("the backup has no {shown}"))
+                    .hint(format!("see the list of files in {MANIFEST}")));
             }
             let kind = file.file_type();
             if !kind.is_some_and(|kind| types.contains(&kind)) {
                 let kind = kind.map_or("of another extension", name::type_word);
-                return Err(Failure::usage(format!("{shown} is of type {kind}, which is not asked for"))
+                return Err(Failure::usage(format!("{shown} has type {kind}, which is not selected"))
                     .hint(format!("add --type {kind}; parameters and system data change the controller itself")));
             }
         }
@@ -261,9 +262,9 @@ impl Restore {
             }
         }
         if chosen.is_empty() {
-            let message = "what there is to restore are lists, parameters or system data, which change the controller";
+            let message = "the backup has only lists, parameters or system data, which change the controller";
             return Err(Failure::usage(message)
-                .hint("add --machine if that is meant; `yerc file restore` has --type, as in --type lst"));
+                .hint("add --machine to send them, or use `yerc file restore` with --type, as in --type lst"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));

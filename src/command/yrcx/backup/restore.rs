@@ -177,7 +177,7 @@ impl Comparison {
             1 => "1 value".to_owned(),
             many => format!("{many} values"),
         };
-        let change = Change::new(format!("overwrite {count} by those of {folder}"));
+        let change = Change::new(format!("overwrite {count} with those of {folder}"));
         let change = self.replaced.iter().fold(change, |change, (what, old, new)| change.replaces(what, old, new));
         match self.added {
             0 => change,

@@ -389,6 +389,6 @@ mod tests {
         assert!(error("point,axis_1\n1,2\n").contains("column unit is missing"));
         assert!(error("point,unit,axis_1\n1,mm,\n").contains("axis_1 is empty"));
         assert!(error("point,unit\n30000,mm\n").contains("allowed: 0 to 29999"));
-        assert!(error("point,unit\n1,mm\n1,mm\n").contains("point 1 is there already, in line 2"));
+        assert!(error("point,unit\n1,mm\n1,mm\n").contains("point 1 is already in line 2"));
     }
 }

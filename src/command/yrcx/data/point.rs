@@ -235,7 +235,7 @@ mod tests {
         let (read, failure, peer) = report_on(Scripted::new([answer(3), refusal(12, 76)]), &line);
         let failure = failure.unwrap();
         assert_eq!((failure.kind.exit(), failure.code.as_deref(), peer.taken.len()), (9, Some("12.76"), 2));
-        assert!(failure.message.ends_with("; 29995 were not asked for"), "{failure}");
+        assert!(failure.message.ends_with("; 29995 were not read"), "{failure}");
         assert_eq!((&read["items"][0]["ok"], &read["items"][29_996]["ok"]), (&json!(true), &json!(false)));
         let (outcome, peer) = run_on(Scripted::new([refusal(12, 76)]), &line);
         assert_eq!((outcome.unwrap_err().kind, peer.taken.len()), (Kind::Refused, 1));

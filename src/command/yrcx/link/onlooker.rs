@@ -31,8 +31,8 @@ impl Watcher<Event> for Onlooker {
                  (`armctl robots check`)",
             ),
             Event::Lost { why, is_reopening } => {
-                let again = if is_reopening { "; reconnecting" } else { "" };
-                screen.note(&format!("{label}: connection lost: {why}{again}"));
+                let again = if is_reopening { "; it is being opened again" } else { "" };
+                screen.note(&format!("{label}: the link was lost: {why}{again}"));
                 if let LinkError::Lost { outputs, .. } = why {
                     screen.detail(1, &format!("{label}: the controller: {outputs}"));
                 }
@@ -40,7 +40,7 @@ impl Watcher<Event> for Onlooker {
             Event::Reopened { stop } => {
                 let state = |on| if on { "on" } else { "off" };
                 let stop = stop.map(|on| format!("; the stop input SI(06) is {}", state(on))).unwrap_or_default();
-                screen.note(&format!("{label}: the connection is open again{stop}"));
+                screen.note(&format!("{label}: the link is open again{stop}"));
             }
             Event::Leftover(command, status) => {
                 screen.detail(1, &format!("the status was '{status}' before {}; it was reset", command.row().id));

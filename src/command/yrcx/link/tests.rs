@@ -108,7 +108,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
 fn an_interrupt_stops_the_motion_and_gives_the_stop_input_back() {
     let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words(STOPPED)), ends(0, &[0x0200])]));
     bench.interrupt(MOVE, Duration::from_secs(2));
-    assert_eq!(bench.halt().unwrap(), "the stop input SI(06) stopped the robot and is on again");
+    assert_eq!(bench.halt().unwrap(), "the robot was stopped by the stop input SI(06), which is on again");
     bench.run(&["alarm", "reset"]).unwrap();
     let peer = bench.into_peer();
     assert_eq!(peer.bits, [REST, HELD, REST]);
@@ -128,7 +128,7 @@ fn an_interrupt_tells_when_the_end_is_not_seen() {
 #[test]
 fn an_interrupt_before_anything_left_stops_nothing() {
     let mut bench = Bench::new(Scripted::new([]));
-    assert_eq!(bench.halt().unwrap(), "nothing was sent that moves the robot");
+    assert_eq!(bench.halt().unwrap(), "no motion command was sent");
     assert_eq!(bench.into_peer().bits, [REST]);
 }
 

@@ -154,12 +154,12 @@ mod tests {
         assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
         assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
         let noted = frames(&line).unwrap();
-        assert_eq!((&noted[0]["about"], noted.len()), (&json!("where the robot is"), 2));
+        assert_eq!((&noted[0]["about"], noted.len()), (&json!("current position"), 2));
         // Nothing moves if nobody knows where it is.
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
         let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
-        assert!(refused.unwrap_err().message.starts_with("nothing was moved"));
+        assert!(refused.unwrap_err().message.starts_with("not moved"));
         assert_eq!(peer.taken.len(), 1);
         assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
     }

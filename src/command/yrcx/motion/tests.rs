@@ -156,7 +156,10 @@ fn an_interrupt_stops_every_kind_of_motion() {
         let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words_of(&[0x4000, 12, 400]))]));
         bench.interrupt(&split(line), Duration::from_secs(2));
         let told = bench.halt().unwrap();
-        assert!(told.starts_with("the stop input SI(06) stopped the robot and is on again"), "{line}: {told}");
+        assert!(
+            told.starts_with("the robot was stopped by the stop input SI(06), which is on again"),
+            "{line}: {told}"
+        );
         assert_eq!(told.contains("moves to the old target"), line.contains("ei --"), "{line}: {told}");
         let peer = bench.into_peer();
         assert_eq!((peer.taken.len(), &peer.bits[..]), (1, &[REST, HELD, REST][..]), "{line}");
