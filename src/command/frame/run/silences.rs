@@ -1,4 +1,4 @@
-//! What a watch says of a robot that is silent: an error now and then, however often it is looked at.
+//! Messages of a watch about a robot that does not answer, with limited repetition.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use crate::failure::Failure;
 use crate::output::log::Level;
 use crate::settings::Robot;
 
-/// The silences of a robot that is watched.
+/// Missing answers of a watched robot.
 pub(super) struct Silences<'a> {
     run: &'a Run,
     robot: &'a Robot,
@@ -21,7 +21,7 @@ impl<'a> Silences<'a> {
         Self { run, robot, repeats: Repeats::default(), last: None }
     }
 
-    /// Says why it did not answer, unless that was just said.
+    /// Reports a missing answer, unless it was just reported.
     pub fn say(&mut self, failure: &Failure) {
         let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
         self.last = Some(failure.clone());
@@ -29,7 +29,7 @@ impl<'a> Silences<'a> {
         self.print(lines);
     }
 
-    /// It answers, or nobody watches any more: says how often it did not.
+    /// Reports the number of missing answers when the robot answers again or the watch ends.
     pub fn end(&mut self) {
         let lines = self.repeats.due(Instant::now(), true);
         self.print(lines);
