@@ -44,6 +44,7 @@ pub struct Pace {
 /// A speed as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Speed {
+    /// Percent, instead of the program speed.
     Percent(String),
     /// Speed of the tool.
     MmS(String),

@@ -20,6 +20,7 @@ use crate::output::Screen;
 
 /// A part with the values to be written.
 pub struct Job {
+    /// Part.
     pub part: Part,
     /// Name in progress messages and dry runs.
     pub called: String,

@@ -7,6 +7,7 @@ use crate::controller::yrcx::describe::FieldNote;
 use crate::controller::yrcx::image::Image;
 use crate::transport::capture::{Carrier, Message};
 
+/// Decoder for the images of all fieldbuses.
 #[derive(Debug)]
 pub struct ImageDecoder {
     images: Images,
