@@ -384,7 +384,10 @@ fn a_session_that_is_asked_to_end_tells_its_clients() {
     let moving = moving(&desk);
     session.signal("TERM");
     let (code, said) = moving.end();
-    assert!(code == Some(6) && said.contains("the session has ended: asked to end (SIGTERM)"), "{code:?} {said}");
+    assert!(
+        code == Some(6) && said.contains("the session has ended: termination request (SIGTERM)"),
+        "{code:?} {said}"
+    );
     let (code, said) = session.end();
     assert!(code == Some(0) && !said.contains("not closed properly"), "{said}");
     assert!(desk.files("sock").is_empty());

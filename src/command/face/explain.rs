@@ -234,7 +234,7 @@ async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, St
 
 #[expect(clippy::needless_pass_by_value, reason = "made for map_err")]
 fn not_asked(failure: Failure) -> String {
-    format!("not asked: {}", failure.message)
+    format!("not read: {}", failure.message)
 }
 
 /// Occurrences of an alarm in lists.

@@ -23,7 +23,7 @@ type Asked = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
 #[cfg_attr(not(unix), cfg(test))]
-const TERMINATE: &str = "asked to end (SIGTERM)";
+const TERMINATE: &str = "termination request (SIGTERM)";
 const HANGUP: &str = "the terminal was closed (SIGHUP)";
 #[cfg(unix)]
 const QUIT: &str = "Ctrl-\\ (SIGQUIT)";

@@ -17,7 +17,7 @@ impl From<Denied> for Failure {
         match denied {
             Denied::Refused(refusal) => refusal.into(),
             Denied::Failed(failure) => failure,
-            Denied::NotAsked(failure) => Failure { message: format!("not asked: {}", failure.message), ..failure },
+            Denied::NotAsked(failure) => Failure { message: format!("not read: {}", failure.message), ..failure },
         }
     }
 }

@@ -66,7 +66,7 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         if is_well { layers.ok(layer, well) } else { layers.wrong(layer, ill, advice) }
     };
     let is_stopped = output::EMERGENCY_STOP.is_on(image);
-    must("CPU", output::CPU_OK.is_on(image), ("ready", "SO(01) is off"), "look at the controller's display");
+    must("CPU", output::CPU_OK.is_on(image), ("ready", "SO(01) is off"), "read the controller's display");
     must(
         "emergency stop",
         !is_stopped,

@@ -169,7 +169,7 @@ fn verification_hint(command: Command) -> String {
         (1, Pace::Power) => "`yrcx status` shows whether servos and motor power are on".to_owned(),
         (5, _) => "keep clear; `yrcx info tasks` shows the running tasks".to_owned(),
         _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
-            Some((_, words)) => format!("`yrcx {words}` tells"),
+            Some((_, words)) => format!("check with `yrcx {words}`"),
             None => "`yrcx status` shows the state of the controller".to_owned(),
         },
     }
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn what_changes_something_names_what_tells() {
-        assert_eq!(verification_hint(Command::PointAdd), "`yrcx point get` tells");
+        assert_eq!(verification_hint(Command::PointAdd), "check with `yrcx point get`");
         assert!(verification_hint(Command::MoveArch).contains("yrcx position"));
         assert!(verification_hint(Command::ProgramRun).contains("info tasks"));
         assert!(verification_hint(Command::MotorOn).contains("motor power"));

@@ -77,7 +77,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows where it occurred"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
-    let kept = kept(row, "if it had begun to move, ");
+    let kept = kept(row, "if the robot had started to move, ");
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
         .hint(format!("{remedy}{way_out}{kept}"))

@@ -256,7 +256,7 @@ impl Report for Restored {
         View::fields([
             ("written", names(self.written, &self.written_names)),
             ("unchanged", names(self.unchanged, &self.unchanged_names)),
-            ("left alone", names(self.left_alone, &self.left_alone_names)),
+            ("skipped", names(self.left_alone, &self.left_alone_names)),
             ("variables", self.written.into()),
             ("requests", self.requests.into()),
         ])

@@ -549,7 +549,8 @@ pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
 fn setting_store(row: &Row) -> Result<Store, Failure> {
     let [robot, name, value] = &row[..] else { return Err(Failure::usage("expected three cells")) };
     let setting = SETTINGS.iter().find(|(known, ..)| known == name);
-    let (_, read, told, write, key) = setting.ok_or_else(|| Failure::usage(format!("there is no setting '{name}'")))?;
+    let (_, read, told, write, key) =
+        setting.ok_or_else(|| Failure::usage(format!("setting '{name}' does not exist")))?;
     let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).build()?;
     let wanted = vec![(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))];
     let read = read.order().with(Key::Robot, robot.as_str()).build()?;

@@ -194,7 +194,7 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        Self::all().find(|part| part.to_string() == name).ok_or_else(|| format!("there is no part '{name}'"))
+        Self::all().find(|part| part.to_string() == name).ok_or_else(|| format!("part '{name}' does not exist"))
     }
 }
 

@@ -164,7 +164,11 @@ impl Board {
     /// Failure for a missing node, with the nodes that are present.
     pub fn absent(&self, nodes: &[Node]) -> Failure {
         let others: Vec<String> = nodes.iter().map(|node| node.mac.to_string()).collect();
-        let others = if others.is_empty() { "nobody does".to_owned() } else { format!("MAC {} do", others.join(", ")) };
+        let others = if others.is_empty() {
+            "no other node answers".to_owned()
+        } else {
+            format!("MAC {} answer", others.join(", "))
+        };
         Failure::new(Kind::NoAnswer, format!("MAC {} does not answer; {others}", self.node.mac))
             .hint("check mac of the URL, and the number that is set at the controller")
     }

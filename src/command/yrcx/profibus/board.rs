@@ -232,7 +232,7 @@ const fn kind(station: StationKind) -> &'static str {
 
 fn unknown(why: &Unknown) -> String {
     match why {
-        Unknown::NotAsked => "not asked".to_owned(),
+        Unknown::NotAsked => "not read".to_owned(),
         Unknown::NoAnswer => "no answer".to_owned(),
         Unknown::Refused(status) => format!("refused: {}", status.text()),
         Unknown::Malformed(why) => format!("cannot be read: {why}"),
