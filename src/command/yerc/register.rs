@@ -68,7 +68,7 @@ fn numbers(text: &str) -> Result<Vec<u16>, String> {
                   that matters."
 )]
 pub struct Set {
-    /// Registers and values, such as 5=1000 or 5=0x03E8, or NAME=1000
+    /// 5=1000 or 5=0x03E8, or NAME=1000
     #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }

@@ -116,7 +116,7 @@ pub async fn give_either(
     Ok(Done { replaced: Some(replaced), ..done })
 }
 
-const DIFFERS: &str = "the current data: it is sent if that differs";
+const DIFFERS: &str = "the current data: sent if different";
 
 /// Whether the new data can equal the old data.
 fn may_be_there(command: Command) -> bool {

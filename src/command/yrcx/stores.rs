@@ -191,7 +191,7 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 
     async fn plan(&self, link: &mut Link, number: i32, draft: &Draft) -> Result<(), Failure> {
-        let reason = Reason::default().depending_on("the current data: it is written if that differs");
+        let reason = Reason::default().depending_on("the current data: written if different");
         // Two rows that agree only in the given fields.
         let filled = |which: usize| {
             let columns = draft.iter().zip(&K::RECORDS.columns[1..]);

@@ -35,7 +35,7 @@ pub struct Put {
     /// Read every file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Ignore the line ///DATE in the comparison, because controllers rewrite it
+    /// Ignore the line ///DATE, which controllers rewrite
     #[arg(long, requires = "verify")]
     ignore_header: bool,
     /// Delete and send a job that the controller does not overwrite

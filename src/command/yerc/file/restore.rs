@@ -42,7 +42,7 @@ pub struct Restore {
     /// Read every file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Ignore the line ///DATE in the comparison, because controllers rewrite it
+    /// Ignore the line ///DATE, which controllers rewrite
     #[arg(long)]
     ignore_header: bool,
     /// Delete and send jobs that the controller does not overwrite

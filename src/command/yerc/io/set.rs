@@ -33,10 +33,10 @@ use crate::failure::Failure;
                   --group writes all eight signals without a read."
 )]
 pub struct Set {
-    /// Signals and states, such as 27010=on, #27011=off, or clamp=on for a name
+    /// 27010=on, #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// All eight signals of a group, such as 2701=0xA5; the first signal is the lowest bit (repeatable)
+    /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<Whole>,
 }

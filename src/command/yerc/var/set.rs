@@ -47,7 +47,7 @@ use crate::output::view::{Cell, Table, View};
                   and 0.0001 degree)."
 )]
 pub struct Set {
-    /// Variables and values, such as B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
+    /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
     #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE_VALUE)]
     assignments: Vec<Assignment>,
     /// Write strings with the 16-byte commands, even on a DX200

@@ -53,7 +53,7 @@ pub struct Dump {
                   comment_ are free for your use."
 )]
 pub struct Restore {
-    /// A file from `point dump`, or a table with the same columns; - is stdin
+    /// File from `point dump` or with the same columns; - is stdin
     file: PathBuf,
 }
 

@@ -87,7 +87,7 @@ one_row! {
         /// Hand, 0 to 31
         #[arg(value_name = "HAND", value_parser = |text: &str| single(table::Command::HandSet, Key::Hand, text))]
         hand: i32,
-        /// Data 1, a whole number: the raw value of the protocol
+        /// Data 1, a whole number (raw protocol value)
         #[arg(long = "data-1", value_name = "NUMBER", allow_negative_numbers = true)]
         first: String,
         /// Data 2 in mm

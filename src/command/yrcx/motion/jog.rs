@@ -32,7 +32,7 @@ pub struct Jog {
     /// How long; default: until Ctrl-C
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// Report the position after the jog, in this unit; default: the unit of the coordinate system
+    /// Report the end position in this unit; default: the unit of the axes
     #[arg(long, value_name = "UNIT")]
     report: Option<Unit>,
     #[command(flatten)]

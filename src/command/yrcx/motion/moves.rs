@@ -27,10 +27,10 @@ pub struct Move {
     #[arg(long, value_name = "[AXIS=]PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to_pulse: Vec<String>,
-    /// Move in a straight line; --speed can then be in mm/s, as in 200mm/s
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long, group = "way")]
     linear: bool,
-    /// Move in an arc through the first point to the second; --speed can then be in mm/s, as in 200mm/s
+    /// Move in an arc through the first point to the second; --speed may be in mm/s
     #[arg(long, group = "way", conflicts_with = "axes")]
     circular: bool,
     #[command(flatten)]

@@ -38,7 +38,7 @@ pub struct Movei {
         conflicts_with = "linear"
     )]
     by_pulse: Vec<String>,
-    /// Move in a straight line; --speed can then be in mm/s, as in 200mm/s
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long)]
     linear: bool,
     #[command(flatten)]

@@ -15,7 +15,7 @@ pub struct Movet {
     /// Point to move to
     #[arg(long, value_name = "POINT")]
     point: String,
-    /// Move in a straight line; --speed can then be in mm/s, as in 200mm/s
+    /// Move in a straight line; --speed may be in mm/s
     #[arg(long)]
     linear: bool,
     #[command(flatten)]
