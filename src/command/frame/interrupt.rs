@@ -310,7 +310,7 @@ mod tests {
         assert!(!presses.are_enough(KEYS, true, at(50)), "sent twice");
         assert!(!presses.are_enough(KEYS, true, at(99)), "a key that is held down");
         assert!(presses.are_enough(TERMINATE, true, at(120)));
-        // The line was done with, and another one runs.
+        // The line has ended, and another line is running.
         assert!(!presses.are_enough(KEYS, false, at(400)));
         assert!(presses.are_enough(KEYS, true, at(600)));
     }

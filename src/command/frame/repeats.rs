@@ -142,7 +142,7 @@ mod tests {
         let due = repeats.due(start + WINDOW, false);
         let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
         assert_eq!(texts, ["again in 999.1s (995 more times in 10m)"]);
-        // It goes on: the next one waits for the next summary. Once it has been quiet for a window, it is forgotten.
+        // While the line repeats, it is held for the next summary. After a window without it, it is forgotten.
         assert!(!repeats.admits(&line("again in 7.0s"), start + WINDOW));
         assert_eq!(repeats.due(start + WINDOW * 2, false)[0].text, "again in 7.0s (once more in 10m)");
         assert!(repeats.due(start + WINDOW * 3, false).is_empty());

@@ -18,7 +18,7 @@ use crate::settings::Robot;
 /// Context of such a line.
 #[derive(Debug, Clone)]
 pub struct Line {
-    /// As it was typed, for others who want the same robot.
+    /// Text as typed, for other clients that wait for the robot.
     pub typed: Arc<str>,
     /// Manager of the links that stay open between lines.
     pub manager: SessionManager,

@@ -18,7 +18,7 @@ use crate::settings::Robot;
 #[derive(Debug, Clone)]
 pub struct SessionManager {
     orders: mpsc::UnboundedSender<ManagerRequest>,
-    /// Whether the user was told that links cannot be kept open.
+    /// Whether a note was printed that links cannot be kept open.
     told: Arc<AtomicBool>,
 }
 

@@ -431,7 +431,7 @@ mod tests {
     #[test]
     fn a_dry_run_shows_what_is_asked_before_and_after() {
         let heads = |line: &str| frames(line).unwrap().iter().map(|frame| frame[..8].to_owned()).collect::<Vec<_>>();
-        // Where the base stands and which axes it has, where the robot stands and which it has; the order; the looks.
+        // Position and axes of the base, position and axes of the robot, the move request, the status reads.
         let before = ["75000b00", "74000b00", "75006500", "74006500"];
         let after = ["72000100", "75006500", "70000100"];
         assert_eq!(heads(FAR), [&before[..], &["8a000200"], &after].concat());

@@ -8,11 +8,11 @@
 //! To add a command:
 //!
 //! 1. Its file: arguments (passed to the codec as typed text: `draft.with(Key::SpeedPercent, text)` reads them in the
-//! unit of the field and checks their range), the report, and a row of `one_row!`, or a table of `stores` for
-//! numbered data. Shared arguments are in `arguments.rs`, positions in `position.rs`.
+//!    unit of the field and checks their range), the report, and a row of `one_row!`, or a table of `stores` for
+//!    numbered data. Shared arguments are in `arguments.rs`, positions in `position.rs`.
 //! 2. A line in the list below, or in the list of its group.
 //! 3. Tests: `testing::words` returns the words of a command line, `testing::example` those of an example in the
-//! manual. `coverage.rs` has a line for each row of the table.
+//!    manual. `coverage.rs` has a line for each row of the table.
 
 mod alarm;
 mod arguments;

@@ -116,7 +116,7 @@ pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State 
 /// State that a previous client left, as far as the signals show it.
 pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     let status = Status::from_word(image.0[0]);
-    // A running program is a normal state, whoever started it.
+    // A running program is a normal state, regardless of the client that started it.
     let is_command = !matches!(status, Status::Ready | Status::Running);
     let what = format!("a remote command left its status: {status}");
     LeftOver::new(is_command, &what, "`yrcx status-reset` clears it").into_iter().collect()

@@ -290,7 +290,7 @@ mod tests {
 
     #[test]
     fn bytes_that_look_alike_in_text_still_differ() {
-        // Both decode to the same character, but a controller may tell them apart.
+        // Both decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
         assert_eq!(found.hunks.map(|hunks| hunks[0].lines.len()), Some(2));
     }

@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
         let noted = frames(&line).unwrap();
         assert_eq!((&noted[0]["about"], noted.len()), (&json!("current position"), 2));
-        // Nothing moves if nobody knows where it is.
+        // Nothing moves if the position is unknown.
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
         let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
