@@ -125,9 +125,9 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
 
-    /// Lines of a small terminal.
+    /// Number of lines of a small terminal.
     const ROWS: usize = 24;
-    /// Lines that a command's own options may take before its help may be longer.
+    /// Number of lines of a command's own options, above which its help may be longer.
     const OWN: usize = 7;
 
     fn whole() -> Command {

@@ -51,10 +51,10 @@ mod tests {
 
     use crate::cli::Cli;
 
-    /// Commands whose `--wait TIME` is how long an answer may take.
+    /// Commands whose `--wait TIME` is a response timeout.
     const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
 
-    /// Commands below one that take only one of both flags.
+    /// Subcommands that accept only one of the two options.
     fn halves(command: &Command, path: &str, found: &mut Vec<String>) {
         let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
         if has("wait") != has("no-wait") && !OTHERS.contains(&path) {

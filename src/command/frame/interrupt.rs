@@ -287,7 +287,7 @@ mod tests {
     async fn of_two_that_wait_for_a_request_the_inner_one_hears_it() {
         let (ask, asked) = watch::channel(None);
         let inner = heard_first(pending::<()>(), wait(asked.clone(), |_| true));
-        // The request comes behind the question to the work.
+        // The request arrives after the poll of the work.
         let outer = poll_fn(|_| {
             ask.send_replace(Some(KEYS));
             Poll::Ready("outer")

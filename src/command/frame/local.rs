@@ -333,7 +333,7 @@ mod tests {
         draft.write(b"whole").unwrap();
         draft.commit().unwrap();
         assert_eq!(Target::new(path.clone(), false).unwrap_err().kind, Kind::Local);
-        // A file that appears during the transfer is kept as well.
+        // A file that appears during the transfer is not replaced.
         let late = target.begin().unwrap();
         assert_eq!(late.commit().unwrap_err().kind, Kind::Local);
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");

@@ -624,7 +624,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn a_fleet_takes_as_long_as_its_slowest() {
-        // As many as half a plant that is switched off do not answer, here and there among the others.
+        // Half of the robots do not answer, as in a plant with switched-off robots, mixed with the others.
         let silent = |robot: usize| robot.is_multiple_of(2);
         let ask = |robot| async move {
             tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;

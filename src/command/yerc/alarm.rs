@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn history_asks_each_class_from_a_number_on() {
-        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 asks one field of it).
+        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 reads one field of it).
         assert_eq!(
             frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
             ["71001b0c00010000", "71001c0c00010000"]

@@ -415,7 +415,7 @@ mod tests {
         (&frame[..16], words.collect())
     }
 
-    /// The one order among the frames of a dry run.
+    /// The only move request in the frames of a dry run.
     fn order_on(target: &str, line: &str) -> String {
         let sent = frames_on(target, line).unwrap();
         let orders: Vec<&String> =
@@ -462,7 +462,7 @@ mod tests {
         let axes = [1500, -2000, 0, 0, 0, 0, 0, 0, 0];
         let sent = order(line);
         assert_eq!(words(&sent), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
-        // FS 3.3.39 prints one reserved word less.
+        // FS 3.3.39 prints one reserved word fewer.
         let sent = order_on("udp://h?model=fs100&move_words=25", line);
         assert_eq!(words(&sent).1, [&expected[..11], &expected[12..], &axes[..]].concat());
     }

@@ -112,7 +112,7 @@ mod tests {
         let noted = frames(&["power-on"]).unwrap();
         let shown: Vec<(&str, &str)> =
             noted.iter().map(|note| (note["bits"][0].as_str().unwrap(), note["about"].as_str().unwrap())).collect();
-        // SI(00) and SI(06) are on from the beginning, unless a session shows them off.
+        // SI(00) and SI(06) are on at the start, unless a session has switched them off.
         let edges = [("0x0043", "servo-on (SI(01)) on"), ("0x0041", "servo-on (SI(01)) off")];
         assert_eq!(shown, [&[("0x0041", "emergency-stop (SI(00)) on")], &edges[..]].concat());
         assert_eq!(noted[0]["depends_on"], "what is shown before it: it is sent if emergency-stop is off");

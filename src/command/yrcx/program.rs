@@ -317,7 +317,7 @@ mod tests {
         let run = ["program", "run", "--program", "1"];
         assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
         assert_eq!(read_example("4.6.2-execute", &run)["new"], "running");
-        // Its WI1 is printed as 0x0100, its name without the spaces that the text asks for.
+        // The manual prints WI1 as 0x0100, and the name without the spaces that its text requires.
         let reset = ["program", "reset", "--name", "ABC_DE"];
         assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
         assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");

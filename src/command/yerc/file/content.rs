@@ -319,7 +319,7 @@ mod tests {
             let mut scan = JobScan::default();
             scan.take(&bytes);
             prop_assert_eq!(fixed.len() as u64, bytes.len() as u64 + scan.bare);
-            // Without its CRs before LFs, each is the same text.
+            // Without the CRs before LFs, both texts are equal.
             let plain = |text: &[u8]| text.iter().enumerate()
                 .filter(|(at, byte)| !(**byte == b'\r' && text.get(at + 1) == Some(&b'\n')))
                 .map(|(_, byte)| *byte).collect::<Vec<_>>();

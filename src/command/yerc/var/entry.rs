@@ -342,7 +342,7 @@ mod tests {
     fn round(name: &str, value: &Value) -> Json {
         let reference = in_form(name.parse().unwrap(), READING.model, false);
         let json = serde_json::to_value(Entry::new(reference, &Ok(value.clone()), READING.encoding)).unwrap();
-        // As it comes back from a file.
+        // As read from a file.
         let json: Json = serde_json::from_str(&json.to_string()).unwrap();
         let (back, read) = READING.entry(&json).unwrap();
         assert_eq!((back, read.map(|value| value.emit())), (reference, Some(value.emit())), "{json}");

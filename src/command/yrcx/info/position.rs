@@ -133,7 +133,7 @@ mod tests {
 
     const CONTINUOUS: [&str; 2] = ["position", "--continuous"];
 
-    /// The words of continuous output with the first axis there.
+    /// Words of continuous output with this position of the first axis.
     fn output(position: u16) -> [u16; 16] {
         let mut words = [0; 16];
         (words[0], words[4]) = (0x0100, position);

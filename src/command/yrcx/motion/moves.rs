@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn some_axes_and_another_robot() {
-        // As typed: 1.5 is for axis 3.
+        // In the order typed: 1.5 is for axis 3.
         for line in ["move --to 1.5,-2,3 --axes 3,1,2 --hand left", "move --to 3=1.5,1=-2,2=3 --hand left"] {
             let sent = words(&["--unit", "2"].into_iter().chain(line.split(' ')).collect::<Vec<_>>()).unwrap();
             assert_eq!(
