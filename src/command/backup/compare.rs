@@ -111,7 +111,7 @@ enum State {
     Unknown,
 }
 
-/// Kind of a job entry, which has a header.
+/// Content type of a job entry, which has a header.
 const JOB: &str = "jbi";
 /// Name of the entry for the controller data of a manifest.
 const CONTROLLER: &str = "controller";

@@ -33,7 +33,7 @@ pub struct Task<C> {
 pub struct Part {
     /// Content of its file.
     pub content: Content,
-    /// Kind of content, if known only after reading.
+    /// Content type, if known only after reading.
     pub holds: Option<String>,
     /// Items that are not in the file.
     pub left_out: Vec<LeftOut>,

@@ -165,7 +165,7 @@ mod tests {
     fn words_are_states_of_every_family() {
         let of = |running: Option<bool>, held: bool| json!({ "data": { "running": running, "held": held, "servo_on": true } });
         assert!(holds("idle", &of(Some(false), false)) && !holds("idle", &of(Some(false), true)));
-        assert!(!holds("idle", &of(None, false)), "what is not known is not so");
+        assert!(!holds("idle", &of(None, false)), "an unknown state is not true");
         assert!(holds("servo-on", &of(None, false)) && holds("held", &of(None, true)));
         assert!(holds("idle", &json!([of(Some(false), false), of(Some(false), false)])));
         assert!(!holds("idle", &json!([of(Some(false), false), of(Some(true), false)])), "all of them");

@@ -80,7 +80,7 @@ pub fn read<T>(kinds: &[Kind], any: &str, text: &str, parse: impl Fn(&str) -> Re
     read_marked(kinds, any, text, parse).map(|(value, _)| value)
 }
 
-/// Parses an argument, and returns whether `any` stands for a name that is not resolved yet. In that case, nothing
+/// Parses an argument, and returns whether `any` replaces a name that is not resolved yet. In that case, nothing
 /// else about it can be checked.
 pub fn read_marked<T>(
     kinds: &[Kind],

@@ -31,7 +31,7 @@ pub struct Alarm {
     pub source: Source,
 }
 
-/// Kind of an entry.
+/// Alarm, error or warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {

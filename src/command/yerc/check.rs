@@ -64,12 +64,12 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     );
     if status.alarm() || status.error() {
         let what = if status.alarm() { "an alarm is present" } else { "an error is present" };
-        layers.wrong("alarm", what, "`yerc alarm list` shows it, `yerc alarm reset` resets it");
+        layers.wrong("alarm", what, "see `yerc alarm list`, then reset with `yerc alarm reset`");
     } else {
         layers.ok("alarm", "none");
     }
     layers.left_over(&left_over(status));
-    // Unused servo power may be left over from another client. It is not a fault.
+    // Unused servo power may be from an earlier client. It is not a fault.
     let is_idle = !status.running() && !status.held() && !is_held(robot);
     let on =
         if is_idle { "on; no job is running and no session is open: `yerc servo off` switches it off" } else { "on" };

@@ -200,6 +200,6 @@ mod tests {
         assert_eq!(all["software_version"], "DN2.07.00A(JP/US)-00");
         assert_eq!(all["parts"][0]["name"], "ES0165D-A0*");
         assert_eq!(all["parts"].as_array().map(Vec::len), Some(2), "{all}");
-        assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name to tell");
+        assert!(!one.is_ok_and(|one| one["parts"][0]["name"].is_string()), "R2 has no name");
     }
 }

@@ -550,7 +550,7 @@ mod tests {
         let elapsed = far["elapsed_ms"].as_u64().unwrap();
         assert!((3000..3500).contains(&elapsed), "300 mm at 100 mm/s take {elapsed} ms");
         assert!(again["elapsed_ms"].as_u64().unwrap() < 200, "the robot is there already: {again}");
-        assert_eq!(up["reached"], json!(null), "base coordinates do not tell");
+        assert_eq!(up["reached"], json!(null), "base coordinates are not conclusive");
         let position = &position["positions"][0];
         assert_eq!(position["text"], up["position"]["text"]);
         assert_ne!(position["z_mm"], json!(1200.0));

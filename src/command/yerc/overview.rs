@@ -55,7 +55,7 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     }
 }
 
-/// State that a previous client left, as far as the status shows it.
+/// State that a previous client left, derived from the status.
 pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
     let is_held = status.has(StatusBit::HoldCommand);
     let with_power = is_held && status.servo_on();

@@ -1,4 +1,4 @@
-//! Stored model of a controller: used for a day, and dropped if the controller reports another one.
+//! Stored model of a controller: used for a day, and dropped if the controller reports a different model.
 
 use crate::client::yerc::Client;
 use crate::output::Screen;

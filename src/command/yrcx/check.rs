@@ -77,7 +77,7 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         "alarm",
         !output::ALARM.is_on(image),
         ("none", "SO(03) is on"),
-        "`yrcx alarm list` shows it, `yrcx alarm reset` resets it",
+        "see `yrcx alarm list`, then reset with `yrcx alarm reset`",
     );
     let status = Status::from_word(image.0[0]);
     layers.judge(

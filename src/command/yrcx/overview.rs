@@ -113,7 +113,7 @@ pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State 
     }
 }
 
-/// State that a previous client left, as far as the signals show it.
+/// State that a previous client left, derived from the signals.
 pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     let status = Status::from_word(image.0[0]);
     // A running program is a normal state, regardless of the client that started it.

@@ -50,7 +50,7 @@ pub struct Replaced {
     what: String,
     /// Old data; none if not defined.
     old: Option<String>,
-    /// New data, as far as it is known in advance.
+    /// New data, as far as known in advance.
     new: String,
     /// Old and new as JSON, null if unknown.
     data: [Json; 2],

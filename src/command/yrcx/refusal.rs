@@ -74,7 +74,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
         Some(remedy) => (*remedy).to_owned(),
-        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows where it occurred"),
+        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
     let kept = kept(row, "if the robot had started to move, ");

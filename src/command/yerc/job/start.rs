@@ -209,7 +209,7 @@ async fn wait(
             Look::Late(limit) => {
                 let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
-                    .hint("it continues; `yerc status` and `yerc job show` show its progress"));
+                    .hint("it continues; see `yerc status` and `yerc job show` for the progress"));
             }
         }
         if let Some(line) = line(link, screen.can_redraw()).await? {

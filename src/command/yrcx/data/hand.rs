@@ -138,6 +138,6 @@ mod tests {
         assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
         let first = |data| words(&["hand-data", "set", "1", "--data-1", data, "--data-2", "0", "--data-3", "0"]);
         assert!(first("10.5").unwrap_err().message.contains("data_1"));
-        assert!(first("10.000").is_err(), "nobody knows whether that is 10 or 10000");
+        assert!(first("10.000").is_err(), "ambiguous: 10 or 10000");
     }
 }

@@ -137,7 +137,12 @@ mod tests {
     fn numbers_and_roles_are_told() {
         let station = Station::from(&found(1, "a", 5));
         assert_eq!(station.roles, ["device", "supervisor"]);
-        assert_eq!((station.ip.as_deref(), station.gateway), (Some("192.168.0.5"), None), "its own address is none");
+        assert_eq!(
+            (station.ip.as_deref(), station.gateway),
+            (Some("192.168.0.5"), None),
+            "its own address is not a \
+            duplicate"
+        );
         assert_eq!(station.vendor.as_deref(), Some("0x0123"));
     }
 }

@@ -101,7 +101,7 @@ fn not_seen(what: &str) -> Failure {
     let message = format!(
         "{what} was started but did not report running within {limit}: it may have ended at once or not started"
     );
-    Failure::new(Kind::ConditionNotMet, message).hint("`yrcx info tasks` and `yrcx info line` show its state")
+    Failure::new(Kind::ConditionNotMet, message).hint("check the program with `yrcx info tasks` and `yrcx info line`")
 }
 
 /// Waits until no program runs. Returns whether one was seen running.
@@ -131,7 +131,7 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
     let stopped = if output::EMERGENCY_STOP.is_on(&image) {
         Some(("the emergency stop was triggered", "release it, then `yrcx recover`"))
     } else if output::ALARM.is_on(&image) {
-        Some(("an alarm occurred", "`yrcx alarm list` shows it, `yrcx alarm reset` resets it"))
+        Some(("an alarm occurred", "see `yrcx alarm list`, then reset with `yrcx alarm reset`"))
     } else {
         None
     };
