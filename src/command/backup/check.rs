@@ -30,6 +30,7 @@ struct Backup {
     /// Whether the backup was complete when it was made.
     complete: bool,
     /// Number of files.
+    #[serde(rename = "file_count")]
     files: usize,
     /// Missing or changed files.
     damaged: Vec<Failure>,

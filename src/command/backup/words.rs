@@ -44,8 +44,8 @@ pub trait Backups: Family {
 #[command(
     after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller. \
                   With several robots, each has a folder with its name. manifest.json lists the files with sizes and \
-                  hashes, and the missing data with the reason. `yerc file backup`, `yrcx backup` and `toyo backup` \
-                  have more options.\n\nTo save every task of a toyo controller, armctl selects each task temporarily. \
+                  hashes, and the missing data with the reason. `yrcx backup` and `toyo backup` have more \
+                  options.\n\nTo save every task of a toyo controller, armctl selects each task temporarily. \
                   That is a change, so on a read-only robot only the current task is saved."
 )]
 pub struct Backup<F: Backups> {
@@ -87,7 +87,7 @@ impl<F: Backups> Command for Backup<F> {
                   controller. After an interruption, run the same command again to continue. Data that is not in the \
                   backup stays on the controller.\n\nWithout --machine, data that changes the machine itself is not \
                   written: parameters and system data (yerc), parameters and settings (yrcx), machine parameters \
-                  (toyo). `yerc file restore` and `toyo restore` have more options."
+                  (toyo). `toyo restore` has more options."
 )]
 pub struct Restore<F: Backups> {
     #[command(flatten)]
@@ -174,6 +174,10 @@ impl<F: Backups> Command for Diff<F> {
 
     fn risk_on(&self, robot: &Robot) -> Risk {
         F::backup_risk(robot)
+    }
+
+    fn uses_files(&self) -> bool {
+        true
     }
 
     fn takes_robot(&self) -> bool {

@@ -108,6 +108,11 @@ pub trait Command {
         false
     }
 
+    /// Whether the command reads or writes files of this machine, even if no file is named.
+    fn uses_files(&self) -> bool {
+        false
+    }
+
     /// Whether the command needs a robot with these arguments.
     fn takes_robot(&self) -> bool {
         true
@@ -154,6 +159,10 @@ pub trait AnyCommand {
     }
     /// See [`Command::is_endless`].
     fn is_endless(&self) -> bool {
+        false
+    }
+    /// See [`Command::uses_files`].
+    fn uses_files(&self) -> bool {
         false
     }
     /// Driver for its connections; none if it needs no robot.
@@ -219,6 +228,10 @@ impl<C: Command> AnyCommand for C {
 
     fn is_endless(&self) -> bool {
         Command::is_endless(self)
+    }
+
+    fn uses_files(&self) -> bool {
+        Command::uses_files(self)
     }
 
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {

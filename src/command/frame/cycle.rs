@@ -78,16 +78,20 @@ impl Runs {
     /// Statistics for a report.
     pub fn cycle(self) -> Cycle {
         let Self { repeat, times_ms } = self;
-        let cycle = if repeat.repeat.is_some() { CycleTimes::new(&times_ms) } else { None };
-        Cycle { cycle, with_stats: repeat.stats }
+        if repeat.repeat.is_none() {
+            return Cycle::default();
+        }
+        Cycle { cycle_times: CycleTimes::new(&times_ms), cycles: times_ms, with_stats: repeat.stats }
     }
 }
 
 /// Report part for repeated runs.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Cycle {
-    /// Statistics; null for a single run.
-    cycle: Option<CycleTimes>,
+    /// Time of each of several runs in ms; empty unless the command repeats.
+    cycles: Vec<u64>,
+    /// Statistics of these times; null unless there are several.
+    cycle_times: Option<CycleTimes>,
     #[serde(skip)]
     with_stats: bool,
 }
@@ -95,11 +99,11 @@ pub struct Cycle {
 impl Cycle {
     /// Table rows, if requested.
     pub fn rows(&self) -> Vec<(&'static str, Cell)> {
-        self.cycle.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
+        self.cycle_times.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
     }
 }
 
-/// Durations of runs.
+/// Statistics of the times of runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct CycleTimes {
     /// Number of completed runs.
@@ -110,8 +114,6 @@ struct CycleTimes {
     /// 95th percentile.
     p95_ms: u64,
     max_ms: u64,
-    /// Duration of each run.
-    times_ms: Vec<u64>,
 }
 
 impl CycleTimes {
@@ -127,7 +129,6 @@ impl CycleTimes {
             median_ms: share(50)?,
             p95_ms: share(95)?,
             max_ms: *sorted.last()?,
-            times_ms: times_ms.to_vec(),
         })
     }
 

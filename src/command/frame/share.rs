@@ -12,13 +12,18 @@ use crate::settings::{Origin, Robot, Sessions, duration};
 /// Idle time after which such a session closes.
 const IDLE: Duration = Duration::from_secs(5);
 
+/// Whether the robot accepts one client, and others may share its link.
+pub fn is_to_share(driver: &dyn Driver, robot: &Robot) -> bool {
+    robot.sessions == Sessions::Shared && driver.takes_one_client(robot)
+}
+
 /// Opens a background session for a robot that accepts one client, or uses an existing one. Returns the robot as it
 /// is then reached.
 ///
 /// # Errors
 /// If the link cannot be opened.
 pub async fn shared(driver: &dyn Driver, robot: &Robot) -> Result<Robot, Failure> {
-    if robot.sessions != Sessions::Shared || !driver.takes_one_client(robot) {
+    if !is_to_share(driver, robot) {
         return Ok(robot.clone());
     }
     if !is_held(robot) {

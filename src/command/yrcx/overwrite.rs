@@ -418,6 +418,7 @@ pub struct OfAxis {
     /// Robot, 1 to 4; null unless it is a parameter.
     pub robot: Option<i32>,
     /// Axis, 1 to 4; null unless it is a parameter of an axis.
+    #[serde(rename = "axis_number")]
     pub axis: Option<i32>,
 }
 

@@ -178,11 +178,11 @@ impl From<ProfibusError> for LinkError {
         let cause = Cause::new(&error);
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
-            ProfibusError::Port { .. } => Self::Local(cause.advice(
+            ProfibusError::Port { .. } => Self::Silent(cause.advice(
                 "check the name of the port (`armctl robots discover` lists those of this machine), what the adapter can do, and \
                  that no session and no other program has it open",
             )),
-            ProfibusError::Gone { .. } => Self::Local(cause.advice("check the plug and the supply of the adapter")),
+            ProfibusError::Gone { .. } => Self::Silent(cause.advice("check the plug and the supply of the adapter")),
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
                 "this program must be the only master of the line: disconnect the other one, or add role=listen to the URL to \
                  see the images beside it",

@@ -55,6 +55,9 @@ impl Extra {
         if command.driver().is_none() {
             return wrong("asks no robot", EXAMPLE);
         }
+        if command.uses_files() {
+            return Err(takes_files(text));
+        }
         if command.is_endless() {
             return wrong("does not end by itself", "use the command that reads once: it is asked again and again");
         }
@@ -87,13 +90,17 @@ fn wrong(text: &str, why: &str, hint: &str) -> Failure {
     Failure::usage(format!("'{text}' {why}")).hint(hint)
 }
 
+fn takes_files(text: &str) -> Failure {
+    wrong(text, "is about a file or folder of this machine", "choose a command that reads the robot alone")
+}
+
 /// Parses words into a command; the first word is the family.
 fn read(text: &str, family: Family, words: &[String]) -> Read {
     let face = families::of(family);
     let parser = face.augment(clap::Command::new(family.name())).no_binary_name(false).disable_help_flag(true);
     let parsed = parser.clone().try_get_matches_from(words);
     if parsed.as_ref().is_ok_and(|matches| takes_file(&parser, matches)) {
-        return Err(wrong(text, "names a file or folder", "choose a command that reads the robot alone"));
+        return Err(takes_files(text));
     }
     match parsed.and_then(|mut matches| face.read(&mut matches)) {
         Ok(Typed { wish: Wish::Command(command), .. }) => Ok(command),
@@ -155,11 +162,14 @@ mod tests {
             ("toyo ports", "asks no robot"),
             ("yerc var get B0; yerc hold on", "is more than one command"),
             ("yerc status ; yerc hold on", "is more than one command"),
-            ("yerc var dump x.json", "names a file or folder"),
-            ("yerc file get A.JBI --dir x", "names a file or folder"),
-            ("yerc file get A.JBI", "names a file or folder"),
-            ("yrcx backup x", "names a file or folder"),
-            ("toyo point dump x.csv", "names a file or folder"),
+            ("yerc var dump x.json", "is about a file or folder"),
+            ("yerc file get A.JBI --dir x", "is about a file or folder"),
+            ("yerc file diff A.JBI", "is about a file or folder"),
+            ("yerc diff", "is about a file or folder"),
+            ("yrcx diff", "is about a file or folder"),
+            ("yerc file get A.JBI", "is about a file or folder"),
+            ("yrcx backup x", "is about a file or folder"),
+            ("toyo point dump x.csv", "is about a file or folder"),
         ] {
             let failure = Extra::parse(text).unwrap_err();
             assert!(failure.message.contains(why) && failure.hint.is_some(), "{text}: {failure:?}");

@@ -1,8 +1,9 @@
-//! Messages of a watch about a robot that does not answer, with limited repetition.
+//! Failures of a watch, with limited repetition.
 
 use std::time::Instant;
 
 use super::Run;
+use super::print::named;
 use crate::command::frame::repeats::{Line, Repeats};
 use crate::failure::Failure;
 use crate::output::log::Level;
@@ -23,26 +24,76 @@ impl<'a> Silences<'a> {
 
     /// Reports a missing answer, unless it was just reported.
     pub fn say(&mut self, failure: &Failure) {
+        let failures = self.admit(failure);
+        self.print(failures);
+    }
+
+    /// Failures to report now: this one, unless it was just reported, and the counts that are due.
+    pub fn admit(&mut self, failure: &Failure) -> Vec<Failure> {
         let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
         self.last = Some(failure.clone());
         let lines = self.repeats.lines(line, Instant::now());
-        self.print(lines);
+        self.failures(lines)
     }
 
     /// Reports the number of missing answers when the robot answers again or the watch ends.
     pub fn end(&mut self) {
         let lines = self.repeats.due(Instant::now(), true);
-        self.print(lines);
+        let failures = self.failures(lines);
+        self.print(failures);
         self.repeats = Repeats::default();
     }
 
-    fn print(&self, lines: Vec<Line>) {
-        for Line { text, .. } in lines {
-            if let Some(failure) = &self.last {
-                self.run.screen.failure(&Failure { message: text, ..failure.clone() });
-                self.run.redraw.forget();
-            }
+    fn failures(&self, lines: Vec<Line>) -> Vec<Failure> {
+        let failure = |line: Line| Some(Failure { message: line.text, ..self.last.clone()? });
+        lines.into_iter().filter_map(failure).collect()
+    }
+
+    fn print(&self, failures: Vec<Failure>) {
+        for failure in failures {
+            self.run.screen.failure(&named_among(self.run, self.robot, failure));
+            self.run.redraw.forget();
         }
+    }
+}
+
+/// Failure, with the name of its robot if several are watched.
+fn named_among(run: &Run, robot: &Robot, failure: Failure) -> Failure {
+    if run.sources.selection.is_plural() { named(robot, failure) } else { failure }
+}
+
+/// Output of a watch of several robots in the rounds so far.
+pub(super) struct Said<'a> {
+    /// Failures of each robot, in the order of the robots.
+    silences: Vec<Silences<'a>>,
+    summary: Option<String>,
+}
+
+impl<'a> Said<'a> {
+    /// Nothing yet.
+    pub fn nothing(run: &'a Run, robots: &'a [Robot]) -> Self {
+        Self { silences: robots.iter().map(|robot| Silences::new(run, robot)).collect(), summary: None }
+    }
+
+    /// Failures to report now for a robot that failed, or did not.
+    pub fn of(&mut self, index: usize, failure: Option<&Failure>) -> Vec<Failure> {
+        match (self.silences.get_mut(index), failure) {
+            (Some(silences), Some(failure)) => silences.admit(failure),
+            (Some(silences), None) => {
+                silences.end();
+                Vec::new()
+            }
+            (None, failure) => failure.cloned().into_iter().collect(),
+        }
+    }
+
+    /// Line below a table, if it has changed since the last round.
+    pub fn summary(&mut self, summary: String) -> Option<&str> {
+        if self.summary.as_ref() == Some(&summary) {
+            return None;
+        }
+        self.summary = Some(summary);
+        self.summary.as_deref()
     }
 }
 

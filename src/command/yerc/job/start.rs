@@ -9,9 +9,10 @@ use serde::Serialize;
 use tokio::time::Instant;
 
 use super::{Select, about, without_suffix};
-use crate::command::frame::cycle::{Cycle, Repeat, Runs};
+use crate::command::frame::cycle::{Repeat, Runs};
 use crate::command::frame::dry_run::{Known as _, unknown};
 use crate::command::frame::ending::ProgramEnd;
+use crate::command::robot::program::{Program, ProgramState};
 use crate::command::yerc::chosen::Chosen;
 use crate::command::yerc::complete;
 use crate::command::yerc::link::{Link, Yerc};
@@ -24,7 +25,7 @@ use crate::controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob,
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation, outdated};
 use crate::output::Screen;
-use crate::output::view::{Cell, Section, Tone, View};
+use crate::output::view::{Section, View};
 use crate::settings::duration;
 
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
@@ -103,7 +104,10 @@ impl Command for Start {
             }
             link.is_for("starts it").ask(&StartJob).await.map_err(early)?;
             let Some(limit) = limit else {
-                return Ok(Started { accepted: true, job, ..Started::default() });
+                return Ok(Started {
+                    accepted: true,
+                    program: Program { program: job, state: Some(ProgramState::Running), ..Program::default() },
+                });
             };
             if link.is_dry() {
                 return Err(self.plan(link).await?);
@@ -114,7 +118,10 @@ impl Command for Start {
             line = at;
         }
         let elapsed_ms = runs.last_ms();
-        Ok(Started { accepted: true, job, ended: Some(true), line, elapsed_ms, cycle: runs.cycle() })
+        let state = Some(ProgramState::Ended);
+        let (line, cycle) = (line.map(i64::from), runs.cycle());
+        let program = Program { program: job, line, state, elapsed_ms, cycle, ..Program::default() };
+        Ok(Started { accepted: true, program })
     }
 }
 
@@ -297,40 +304,17 @@ impl Watch {
 }
 
 /// Result of a start.
-#[derive(Debug, Default, Serialize, JsonSchema)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
     /// The controller accepted the start.
     accepted: bool,
-    /// Job name that the controller reported before; null if it did not.
-    job: Option<String>,
-    /// Whether the job has ended; null without a wait.
-    ended: Option<bool>,
-    /// Line at the end; 0 is the first line, where END leads. Null without a wait, or if the controller did not
-    /// report it.
-    line: Option<u32>,
-    /// Duration of the last run in ms, from acceptance to the end; null without a wait.
-    elapsed_ms: Option<u64>,
+    /// The job. Its line is the line at the end; 0 is the first line, where END leads.
     #[serde(flatten)]
-    cycle: Cycle,
+    program: Program,
 }
 
 impl Report for Started {
     fn view(&self) -> View {
-        match self.elapsed_ms {
-            None => View::fields([
-                ("job", Cell::maybe(self.job.as_deref())),
-                ("state", Cell::from("started").tone(Tone::Good)),
-            ]),
-            Some(ms) => {
-                let mut fields = vec![
-                    ("job", Cell::maybe(self.job.as_deref())),
-                    ("state", Cell::from("ended").tone(Tone::Good)),
-                    ("line", Cell::maybe(self.line)),
-                    ("elapsed (ms)", ms.into()),
-                ];
-                fields.extend(self.cycle.rows());
-                View { sections: vec![Section::Fields(fields)] }
-            }
-        }
+        View { sections: vec![Section::Fields(self.program.fields(Vec::new()))] }
     }
 }

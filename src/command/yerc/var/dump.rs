@@ -10,15 +10,14 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::entry::{Entry, is_undefined};
-use super::get::Named;
 use super::read::{once, read_all};
-use super::{in_form, listed, parse_kind, sheet};
+use super::{Choice, in_form, listed, sheet};
 use crate::command::frame::local::{Draft, Target};
 use crate::command::frame::sheet::{SheetManner, SheetTarget};
 use crate::command::frame::text_files;
 use crate::command::yerc::link::Yerc;
 use crate::command::{Command, Context, Report};
-use crate::controller::yerc::variables::{Reference, VariableKind};
+use crate::controller::yerc::variables::Reference;
 use crate::failure::Failure;
 use crate::output::escape;
 use crate::output::view::View;
@@ -40,12 +39,8 @@ pub const VERSION: u64 = 1;
 pub struct Dump {
     /// New file NAME.json or NAME.csv; - for stdout
     file: PathBuf,
-    /// Only these kinds: B,I,D,R,S,P,BP,EX
-    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = parse_kind, conflicts_with = "ranges")]
-    kinds: Vec<VariableKind>,
-    /// Only these variables, such as B0..B199,P0..P9, instead of all standard numbers
-    #[arg(long, value_name = "REF", value_delimiter = ',', value_parser = Named::parse)]
-    ranges: Vec<Named>,
+    #[command(flatten)]
+    choice: Choice,
     #[command(flatten)]
     manner: SheetManner,
     /// Robot whose variables are in the file, so that a second robot does not overwrite them.
@@ -61,7 +56,7 @@ impl Command for Dump {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Dumped, Failure> {
         let Context { robot, link, screen, .. } = context;
         let model = link.model().await?;
-        let references = once(self.references().map(|reference| in_form(reference, model, false)));
+        let references = once(self.choice.references().map(|reference| in_form(reference, model, false)));
         let mut place = self.place(&robot.name, link.is_dry())?;
         let progress = screen.spinner("reading");
         let answers = read_all(link, &references, |wanted, known| {
@@ -76,7 +71,9 @@ impl Command for Dump {
             let failure = Failure::from(denied.clone());
             let message =
                 format!("{}: {}; no dump was written", listed(missing), failure.message.trim_end_matches('.'));
-            return Err(Failure { message, ..failure }.hint("exclude them with --kinds or --ranges"));
+            return Err(
+                Failure { message, ..failure }.hint("name the variables without them, or their kinds with --kinds")
+            );
         }
         let variables: Vec<Entry> = references
             .iter()
@@ -123,16 +120,6 @@ enum Place {
 }
 
 impl Dump {
-    /// Requested variables, or all standard numbers of the kinds.
-    fn references(&self) -> impl Iterator<Item = Reference> {
-        let kinds = VariableKind::all().filter(|kind| {
-            *kind != VariableKind::S16 && self.ranges.is_empty() && (self.kinds.is_empty() || self.kinds.contains(kind))
-        });
-        let standard =
-            kinds.flat_map(|kind| (0..=kind.last_standard()).map(move |number| Reference::new(kind, number)));
-        self.ranges.iter().flat_map(|named| named.0.clone()).chain(standard)
-    }
-
     /// Creates the draft of the output file before the controller is asked, so that an unwritable file is reported at
     /// once.
     fn place(&self, robot: &str, dry: bool) -> Result<Place, Failure> {

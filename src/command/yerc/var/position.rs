@@ -58,11 +58,11 @@ pub struct PositionData {
 struct Arm {
     tool: u32,
     user: u32,
-    /// Decoded form.
-    form: Vec<&'static str>,
+    /// Decoded form: `back+upper+noflip`.
+    form: String,
     form_code: u32,
     /// Decoded extended form.
-    extended_form: Vec<&'static str>,
+    extended_form: String,
     extended_form_code: u32,
 }
 
@@ -85,9 +85,9 @@ impl PositionData {
             Value::Position(position) => Some(Arm {
                 tool: position.tool,
                 user: position.user,
-                form: position.form.words().collect(),
+                form: position.form.words().collect::<Vec<_>>().join("+"),
                 form_code: position.form.0,
-                extended_form: position.extended.words().collect(),
+                extended_form: position.extended.words().collect::<Vec<_>>().join("+"),
                 extended_form_code: position.extended.0,
             }),
             _ => None,
@@ -169,7 +169,7 @@ fn words_agree(
     is_default: bool,
 ) -> Result<(), String> {
     match (object.get(words), object.contains_key(code)) {
-        (Some(found), _) if *found == json!(expected) => Ok(()),
+        (Some(found), _) if *found == json!(expected.join("+")) => Ok(()),
         (Some(_), true) => Err(format!(": {words} contradicts {code}; remove {words} to use {code}")),
         (Some(_), false) => Err(format!(": {code} is missing; it is the number of {words}")),
         (None, true) => Ok(()),

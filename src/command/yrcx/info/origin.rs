@@ -55,6 +55,7 @@ pub struct Origins {
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisOrigin {
     /// 1 to 4.
+    #[serde(rename = "axis_number")]
     axis: usize,
     /// `complete`, `incomplete`, or `not applicable`.
     state: String,

@@ -30,7 +30,7 @@ impl Command for Diag {
             station: board.settings().station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
-            state: diagnosis.words().collect(),
+            states: diagnosis.words().collect(),
             blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
         })
     }
@@ -46,7 +46,7 @@ pub struct Diagnosed {
     /// Master of the slave; null if it has none.
     master: Option<u8>,
     /// Standard diagnosis flags that are set.
-    state: Vec<&'static str>,
+    states: Vec<&'static str>,
     /// Extended diagnosis, one entry per block, in the order received.
     blocks: Vec<String>,
 }
@@ -57,7 +57,7 @@ impl Report for Diagnosed {
             ("station", self.station.into()),
             ("ident", self.ident.as_str().into()),
             ("master", Cell::maybe(self.master)),
-            ("state", Cell::maybe((!self.state.is_empty()).then(|| self.state.join(", ")))),
+            ("state", Cell::maybe((!self.states.is_empty()).then(|| self.states.join(", ")))),
         ];
         fields.extend(self.blocks.iter().map(|block| ("block", block.as_str().into())));
         View::default().and(Section::Fields(fields))
