@@ -1,6 +1,9 @@
 //! Programs of a Toyo controller through the binary, against a served simulator: names in their text, sources that are
 //! kept, and how little a put reads.
 
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
 use std::collections::BTreeMap;
 use std::process::{Command, Output, Stdio};
 
