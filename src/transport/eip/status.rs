@@ -325,7 +325,7 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0126,
         "invalid configuration size",
-        "The size of the configuration data is wrong; the word that follows is the correct size in words.",
+        "The size of the configuration data is wrong; the next word is the correct size, as a number of words.",
         "Set no configuration data, or what the device expects.",
     ),
     code(

@@ -124,7 +124,8 @@ impl Remove {
 /// Changes settings of a robot; `KEY=` without a value removes a setting.
 #[derive(Debug, Args)]
 #[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
-    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B; names.NAME=ADDRESS, such as names.clamp=27010.")]
+                        pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
+                        names.clamp=27010.")]
 pub struct Set {
     /// Its name
     #[arg(add = ValueKind::Robot)]

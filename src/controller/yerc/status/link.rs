@@ -49,8 +49,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Correct the drive in the backup settings on the pendant."),
     row(0x6110, Class::Backup, BOTH, "wrong device",
         "The device chosen cannot be used for this.",
-        "Choose the right device in the AUTO BACKUP SET screen (for the batch backup the RAM disk); an active alarm \
-         bars the change, so reset it first."),
+        "Reset all alarms, because an active alarm blocks the change. Then select the right device in the AUTO \
+         BACKUP SET screen (for the batch backup, the RAM disk)."),
     row(0x6120, Class::Backup, BOTH, "system error",
         "An internal error of the controller, in the backup function.",
         SYSTEM_REMEDY),
@@ -94,7 +94,7 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0xB003, Class::Data, BOTH, "request data size error",
         "The request carries more or fewer bytes than the command takes; strings and moves differ between the \
          models.",
-        "Set the right model for this robot. An FS100 that refuses a cartesian move may want the 25 words of its \
+        "Set the right model for this robot. An FS100 that refuses a cartesian move may need the 25 words of its \
          manual: ?model=fs100&move_words=25. `armctl yerc raw --strict` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",
         "A value sent is outside what the data can hold, or number plus count runs past the end.",
@@ -112,8 +112,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The control group of a move or position is wrong, or robot and station are both named.",
         "Name exactly one: a robot or a station. `armctl yerc axes` lists the groups that are fitted."),
     row(0xB009, Class::Data, BOTH, "speed setting error",
-        "The speed is out of range or of a kind that does not fit the move: percent for joint moves, mm/s or deg/s \
-         for linear moves.",
+        "The speed is out of range, or its unit does not match the move. Joint moves need percent, linear moves mm/s \
+         or deg/s.",
         "Correct speed and unit, and start low."),
     row(0xB00A, Class::Data, BOTH, "operating speed not set",
         "The move has no speed.",
@@ -122,8 +122,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The coordinate system of the move does not exist or does not fit the group.",
         "Use base, robot, tool or a taught user coordinate system."),
     row(0xB00C, Class::Data, BOTH, "type setting error",
-        "The form of a move (its words \"type\" and \"expanded type\") has bits that are not defined, or cannot be \
-         reached; in a position, its kind does not exist.",
+        "The form of a move (its words \"type\" and \"expanded type\") has undefined bits, or the robot cannot reach \
+         it. In a position, the position type does not exist.",
         "Check --form and --extended-form of the move, or the type of the position (pulse, base, robot, tool, user)."),
     row(0xB00D, Class::Data, BOTH, "tool number setting error",
         "The tool number is out of range or the tool is not set up.",
@@ -252,10 +252,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The controller received a frame that does not begin with YERC.",
         FRAME_REMEDY),
     row(0xE4A7, Class::File, DX200, "format: size in the header differs from the bytes received",
-        "The controller received a frame whose stated size is not the number of bytes that arrived, often cut on \
-         the way.",
-        "Check switches, VPN and firewall on the way for cut or split packets; then record with --trace and report \
-         it."),
+        "The stated size of a frame differs from the number of received bytes; often the network truncated the frame.",
+        "Check switches, VPN and firewall for truncated or split packets; then record with --trace and report it."),
     row(0xE4A8, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
