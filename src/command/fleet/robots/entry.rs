@@ -253,7 +253,7 @@ fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
         ("name", _) => failure.hint("rename it with `armctl robots rename OLD NEW`"),
         ("default", _) => failure.hint("set the default with `armctl robots default NAME`"),
         (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
-        (_, None) => failure.hint(format!("there are {}", SETTINGS.map(|(known, ..)| known).join(", "))),
+        (_, None) => failure.hint(format!("known: {}", SETTINGS.map(|(known, ..)| known).join(", "))),
     })
 }
 

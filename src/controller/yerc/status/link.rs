@@ -27,7 +27,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check or change the device. For the batch backup set S2C680 = 1 and restart the controller, so that it \
          makes the RAM disk."),
     row(0x6040, Class::Backup, BOTH, "unexpected auto-backup request",
-        "A backup was asked for that the controller did not expect in this state.",
+        "The controller did not expect a backup request in this state.",
         "Check the AUTO BACKUP SET screen on the pendant, then repeat."),
     row(0x6050, Class::Backup, BOTH, "CMOS size exceeds the RAM area",
         "The CMOS data are larger than the area kept for the backup.",
@@ -180,7 +180,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Select another job, take the edit lock off, or delete the old file first (save it with `armctl yerc file \
          get`)."),
     row(0xE29C, Class::File, DX200, "requested file does not exist or is empty",
-        "There is no such file, or it has no content. It can come with an answer that otherwise says done.",
+        "The file does not exist, or it is empty. This code can come with an answer that otherwise reports success.",
         "Compare the name with `armctl yerc file list`, with its ending and in upper case; if it is there, it is \
          empty."),
     row(0xE29D, Class::File, DX200, "system error",
@@ -196,7 +196,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The path in the file name is not one the controller knows.",
         "Use the plain file name; a path only for the batch backup (/SPDRV/CMOSBK.BIN)."),
     row(0xE2A7, Class::File, DX200, "no file matches the list request",
-        "There is no file of the type asked for. It can come with an answer that otherwise says done.",
+        "No file of the requested type exists. This code can come with an answer that otherwise reports success.",
         "Nothing is wrong if there are none; otherwise check the type, such as *.JBI."),
     row(0xE2AA, Class::File, DX200, "system error",
         FILE_INTERNAL,
@@ -234,10 +234,10 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The controller received a frame without any length.",
         FRAME_REMEDY),
     row(0xE4A1, Class::File, DX200, "format: block number",
-        "A block came out of turn: a lost or repeated packet, or two hosts at work on the same transfer.",
+        "A block came in the wrong order: a lost or repeated packet, or two hosts with the same transfer.",
         "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
     row(0xE4A2, Class::File, DX200, "format: ACK",
-        "An acknowledgement did not fit the transfer: a lost or repeated packet, or a transfer that had ended.",
+        "An acknowledgement did not match the transfer: a lost or repeated packet, or a transfer that had ended.",
         "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
     row(0xE4A3, Class::File, DX200, "format: processing division",
         "The controller received a frame whose division is not that of the port (robot 10040, file 10041).",
@@ -286,5 +286,5 @@ pub(super) static ROWS: &[AddedRow] = &[
         SYSTEM_REMEDY),
     row(0xFFFE, Class::System, DX200, "remote mode detected, communication closed",
         "The remote mode changed while the connection was in use, and the controller dropped it.",
-        "Leave the mode key alone during transfers; check the mode with `armctl yerc status` and start again."),
+        "Do not turn the mode key during transfers; check the mode with `armctl yerc status` and start again."),
 ];

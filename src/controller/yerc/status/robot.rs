@@ -6,8 +6,8 @@ use super::added::{AddedRow, BOTH, Class, row};
 #[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x1010, Class::Operand, BOTH, "command error",
-        "The controller took the request but not the command in it. Often an option that is not installed, or a \
-         command of another model.",
+        "The controller accepted the request, but not its command. Often an option is not installed, or the command \
+         belongs to another model.",
         "Check that the model (fs100 or dx200) is the right one and that the option is installed; `armctl yerc raw` \
          and `-vvv` show the bytes."),
     row(0x1011, Class::Operand, BOTH, "wrong number of operands",

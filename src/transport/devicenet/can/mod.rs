@@ -251,7 +251,7 @@ pub enum PortError {
         why: String,
     },
     /// The adapter was disconnected.
-    #[error("{path} is gone: {why}")]
+    #[error("{path} was disconnected: {why}")]
     Gone {
         /// Path of the adapter.
         path: String,
