@@ -131,7 +131,7 @@ impl Repl {
             };
             if std::mem::take(&mut is_new) {
                 for left in seen.left_over() {
-                    self.screen.note(&format!("left over: {}; {}", left.what, left.undo));
+                    self.screen.note(&format!("still active from before: {}; {}", left.what, left.undo));
                 }
             }
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());

@@ -54,7 +54,7 @@ impl Setup {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
         robot.add(run, "setup")?;
-        run.screen.note("show its state with `armctl status`; list the commands with `armctl -h`");
+        run.screen.note("`armctl status` shows the state of the robot; `armctl -h` lists the commands");
         Ok(())
     }
 }

@@ -122,7 +122,7 @@ pub const KNOWN: [Known; 19] = [
     Known {
         alarm: Alarm::new(2, 334),
         text: "over soft limit",
-        causes: &["the target or the way to it lies outside an axis's range"],
+        causes: &["the target or the path to it is outside the range of an axis"],
         remedies: &["check the point and the soft limits", "jog the axis back into its range"],
     },
     Known {

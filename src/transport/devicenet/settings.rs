@@ -74,7 +74,7 @@ impl Settings {
     pub fn check(&self, own: Mac) -> Result<(), Error> {
         let wrong = |text: String| Err(Error::Settings(text));
         if self.slave == own {
-            return wrong(format!("MAC {own} is the MAC of this master; the controller has another one"));
+            return wrong(format!("MAC {own} is the MAC of this master; the controller must have a different MAC"));
         }
         let Purpose::Images(images) = &self.purpose else { return Ok(()) };
         if !CYCLES.contains(&images.cycle) {

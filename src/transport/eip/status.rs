@@ -70,7 +70,7 @@ pub const GENERAL: &[Code] = &[
     code(
         0x02,
         "resource unavailable",
-        "The device has no room left for the request.",
+        "The device has no memory for the request.",
         "Close connections of other masters and tools, or wait until they time out.",
     ),
     code(
@@ -97,12 +97,12 @@ pub const GENERAL: &[Code] = &[
         "Only a part of the data fits into the answer.",
         "Read the rest in another request.",
     ),
-    code(0x07, "connection lost", "The connection that carried the request is gone.", "Open it again."),
+    code(0x07, "connection lost", "The connection of the request was lost.", "Open it again."),
     code(
         0x08,
         "service not supported",
         "The object does not have this service.",
-        "Check the service; many objects can be read only whole or only by attribute.",
+        "Check the service; many objects allow only a complete read, or only a read of one attribute.",
     ),
     code(0x09, "invalid attribute value", "The attribute cannot have this value.", "Check the value and its size."),
     code(0x0A, "attribute list error", "Each attribute of the list has its own status.", "Read them one by one."),
@@ -134,7 +134,7 @@ pub const GENERAL: &[Code] = &[
         0x14,
         "attribute not supported",
         "The object does not have this attribute.",
-        "Check the attribute; optional ones are often left out.",
+        "Check the attribute; many devices do not have the optional ones.",
     ),
     code(0x15, "too much data", "The request is too long.", "Check the size of the data."),
     code(
@@ -205,7 +205,7 @@ pub const CONNECTION: &[Code] = &[
         0x0106,
         "ownership conflict",
         "Another master owns the outputs, or a dead connection has not timed out yet.",
-        "Find out which PLC or session holds the device; end it, or wait until it times out.",
+        "Find the PLC or session that owns the device; end it, or wait until it times out.",
     ),
     code(
         0x0107,
@@ -325,7 +325,7 @@ pub const CONNECTION: &[Code] = &[
     code(
         0x0126,
         "invalid configuration size",
-        "The size of the configuration data is wrong; the word that follows is the correct size in words.",
+        "The size of the configuration data is wrong; the next word is the correct size, as a number of words.",
         "Set no configuration data, or what the device expects.",
     ),
     code(
@@ -424,7 +424,7 @@ pub const CONNECTION: &[Code] = &[
     code(0x031F, "no configuration for the path", "The producer is not configured.", "Check its configuration."),
     code(0x0800, "network link offline", "A network on the route is down.", "Check the network."),
     code(0x0810, "no target application data", "The device has no data to send yet.", "Start its application."),
-    code(0x0811, "no originator application data", "There was no data to send yet.", "Try again."),
+    code(0x0811, "no originator application data", "The originator has no data to send yet.", "Try again."),
     code(
         0x0813,
         "not configured for off-subnet multicast",

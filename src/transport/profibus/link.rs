@@ -194,8 +194,8 @@ impl From<ProfibusError> for LinkError {
                  A and B wires",
             )),
             ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
-                "check station and baud in the URL, the A and B wires, the terminators at both ends with their \
-                 supply, and that the controller is on. With a slow adapter, set slot=50ms",
+                "check station and baud in the URL, the A and B wires, and both terminators with their supply; check \
+                 that the controller is on. With a slow adapter, set slot=50ms",
             )),
             ProfibusError::IsMaster { .. } => {
                 Self::Malformed(cause.advice("check station in the URL: `yrcx profibus scan`"))

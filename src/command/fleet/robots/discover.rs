@@ -19,9 +19,9 @@ use crate::settings::duration;
 /// Searches for controllers (ListIdentity), and lists serial ports without opening them.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A broadcast reaches only the network of its network card. --bind selects the card by its address; \
-                  --broadcast selects the network, such as 192.168.0.255. yerc controllers do not answer a \
-                  broadcast: use `armctl robots check udp://ADDRESS`."
+    after_help = "A broadcast reaches only the network of its network card. Use --bind to select the card by its \
+                  address, and --broadcast to select the network, such as 192.168.0.255. A yerc controller does not \
+                  answer a broadcast: use `armctl robots check udp://ADDRESS`."
 )]
 pub struct Discover {
     #[command(flatten)]

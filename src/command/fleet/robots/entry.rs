@@ -124,7 +124,8 @@ impl Remove {
 /// Changes settings of a robot; `KEY=` without a value removes a setting.
 #[derive(Debug, Args)]
 #[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
-    pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B; names.NAME=ADDRESS, such as names.clamp=27010.")]
+                        pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
+                        names.clamp=27010.")]
 pub struct Set {
     /// Its name
     #[arg(add = ValueKind::Robot)]
@@ -252,7 +253,7 @@ fn assigned(setting: &str) -> Result<(&str, &str, Parse), Failure> {
         ("name", _) => failure.hint("rename it with `armctl robots rename OLD NEW`"),
         ("default", _) => failure.hint("set the default with `armctl robots default NAME`"),
         (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
-        (_, None) => failure.hint(format!("there are {}", SETTINGS.map(|(known, ..)| known).join(", "))),
+        (_, None) => failure.hint(format!("known: {}", SETTINGS.map(|(known, ..)| known).join(", "))),
     })
 }
 

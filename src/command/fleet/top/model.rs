@@ -76,8 +76,8 @@ pub enum Sort {
 
 impl Sort {
     const ALL: [(Self, &'static str); 4] = [
-        (Self::Given, "as given"),
-        (Self::Trouble, "trouble first"),
+        (Self::Given, "inventory order"),
+        (Self::Trouble, "alarms first"),
         (Self::Name, "by name"),
         (Self::Answer, "slowest first"),
     ];

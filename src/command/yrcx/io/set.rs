@@ -273,7 +273,7 @@ mod tests {
             (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
             (&["io", "set", "SOW2=5"], "only the controller sets SOW(2)"),
             (&["io", "set", "SIW1=5"], "belong to remote commands"),
-            (&["io", "set", "SIW2=65536"], "does not fit SIW(2)"),
+            (&["io", "set", "SIW2=65536"], "out of range for SIW(2)"),
         ] {
             let objection = objection(line);
             assert!(objection.contains(part), "{line:?}: {objection}");

@@ -144,7 +144,7 @@ impl World {
         self.startable()?;
         self.powered_axes()?;
         if !self.machine.driver.contains(&Some(drive)) {
-            return Err("that axis drives none (E26)");
+            return Err("that axis has no driven axis (E26)");
         }
         self.reset_program();
         self.jog_ready = false;

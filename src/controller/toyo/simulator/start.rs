@@ -40,16 +40,16 @@ pub struct Start {
 }
 
 /// A start state with all keys; each is optional.
-pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without what some models have
+pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without the extras of some models
 version = "4.00"
-robot_types = [0]               # that TYPE takes; the first one is in force
+robot_types = [0]               # valid for TYPE; the first one is active
 axes = 4                        # 1 to 4
 mode = "automatic"              # step, program
 palletizing = false
 host = false
 pendant = false
 servo = true
-origin = false                  # whether the axes know it
+origin = false                  # true: the origin is known
 position = [0.0, 0.0, 0.0, 0.0] # mm from the origin
 
 points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }      # by task and row, mm
@@ -61,8 +61,8 @@ outputs = { "0/02" = "10000000" }
 steps = { 1 = ["SPD V=05", "MOVP a PT=001 CN=00 S V=00 POST", "OUT STN=0 PN01=.......1", "END"] }  # by task
 write = ["WPAR M13 0/01/8", "WPLT 01 SNO=01 TAG=000 MOD=M-1", "WESY PNO=01 ST=000 START=000 LOOP=0000 END=000"]
 
-error = "13"                    # the error there is
-history = [{ code = "28", after_seconds = 45 }]       # the newest first; { power_cut = true } is one, too
+error = "13"                    # the active error
+history = [{ code = "28", after_seconds = 45 }]       # newest first; { power_cut = true } is also an entry
 hours = 123                     # power-on time before the start
 card = "none"                   # empty, written
 card_seconds = 2
@@ -70,8 +70,8 @@ card_seconds = 2
 seed = 0
 answer_delay_ms = 0             # up to 1000 on a real controller
 busy = 0.0                      # share of commands refused with @NG
-instruction_us = 1000           # time that an instruction takes
-eeprom_limit = 0                # writes that a cell takes before it keeps nothing any more; 0 for no limit
+instruction_us = 1000           # duration of an instruction
+eeprom_limit = 0                # number of writes until a memory cell fails; 0 for no limit
 
 [[event]]
 at_ms = 2000

@@ -43,7 +43,7 @@ servo = true
 cycle = "once"                  # step, once, continuous
 play_write = true               # S2C541 = 0: variables can be written in play mode
 clock = "2026/03/14 08:00"
-installed = "2025/10/10 15:49"  # when running times began to count
+installed = "2025/10/10 15:49"  # start of the running times
 hours = { control = 2345, servo = 1890, playback = 1234, motion = 987 }
 software = "DN2.07.00A(JP/US)-00"
 robot_model = "ES0165D-A0*"
@@ -58,7 +58,7 @@ job = "TESTJOB"                 # the job to execute
 
 variables = { B0 = 7, I1 = -2, D2 = 100000, R3 = 1.5, S4 = "HELLO", P5 = { type = "pulse", axes = [1, 2, 3] } }
 registers = { 10 = 4660 }
-ladder_registers = [540, 541]   # a write to these is accepted and does not last
+ladder_registers = [540, 541]   # writes to these are accepted, but do not last
 io = { 10010 = true }
 
 seed = 0
@@ -70,7 +70,7 @@ transfer_timeout_ms = 5000
 capacity = 268435456            # bytes for all files
 replace_jobs = false            # true: loading replaces a job of the same name
 plain_last_ack = false          # true: the last block of a load is acknowledged as 0x80000000
-stock = true                    # false: no files, variables and history but what is named here
+stock = true                    # false: only the files, variables and history that are listed here
 
 alarm = [{ code = 4315, data = 3, type = 1 }]
 history = [{ code = 9001, data = 5, type = 1, time = "2026/02/28 17:30", name = "PART MISSING", class = "user" }]
@@ -90,7 +90,7 @@ END
 
 [[file]]
 name = "BIG.DAT"
-size = 67108864                 # made up as it is read
+size = 67108864                 # content is generated
 
 [[event]]
 at_ms = 60000

@@ -61,15 +61,15 @@ static STATUSES: [StatusRow; 5] = [
         models: added::DX200,
         name: "refused, see the added status",
         cause: "The controller refused; the added status gives the reason.",
-        remedy: "Look up the added status: `armctl explain yerc CODE`. If there is none, read the pendant and \
+        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the pendant and \
                  `armctl yerc alarm list`.",
     },
     StatusRow {
         code: 0x28,
         models: added::DX200,
         name: "array (instance) number does not exist",
-        cause: "What the request addresses is not there: a number beyond the last variable, signal, group or task, or \
-                number plus count running past the end (hint).",
+        cause: "The address does not exist: a number above the last variable, signal, group or task, or number plus \
+                count above the end (hint).",
         remedy: "Check the number against this controller's ranges and the set model.",
     },
 ];

@@ -6,8 +6,8 @@ use super::added::{AddedRow, BOTH, Class, row};
 #[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x1010, Class::Operand, BOTH, "command error",
-        "The controller took the request but not the command in it. Often an option that is not installed, or a \
-         command of another model.",
+        "The controller accepted the request, but not its command. Often an option is not installed, or the command \
+         belongs to another model.",
         "Check that the model (fs100 or dx200) is the right one and that the option is installed; `armctl yerc raw` \
          and `-vvv` show the bytes."),
     row(0x1011, Class::Operand, BOTH, "wrong number of operands",
@@ -52,8 +52,8 @@ pub(super) static ROWS: &[AddedRow] = &[
          or a door.",
         "Check that the cell is clear and the safety circuit closed, then `armctl yerc servo on`."),
     row(0x2080, Class::State, BOTH, "wrong mode",
-        "The mode key does not allow the request. Starts, moves and most writes want remote mode (hint: which codes \
-         guard writes is not spelt out).",
+        "The mode key does not allow the request. Starts, moves and most writes need remote mode (hint: the codes \
+         for writes are not documented).",
         "Turn the mode key of the pendant to REMOTE and repeat; for writes in play mode see also S2C541 and RS029."),
     row(0x2090, Class::State, BOTH, "another function is using the file",
         "Another function or another host has the job or file open at the moment.",
@@ -64,10 +64,10 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Turn the mode key to REMOTE. In management mode open IN/OUT > PSEUDO INPUT SIGNAL and set #82015 CMD \
          REMOTE SEL on ([INTER LOCK]+[SELECT])."),
     row(0x2110, Class::State, BOTH, "data may not be accessed",
-        "The data are protected at the moment: writing in play mode or under edit lock is barred, or this address \
-         is read-only.",
-        "Set S2C541 = 0 (play mode) or S2C542 = 0 (edit lock), or write in another mode; check the address too \
-         (hint: this code's exact causes are not documented)."),
+        "The data are protected at the moment: the controller blocks writes in play mode or under edit lock, or this \
+         address is read-only.",
+        "Set S2C541 = 0 (play mode) or S2C542 = 0 (edit lock), or write in another mode. Check the address too \
+         (hint: the exact causes of this code are not documented)."),
     row(0x2120, Class::State, BOTH, "data may not be loaded",
         "Loading this file is not allowed in the present state, for instance during playback, under edit lock or at \
          this security level.",
@@ -124,7 +124,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The master job cannot be called while the robot is in operation.",
         "Wait for the running job to end, or stop it, then call the master job."),
     row(0x3420, Class::Servo, BOTH, "master job call prohibited by teach lock",
-        "Teach lock is on and bars the call of the master job.",
+        "Teach lock is on and blocks the call of the master job.",
         "Switch teach lock off on the pendant, then repeat."),
     row(0x3430, Class::Servo, BOTH, "robot calibration data not defined",
         "Robots that work together were not calibrated to each other, so the request cannot be computed.",
@@ -232,6 +232,6 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The file was saved on a controller with other system data (robot, axes, options or software).",
         "Load only files of this controller or of one with the same setup; copy jobs by hand."),
     row(0x5480, Class::Syntax, BOTH, "wrong welding function type",
-        "The file belongs to another welding type than that of this controller.",
+        "The welding type of the file differs from that of this controller.",
         "Use a file for the welding function installed here."),
 ];

@@ -257,7 +257,7 @@ pub enum PortError {
         path: String,
     },
     /// The adapter was disconnected.
-    #[error("{path} is gone: {why}")]
+    #[error("{path} was disconnected: {why}")]
     Gone {
         /// Path of the adapter.
         path: String,

@@ -553,7 +553,7 @@ fn synchronized_axes_move_together() {
     bench.run();
     assert_eq!(bench.error(), Some(0x64));
     bench.ok("@CERR");
-    bench.ng("@SORG 2", "drives none");
+    bench.ng("@SORG 2", "no driven axis");
     bench.ok("@SORG 1");
     bench.rest();
     bench.run();
