@@ -35,7 +35,7 @@ pub fn read(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
         match cells(line) {
             Some(row) if row.len() == columns.len() => rows.push((number, row)),
             Some(row) => {
-                return Err(format!("line {number}: {} cells under {} columns", row.len(), columns.len()));
+                return Err(format!("line {number}: {} cells for {} columns", row.len(), columns.len()));
             }
             None => return Err(format!("line {number}: a closing quotation mark is missing")),
         }
