@@ -89,7 +89,7 @@ impl Restore {
             results.push(FileResult::pending(Shown::new(link.encoding, file.as_bytes()), Some(content.path())));
         }
         if link.is_dry() {
-            self.plan_items(link, &manifest, &deliveries);
+            Self::plan_items(link, &manifest, &deliveries);
         }
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
@@ -120,7 +120,7 @@ impl Restore {
 
 impl Restore {
     /// Notes each file of the backup in a dry run.
-    fn plan_items(&self, link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
+    fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
         let on = "whether the controller's file differs";
         for entry in &manifest.files {
             let Some(copy) = &entry.copy else { continue };
